@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Index
     from fegear.design.flanks.trials import FlankTrials, Tried
 
 #: Extent of the first region of trust over the box and the one that ends a descent; its growth and its shrinking.
@@ -103,13 +103,13 @@ class _Straight:
 
     trials: FlankTrials
     tried: Tried
-    free: Array
+    free: Index
     limit: float | None
     te: Array
     over_face: Array | None
 
     @classmethod
-    def of(cls, trials: FlankTrials, tried: Tried, free: Array, limit: float | None) -> _Straight:
+    def of(cls, trials: FlankTrials, tried: Tried, free: Index, limit: float | None) -> _Straight:
         return cls(trials, tried, free, limit, tried.te, None if limit is None else tried.over_face)
 
     def corrected(self, ahead: Tried, step: Array) -> _Straight:
