@@ -24,6 +24,7 @@ LAYERS = {
     "geometry": 1,
     "formulas": 2,
     "fem": 2,
+    "shafts": 2,
     "contact": 3,
     "design": 4,
     "dynamics": 5,

@@ -1,0 +1,63 @@
+"""Basic rating life of rolling bearings: ISO 281:2007, Clauses 5 to 7.
+
+L_10 = (C/P)^p million revolutions, p = 3 for balls and 10/3 for rollers, P = X F_r + Y F_a, and P = F_r where the axial
+force is no more than e times the radial one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from fegear.base.errors import RangeError
+
+#: p.
+EXPONENT = {"ball": 3.0, "roller": 10.0 / 3.0}
+
+
+@dataclass(frozen=True)
+class LifeRating:
+    """What a catalogue says of a bearing's life.
+
+    Parameters
+    ----------
+    dynamic_rating : float
+        C [N].
+    kind : {"ball", "roller"}
+    radial_factor, axial_factor : float
+        X and Y where the axial force counts.
+    limit : float
+        e: up to this F_a/F_r the axial force does not count.
+
+    Raises
+    ------
+    RangeError
+        If a value is negative, or the rating is not positive.
+    """
+
+    dynamic_rating: float
+    kind: Literal["ball", "roller"] = "ball"
+    radial_factor: float = 1.0
+    axial_factor: float = 0.0
+    limit: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no rating."""
+        if not (math.isfinite(self.dynamic_rating) and self.dynamic_rating > 0.0):
+            raise RangeError("dynamic_rating", self.dynamic_rating, "must be positive and finite")
+        for key in ("radial_factor", "axial_factor", "limit"):
+            if not getattr(self, key) >= 0.0:
+                raise RangeError(key, getattr(self, key), "must not be negative")
+
+    def equivalent_load(self, radial: float, axial: float) -> float:
+        """P [N]."""
+        radial, axial = abs(radial), abs(axial)
+        if axial <= self.limit * radial:
+            return radial
+        return self.radial_factor * radial + self.axial_factor * axial
+
+    def revolutions(self, radial: float, axial: float) -> float:
+        """L_10 in revolutions; infinite without load."""
+        load = self.equivalent_load(radial, axial)
+        return 1e6 * (self.dynamic_rating / load) ** EXPONENT[self.kind] if load > 0.0 else math.inf

@@ -1,0 +1,102 @@
+"""Rolling bearings: Hertz's point contact, Stribeck's largest load, derivatives of the energy, basic rating life."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import RangeError
+from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.life import LifeRating
+from fegear.shafts.rolling_bearing import RollingBearing, point_contact
+from fegear.shafts.solution import LoadedShaft, Seat, deflect
+
+BALL = RollingBearing("ball", 9, 12.7e-3, 65e-3, clearance=15e-6)
+ANGULAR = RollingBearing("ball", 14, 10e-3, 60e-3, contact_angle=math.radians(25))
+ROLLER = RollingBearing("roller", 14, 10e-3, 60e-3, roller_length=12e-3)
+TAPERED = RollingBearing("roller", 18, 9e-3, 60e-3, contact_angle=math.radians(-14), roller_length=14e-3)
+
+
+def test_a_ball_on_a_plate_and_two_crossed_cylinders():
+    plane = 226e9
+    for radius in (0.005, 0.02):
+        sphere = (1 / radius, 1 / radius, 0.0, 0.0)
+        assert point_contact(sphere, plane) == pytest.approx(2 / 3 * plane * math.sqrt(radius), rel=1e-12)
+        crossed = (1 / radius, 0.0, 0.0, 1 / radius)
+        assert point_contact(crossed, plane) == pytest.approx(2 / 3 * plane * math.sqrt(radius), rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [1.1, 1.5, 6.7, 40.0])
+def test_an_elliptic_contact_is_the_potential_of_its_pressure(ratio):
+    """Hertz's pressure over the ellipse of semi-axes a = 1, b = 1/ratio: deflection and curvatures by quadrature.
+
+    w = (p_0 b/2 E*) int_0^inf (1 - x^2/(1 + s) - y^2/(b^2 + s)) ds / sqrt((1 + s)(b^2 + s) s).
+    """
+    from scipy.integrate import quad
+
+    b2, plane = ratio**-2, 1.0
+
+    def integral(power_a, power_b):
+        def of(t):
+            s = t * t
+            return 2.0 / ((1.0 + s) ** (0.5 + power_a) * (b2 + s) ** (0.5 + power_b))
+
+        return sum(quad(of, *ends, epsabs=0, epsrel=1e-12, limit=500)[0] for ends in ((0, 1 / ratio), (1 / ratio, 1),
+                                                                                      (1, math.inf)))  # fmt: skip
+
+    factor = 0.5 / ratio / (0.5 * plane)  # p_0 = 1, E* = half of E' of one body
+    delta, along, across = (factor * integral(*powers) for powers in ((0, 0), (1, 0), (0, 1)))
+    load = 2.0 / 3.0 * math.pi / ratio
+    found = point_contact((2.0 * along, 2.0 * across, 0.0, 0.0), plane)
+    assert found * delta**1.5 == pytest.approx(load, rel=1e-9)
+
+
+@pytest.mark.parametrize(("kind", "expected", "slack"), [("ball", 4.37, 0.02), ("roller", 4.08, 0.05)])
+def test_the_largest_load_is_stribecks_without_clearance(kind, expected, slack):
+    """Stribeck and Palmgren: Q_max = 4.37 F_r/Z for balls, 4.08 for rollers (n = 1; 10/9 gives 4.06)."""
+    bearing = RollingBearing(kind, 40, 4e-3, 60e-3, roller_length=8e-3)
+    u = np.array([20e-6, 0, 0, 0, 0])
+    radial = bearing.reaction(u)[0][0]
+    assert bearing.loads(u).max() * 40 / radial == pytest.approx(expected, abs=slack)
+
+
+@pytest.mark.parametrize("bearing", [BALL, ANGULAR, ROLLER, TAPERED])
+def test_stiffness_is_the_derivative_of_the_force_and_symmetric(bearing):
+    u = np.array([22e-6, -9e-6, -15e-6 if bearing.contact_angle < 0 else 15e-6, 3e-4, -2e-4])
+    stiffness = bearing.reaction(u)[1]
+    scale = np.array([1e-6, 1e-6, 1e-6, 1e-5, 1e-5])
+    for n, step in enumerate(np.diag(scale) * 1e-3):
+        slope = (bearing.reaction(u + step)[0] - bearing.reaction(u - step)[0]) / (2 * step[n])
+        assert slope * scale == pytest.approx(stiffness[n] * scale, abs=2e-4 * np.abs(stiffness * scale).max())
+    assert np.abs(stiffness - stiffness.T).max() <= 1e-12 * np.abs(stiffness).max()
+
+
+def test_a_shaft_on_two_tapered_bearings_and_one_on_balls_with_clearance_balance():
+    shaft = Shaft((Section(0.3, 0.045),))
+    mirrored = RollingBearing("roller", 18, 9e-3, 60e-3, contact_angle=math.radians(14), roller_length=14e-3)
+    load = np.array([[2000.0, -6000, 1200, 0, 30, 0]])
+    for left, right in ((TAPERED, mirrored), (BALL, BALL)):
+        held = LoadedShaft(shaft, (Seat(left, 0.02), Seat(right, 0.28)), np.array([0.12]), load)
+        found = deflect((held,))[0]
+        assert found.balance.max() < 1e-9
+        for seat, u, force in zip(held.seats, found.rings, found.bearing_forces, strict=True):
+            assert seat.bearing.reaction(u)[0] == pytest.approx(-force, abs=1e-6 * 6000)
+
+
+def test_basic_rating_lives():
+    """ISO 281: C/P = 10 is 1000 million revolutions of balls; a radial load alone below e, X and Y above."""
+    plain = LifeRating(33.2e3, "ball", 0.56, 1.6, 0.27)
+    assert plain.revolutions(3320.0, 0.0) == pytest.approx(1e9, rel=1e-12)
+    assert plain.equivalent_load(4000.0, 1000.0) == 4000.0
+    assert plain.equivalent_load(4000.0, -2000.0) == pytest.approx(0.56 * 4000 + 1.6 * 2000)
+    assert LifeRating(1e5, "roller").revolutions(2e4, 0.0) == pytest.approx(1e6 * 5 ** (10 / 3), rel=1e-12)
+    assert plain.revolutions(0.0, 0.0) == math.inf
+
+
+def test_elements_that_do_not_fit_are_refused():
+    with pytest.raises(RangeError, match="does not fit"):
+        RollingBearing("ball", 30, 12.7e-3, 65e-3)
+    with pytest.raises(RangeError, match="jams"):
+        RollingBearing("ball", 9, 12.7e-3, 65e-3, groove_ratio=(0.5, 0.52))

@@ -1,0 +1,162 @@
+"""Shafts against closed forms of beams: bending with shear, steps, cones, tension, twist; bearings in series."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import FegearError, InputError
+from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.bearing import LooseBearing, StiffBearing, stiff
+from fegear.shafts.solution import LoadedShaft, Seat, deflect
+
+E, NU, INF = 206e9, 0.3, math.inf
+PIN, ROLLER = stiff(INF, INF), stiff(INF)
+
+
+def _shaft(*sections):
+    return Shaft(tuple(Section(*one) for one in sections), E, NU)
+
+
+def _one(shaft, seats, at, *loads, name="shaft"):
+    held = tuple(Seat(bearing, z) for bearing, z in seats)
+    return deflect((LoadedShaft(shaft, held, np.atleast_1d(at).astype(float), np.array(loads, dtype=float), name),))[0]
+
+
+def _bending(d, h=0.0):
+    return E * math.pi / 64 * (d**4 - h**4)
+
+
+def _shear(d, h=0.0):
+    m = (h / d) ** 2
+    kappa = 6 * (1 + NU) * (1 + m) ** 2 / ((7 + 6 * NU) * (1 + m) ** 2 + (20 + 12 * NU) * m)
+    return kappa * E / (2 * (1 + NU)) * math.pi / 4 * (d * d - h * h)
+
+
+@pytest.mark.parametrize("hole", [0.0, 0.02])
+def test_a_simply_supported_shaft_with_a_force_between_its_bearings(hole):
+    length, a, force = 0.4, 0.15, 3000.0
+    found = _one(_shaft((length, 0.05, hole)), ((PIN, 0.0), (ROLLER, length)), a, (0, -force, 0, 0, 0, 0))
+    b = length - a
+    expected = -force * a**2 * b**2 / (3 * _bending(0.05, hole) * length) - force * a * b / length / _shear(0.05, hole)
+    assert found.at(a)[0, 1] == pytest.approx(expected, rel=1e-11)
+    assert found.bearing_forces[:, 1] == pytest.approx([force * b / length, force * a / length], rel=1e-12)
+    assert found.balance.max() < 1e-12
+
+
+def test_an_overhung_shaft():
+    span, over, force = 0.3, 0.1, 2000.0
+    found = _one(_shaft((span + over, 0.04)), ((PIN, 0.0), (ROLLER, span)), span + over, (force, 0, 0, 0, 0, 0))
+    ei, shear = _bending(0.04), _shear(0.04)
+    expected = force * over**2 * (span + over) / (3 * ei) + force * over / shear * (1 + over / span)
+    assert found.at(span + over)[0, 0] == pytest.approx(expected, rel=1e-11)
+
+
+def test_a_stepped_shaft_in_the_middle():
+    half, d, thick, force = 0.2, 0.04, 0.06, 5000.0
+    found = _one(
+        _shaft((0.1, d), (0.2, thick), (0.1, d)), ((PIN, 0.0), (ROLLER, 2 * half)), half, (force, 0, 0, 0, 0, 0)
+    )
+    bent = (0.1**3 / _bending(d) + (half**3 - 0.1**3) / _bending(thick)) * force / 6
+    shear = force / 2 * (0.1 / _shear(d) + 0.1 / _shear(thick))
+    assert found.at(half)[0, 0] == pytest.approx(bent + shear, rel=1e-11)
+
+
+def test_a_clamped_cone_is_the_integral_and_the_limit_of_fine_steps():
+    length, d0, d1, force = 0.2, 0.06, 0.02, 800.0
+    clamp = stiff(INF, INF, INF)
+    cone = Shaft((Section(length, d0, 0.0, d1),), E, NU)
+    found = _one(cone, ((clamp, 0.0),), length, (force, 0, 0, 0, 0, 0)).at(length)[0]
+    # int (L-z)^2/(E I) dz of a solid cone: 64 L^3/(3 pi E d1 d0^3), free end of diameter d1.
+    bent = 64 * force * length**3 / (3 * math.pi * E * d0**3 * d1)
+    shear = force * length / _shear(1.0) / (d0 * d1)
+    assert found[0] == pytest.approx(bent + shear, rel=1e-11)
+    errors = []
+    for count in (64, 128):
+        middle = d0 + (d1 - d0) * (np.arange(count) + 0.5) / count
+        steps = _shaft(*((length / count, float(d)) for d in middle))
+        errors.append(_one(steps, ((clamp, 0.0),), length, (force, 0, 0, 0, 0, 0)).at(length)[0, 0] / found[0] - 1)
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
+    assert abs(errors[1] + (errors[1] - errors[0]) / 3) < 1e-7
+
+
+def test_tension_and_twist():
+    clamp = stiff(INF, INF, INF)
+    loads = [(0, 0, 700.0, 0, 0, -50.0), (0, 0, 0, 0, 0, 50.0)]
+    found = _one(_shaft((0.3, 0.03, 0.01)), ((clamp, 0.0),), (0.3, 0.1), *loads).at(0.3)[0]
+    area, polar = math.pi / 4 * (0.03**2 - 0.01**2), math.pi / 32 * (0.03**4 - 0.01**4)
+    assert found[2] == pytest.approx(700 * 0.3 / (E * area), rel=1e-12)
+    assert found[5] == pytest.approx(-50 * 0.2 / (E / 2.6 * polar), rel=1e-12)
+
+
+def test_places_next_to_each_other_lose_no_digits():
+    shaft = _shaft((0.4, 0.05))
+    seats = ((PIN, 0.0), (ROLLER, 0.4))
+    plain = _one(shaft, seats, 0.2, (1e3, 0, 0, 0, 0, 0)).at(0.2)[0, 0]
+    close = _one(shaft, seats, (0.2, 0.2 + 1e-12), (500, 0, 0, 0, 0, 0), (500, 0, 0, 0, 0, 0)).at((0.2, 0.2 + 1e-12))
+    assert close[:, 0] == pytest.approx(plain, rel=1e-10)
+
+
+def test_stiffness_to_infinity_converges_with_order_one():
+    shaft, load = Shaft((Section(0.4, 0.05),), INF), (1e3, 300, 200, 0, 0, 0)
+    rigid = _one(shaft, ((PIN, 0.0), (ROLLER, 0.4)), 0.1, load)
+    assert np.abs(rigid.at((0.0, 0.1, 0.4))).max() == 0.0
+    moved = [_one(shaft, ((stiff(k, k), 0.0), (stiff(k), 0.4)), 0.1, load).at(0.1)[0, 0] for k in (1e8, 1e9, 1e20)]
+    assert moved == pytest.approx([1e3 * (0.75**2 + 0.25**2) / k for k in (1e8, 1e9, 1e20)], rel=1e-10)
+
+
+def test_a_clearance_is_passed_before_the_bearing_carries():
+    k, c, force = 2e8, 30e-6, 1000.0
+    bearing = LooseBearing(k, 1e8, 0.0, c, 10e-6)
+    found = _one(
+        Shaft((Section(0.2, 0.05),), INF),
+        ((bearing, 0.0), (bearing, 0.2)),
+        0.1,
+        (0.6 * force, 0.8 * force, 500, 0, 0, 0),
+    )
+    across = c + force / 2 / k
+    assert found.at(0.1)[0, :2] == pytest.approx([0.6 * across, 0.8 * across], rel=1e-9)
+    assert found.at(0.1)[0, 2] == pytest.approx(10e-6 + 500 / 2e8, rel=1e-9)
+
+
+def test_housing_and_bearing_are_springs_in_series_and_seats_push_each_other():
+    shaft = Shaft((Section(0.4, 0.05),), INF)
+    held = LoadedShaft(
+        shaft, (Seat(stiff(1e8, 1e8), 0.0), Seat(stiff(1e8), 0.4)), np.array([0.2]), np.array([[1e3, 0, 0, 0, 0, 0.0]])
+    )
+    housing = np.zeros((10, 10))
+    housing[0, 0] = housing[5, 5] = 2e-9
+    housing[0, 5] = housing[5, 0] = 1e-9
+    assert deflect((held,), housing)[0].at(0.2)[0, 0] == pytest.approx(500 * (1e-8 + 2e-9 + 1e-9), rel=1e-12)
+
+
+def test_a_matrix_couples_force_and_tilt():
+    matrix = np.diag([2e8, 2e8, 1e8, 3e4, 3e4])
+    matrix[0, 4] = matrix[4, 0] = 5e5
+    found = _one(Shaft((Section(0.1, 0.05),), INF), ((StiffBearing(matrix), 0.0),), 0.1, (100, 0, 0, 0, 0, 0))
+    assert found.left_end[[0, 4]] == pytest.approx(np.linalg.solve([[2e8, 5e5], [5e5, 3e4]], [100, 10.0]), rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("seats", "at", "load", "word"),
+    [
+        ((), 0.1, (1, 0, 0, 0, 0, 0), "without support"),
+        (((PIN, 0.1),), 0.1, (1, 0, 0, 0, 0, 0), "in tilt"),
+        (((ROLLER, 0.1), (ROLLER, 0.2)), 0.1, (1, 0, 0, 0, 0, 0), "along its axis"),
+        (((PIN, 0.1), (ROLLER, 0.3)), 0.1, (1, 0, 0, 0, 0, 0), "off the shaft"),
+        (((PIN, 0.0), (ROLLER, 0.2)), 0.3, (1, 0, 0, 0, 0, 0), "off the shaft"),
+        (((PIN, 0.0), (ROLLER, 0.2)), 0.1, (0, 0, 0, 0, 0, 5.0), "nothing takes"),
+    ],
+)
+def test_what_does_not_hold_is_refused_in_one_sentence(seats, at, load, word):
+    with pytest.raises(InputError, match=word):
+        _one(_shaft((0.2, 0.05)), seats, at, load)
+
+
+def test_shafts_without_sections_or_wall_are_refused():
+    with pytest.raises(FegearError, match="leave no shaft"):
+        Shaft(())
+    with pytest.raises(FegearError, match="no wall"):
+        Section(0.1, 0.05, 0.05)
