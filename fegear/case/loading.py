@@ -143,7 +143,7 @@ class LineErrorPart(Part):
 
 
 class TransmissionErrorPart(Part):
-    """``method = "mark-series"`` adds Mark's series with so many terms."""
+    """``method = "mark-series"`` adds Mark's series with so many terms; ``even_positions`` a table of even steps."""
 
     method: Literal["quadrature", "mark-series"] = Field(
         default="quadrature",
@@ -151,6 +151,11 @@ class TransmissionErrorPart(Part):
     )
     terms: Annotated[int, Field(ge=0, le=200)] = Field(
         default=3, description="M of Mark's series, 0 to 200; the report advises 3 at least."
+    )
+    even_positions: Annotated[int, Field(ge=8, le=100_000)] | None = Field(
+        default=None,
+        description="Rows of a table over one tooth of the driver for other programs, evenly spaced and periodic; "
+        "written as .mat, too.",
     )
 
     @model_validator(mode="after")

@@ -89,12 +89,15 @@ class Table(Alike):
     title : str
     printed : bool
         Whether a run shows it on the terminal, a column for each row: few rows, whose names the first column holds.
+    matlab : bool
+        Whether a run writes it as ``.mat``, too: a table that other programs read.
     """
 
     name: str
     columns: tuple[Column, ...]
     title: str = ""
     printed: bool = False
+    matlab: bool = False
 
     def __post_init__(self) -> None:
         """Refuse columns of different length: that would be a bug of a stage."""

@@ -71,7 +71,7 @@ def sheet_lines(table: Table) -> list[str]:
 
 
 def write_table(folder: Path, table: Table) -> Path:
-    """Write ``<name>.csv`` into a folder.
+    """Write ``<name>.csv`` into a folder, and ``<name>.mat`` beside it where the table is for other programs.
 
     Parameters
     ----------
@@ -84,7 +84,26 @@ def write_table(folder: Path, table: Table) -> Path:
     """
     path = folder / table_file(table)
     path.write_text(table_text(table), encoding="utf-8", newline="")
+    if table.matlab:
+        path.with_suffix(".mat").write_bytes(_matlab(table))
     return path
+
+
+#: Text that begins a .mat file, 116 characters of it; scipy's own says the hour: two files of one table would differ.
+_MATLAB = b"MATLAB 5.0 MAT-file, written by fegear"
+
+
+def _matlab(table: Table) -> bytes:
+    """A table as MATLAB's level 5: a column vector for each column, ``units`` with theirs, ``title``."""
+    from io import BytesIO
+
+    from scipy.io import savemat
+
+    file = BytesIO()
+    units = {column.name: column.unit or "1" for column in table.columns}
+    columns = {column.name: column.values for column in table.columns}
+    savemat(file, {**columns, "units": units, "title": table.title}, oned_as="column", long_field_names=True)
+    return _MATLAB.ljust(116) + file.getvalue()[116:]
 
 
 def _finite(number: float | None) -> float | None:

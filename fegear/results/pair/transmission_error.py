@@ -31,6 +31,7 @@ from fegear.results.pair.loaded_teeth import (
     under_load,
 )
 from fegear.results.pair.mark_transmission_error import mark_data, present_mark
+from fegear.results.pair.mesh_table import mesh_table
 
 if TYPE_CHECKING:
     from fegear.case.loading import TransmissionErrorPart
@@ -98,6 +99,10 @@ def _present(data: TransmissionErrorData, inputs: TransmissionErrorInputs) -> Ou
             where = f"0-peak, harmonic {int(low.argmax()) + 1} of {e.cycles} base pitches"
             values.append(Value(f"{name}.te_largest_rotational", float(low.max()), "um", None, where))
         figures = (*figures, _rotational_figure(name, e, e.rotational))
+    if (count := inputs.part.even_positions) is not None:
+        table, said = mesh_table(name, e, count)
+        tables.append(table)
+        remarks += said
     if data.by_mark is not None:
         more = present_mark(name, data.by_mark, e.rotational)
         tables += more.tables

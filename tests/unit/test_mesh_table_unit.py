@@ -1,0 +1,65 @@
+"""The table of a mesh for other programs: even over one tooth of the driver, periodic, and read back from .mat."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+import fegear
+from fegear.output.tables import write_table
+from fegear.results.pair.mesh_table import over_pitch
+
+CASE = {
+    "title": "A mesh for another program",
+    "results": ["transmission-error"],
+    "gear": {
+        "a": {"teeth": 23, "module": "3 mm", "face_width": "10 mm", "bore_radius": "15 mm"},
+        "b": {"teeth": 41, "module": "3 mm", "face_width": "10 mm", "bore_radius": "15 mm"},
+    },
+    "pair": {"I": {"driver": "a", "driven": "b", "load": "2 kN", "compliance": {"source": "weber-banaschek"}}},
+    "transmission_error": {"even_positions": 500},
+}
+
+
+@pytest.fixture(scope="module")
+def results():
+    return fegear.run(CASE, progress=False)
+
+
+def test_it_is_read_back_from_mat_as_it_was_computed(results, tmp_path):
+    table = results.tables["mesh_table_I"]
+    write_table(tmp_path, table)
+    first = (tmp_path / "mesh_table_I.mat").read_bytes()
+    write_table(tmp_path, table)
+    assert (tmp_path / "mesh_table_I.mat").read_bytes() == first
+    read = loadmat(tmp_path / "mesh_table_I.mat", simplify_cells=True)
+    assert read["units"]["local_stiffness"] == "N/um"
+    for column in table.columns:
+        np.testing.assert_array_equal(read[column.name], column.values)
+    angle = read["driver_angle"]
+    np.testing.assert_allclose(np.diff(angle), 360.0 / 23 / 500, rtol=1e-9)
+    assert angle[0] == 0.0
+
+
+def test_its_means_are_those_of_the_curves(results):
+    table = results.tables["mesh_table_I"]
+    te, slope = (np.asarray(table.column(name).values, dtype=float) for name in ("te", "local_stiffness"))
+    values = {name: one.value for name, one in results.values.items()}
+    # A jump stands at most half a step from its place.
+    assert te.mean() == pytest.approx(values["I.te_mean"], abs=np.ptp(te) / 500)
+    assert slope.mean() == pytest.approx(values["I.local_stiffness_mean"], abs=2.0 * np.ptp(slope) / 500)
+    assert np.ptp(te) == pytest.approx(values["I.te_peak_to_peak"], rel=5e-3)
+    assert any("mesh_table_I has 500 even steps" in remark for remark in results.remarks)
+
+
+def test_a_curve_with_a_jump_is_followed_and_closes():
+    x = np.array([2.0, 3.0, 3.0 + 1e-9, 4.9999])
+    values = np.array([1.0, 1.0, 5.0, 5.0])
+    part = np.arange(8) / 8
+    found = over_pitch(x, values, 3.0, part)
+    np.testing.assert_allclose(found[:3], 1.0)  # up to x = 2.75
+    np.testing.assert_allclose(found[3:], 5.0, atol=1e-12)  # from 3.125 to 4.625
+    smooth = np.linspace(0.0, 1.0, 400, endpoint=False)
+    again = over_pitch(smooth, np.cos(2.0 * math.pi * smooth), 1.0, np.arange(64) / 64)
+    np.testing.assert_allclose(again, np.cos(2.0 * math.pi * np.arange(64) / 64), atol=1e-4)
