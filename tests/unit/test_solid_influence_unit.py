@@ -11,6 +11,7 @@ from fegear.base.solution_cache import SolutionCache, cache_on_disk
 from fegear.fem.solid.bands import hats
 from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.settings import SolidSettings, solid_settings, whole
+from fegear.fem.solid.table import BandNumbers, RootStressOfBands
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
@@ -82,3 +83,28 @@ def test_round_off_of_a_face_s_width_adds_no_function_along_it(waves):
         assert len(degrees) == len(pieces) == 1
         assert settings.degree(width) >= waves * width - 1e-9
         assert abs(pieces.pop() - 2.5 * width) <= 0.5
+
+
+def test_root_stress_of_two_solutions_is_compared_by_its_curves_not_by_their_largest_values():
+    """A curve that is moved along the face keeps its largest value and differs all the same."""
+    places, shape = np.linspace(-1.5, 1.5, 61), (1, 1)
+
+    def root(middle, sign):
+        along = sign * 40.0 * np.exp(-((places - middle) ** 2))
+        fixed = np.zeros(shape)
+        return RootStressOfBands(
+            np.full(shape, sign * 40.0), fixed, fixed, fixed, fixed, places, along.reshape(1, 1, -1)
+        )
+
+    compliance = {"c_self": np.full(shape, 20.0), "c_prev": np.full(shape, 2.0), "c_next": np.full(shape, 3.0)}
+    one, other = (
+        BandNumbers(compliance, {"tension": root(at, 1.0), "compression": root(at, -1.0)}) for at in (0.0, 0.05)
+    )
+    apart = one.apart(other)
+    assert list(apart) == list(one.names) == ["c_self", "c_prev", "c_next", "root_tension", "root_compression"]
+    assert apart["c_self"] == apart["c_prev"] == apart["c_next"] == 0.0
+    curve = np.exp(-(places**2))
+    largest = np.abs(np.exp(-((places - 0.05) ** 2)) - curve)[curve >= 0.5].max()
+    for side in ("root_tension", "root_compression"):
+        assert apart[side] == pytest.approx(largest, rel=1e-12)
+        assert apart[side] > 0.04

@@ -90,9 +90,9 @@ class ShiftedCompliance:
         """As the base."""
         return self.base.fillet_curve(side)
 
-    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:
         """As the base."""
-        return self.base.root_stress_error(radius_q)
+        return self.base.root_stress_error(radius_q, side)
 
     def describe(self) -> str:
         """As the base, shifted."""

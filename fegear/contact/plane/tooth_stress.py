@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import RootStressInfluence, Side
     from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.contact.plane.root_stress_history import RootStressHistory
     from fegear.geometry.pair import Member
 
 
@@ -41,6 +42,8 @@ class ToothStress:
         Most negative of the other fillet [Pa]; None where the source knows none, as the formulas.
     tension_error : ndarray
         Estimated [Pa]; NaN where the source does not know its own.
+    compression_error : ndarray or None
+        As `tension_error`; None where the source knows no compression.
     """
 
     x: Array = shown("mm", "position of the tooth's contact on the line of action")
@@ -52,6 +55,7 @@ class ToothStress:
     )
     compression: Array | None = shown("MPa", "most negative stress of the other fillet")
     tension_error: Array = shown("MPa", "estimated error of stress", name="stress_error")
+    compression_error: Array | None = shown("MPa", "estimated error of compression")
 
     @property
     def knows_error(self) -> bool:
@@ -64,8 +68,21 @@ class ToothStress:
 
     def error(self, i: int) -> float | None:
         """Estimated error of the largest tension under load number i [Pa]; None where the source does not know it."""
-        error = float(self.tension_error[self.worst(i), i])
-        return None if np.isnan(error) else error
+        return _known(self.tension_error[self.worst(i), i])
+
+    def largest_pressed(self, i: int) -> int | None:
+        """Position of the most negative compression under load number i; None where the source knows none."""
+        return None if self.compression is None else int(np.argmin(self.compression[:, i]))
+
+    def compression_off(self, i: int) -> float | None:
+        """Estimated error of the most negative compression under load number i [Pa]; None if it is not known."""
+        at = self.largest_pressed(i)
+        return None if at is None or self.compression_error is None else _known(self.compression_error[at, i])
+
+    def range_off(self, i: int) -> float | None:
+        """Estimated error of the range of stress under load number i [Pa]: those of both its ends together."""
+        least = int(np.argmin(self.tension[:, i]))
+        return _known(self.tension_error[self.worst(i), i] + self.tension_error[least, i])
 
     @property
     @shows("MPa", "of the mesh cycle", name="largest_root_tension")
@@ -84,6 +101,10 @@ class ToothStress:
     def tension_range(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
         return np.asarray(np.ptp(self.tension, axis=0))
+
+
+def _known(error: float) -> float | None:
+    return None if np.isnan(error) else float(error)
 
 
 class LoadedStates(NamedTuple):
@@ -198,47 +219,60 @@ def tooth_stress(
         If the source knows no root stress.
     """
     knows_both = _knows(e, member, source or e.compliance.source(member), "compression")
-    xs: list[Array] = []
-    tension: list[Array] = []
-    compression: list[Array] = []
-    error: list[Array] = []
-    known: dict[int, tuple[Array, Array, Array, Array]] = {}
+    sides: tuple[Side, ...] = ("tension", "compression") if knows_both else ("tension",)
+    known: dict[int, list[Array]] = {}
+    parts: list[list[Array]] = []
     for row, (state, shifted) in enumerate(zip(*states, strict=True)):
         if id(state) not in known:
-            pulled = root_stress_history(e, state, member, "tension", 1, source)
-            pressed = root_stress_history(e, state, member, "compression", 1, source) if knows_both else pulled
-            off = np.zeros_like(pulled.stress)
-            for again in shifted:
-                off = off + np.abs(root_stress_history(e, again, member, "tension", 1, source).stress - pulled.stress)
-            off[1:-1] += _own_error(e, member, state, source) if estimates else np.nan
-            # where a tooth carries next to nothing its stress comes from its neighbours, and is as exact as theirs
-            off = np.maximum(off, _share_left(e, member, source) * np.abs(pulled.stress)) if estimates else off
-            known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
-        for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
-            found.append(values[row])
-    x = np.concatenate(xs)
+            histories = [_with_error(e, state, shifted, member, side, source, estimates=estimates) for side in sides]
+            known[id(state)] = [histories[0][0].x, *(a for one, off in histories for a in (one.stress, off))]
+        parts.append([values[row] for values in known[id(state)]])
+    x, *stresses = (np.concatenate(one) for one in zip(*parts, strict=True))
     order = np.argsort(x)
     pitch = e.pair.base_pitch
     order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
-    t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
-    return ToothStress(x[order], t, c if knows_both else None, off)
+    tension, error, *other = (one[order] for one in stresses)
+    compression, pressed_error = other or (None, None)
+    return ToothStress(x[order], tension, compression, error, pressed_error)
 
 
-def _share_left(e: Engagement, member: Member, source: RootStressInfluence | None) -> float:
-    """What the source leaves in the largest root tension under a tooth's own load, as a share; zero if not known."""
+def _with_error(
+    e: Engagement,
+    state: Loaded,
+    shifted: Sequence[Loaded],
+    member: Member,
+    side: Side,
+    source: RootStressInfluence | None,
+    *,
+    estimates: bool,
+) -> tuple[RootStressHistory, Array]:
+    """Stress of one fillet in every row of a state, and its estimated error, shape (n, P, L) [Pa]."""
+    found = root_stress_history(e, state, member, side, 1, source)
+    if not estimates:
+        return found, np.full_like(found.stress, np.nan)
+    off = np.zeros_like(found.stress)
+    for again in shifted:
+        off += np.abs(root_stress_history(e, again, member, side, 1, source).stress - found.stress)
+    off[1:-1] += _own_error(e, member, side, state, source)
+    # where a tooth carries next to nothing its stress comes from its neighbours, and is as exact as theirs
+    return found, np.maximum(off, _share_left(e, member, side, source) * np.abs(found.stress))
+
+
+def _share_left(e: Engagement, member: Member, side: Side, source: RootStressInfluence | None) -> float:
+    """What the source leaves in the largest stress of a fillet under a tooth's own load, as a share; 0 if not known."""
     stress = source or e.compliance.source(member)
     few = np.linspace(e.pair.radius(e.pair.x_start, member), e.pair.radius(e.pair.x_end, member), 9)
-    own = stress.root_stress(0, few, "tension")
-    share = 0.0 if own is None else float(np.max(stress.root_stress_error(few)) / np.max(own))
+    own = stress.root_stress(0, few, side)
+    share = 0.0 if own is None else float(np.max(stress.root_stress_error(few, side)) / np.max(np.abs(own)))
     return share if np.isfinite(share) else 0.0
 
 
-def _own_error(e: Engagement, member: Member, state: Loaded, source: RootStressInfluence | None) -> Array:
+def _own_error(e: Engagement, member: Member, side: Side, state: Loaded, source: RootStressInfluence | None) -> Array:
     """What the source leaves in the stress of each tooth's own load, shape (n, P, L) [Pa]."""
     stress = source or e.compliance.source(member)
     contacts = state.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     few = np.linspace(radius.min(), radius.max(), 9)
-    usual = stress.root_stress_error(few)
+    usual = stress.root_stress_error(few, side)
     per_load = np.interp(radius, few, usual)
     return np.asarray(per_load[:, :, None] * state.loads / e.compliance.face_width)

@@ -221,21 +221,22 @@ class LoadedWidePair:
             self.pair, member, coarse.lines, influence.coarse, coupling=self.coupling
         )
         largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
-        off = []
+        off: dict[Side, list[Array]] = {"tension": [], "compression": []}
         for i in range(self.found.load.size):
             felt = {side: rooted.stress(side, self.found.contact.force[:, :, i], z) for side, _ in _SIDES}
             for side, sign in _SIDES:
                 largest[side].append(felt[side].largest(sign)[0])
             if i == self.at:
                 over_face[member] = felt
-            if again:
-                other = again.stress("tension", coarse.contact.force[:, :, i], z)
-                by_coarse = np.stack([np.interp(rooted.x, other.x, one) for one in other.value.T], axis=1)
-                off.append(ENTRY_SHARES["root_tension"] * curves_apart(felt["tension"].value, by_coarse))
-            else:  # slices know how far they are off
-                off.append(influence.error.get("root_tension", np.nan) * np.abs(largest["tension"][-1]))
-        tension, compression, error = (np.stack(x, axis=1) for x in (largest["tension"], largest["compression"], off))
-        return ToothStress(rooted.x, tension, compression, error)
+                if again:
+                    other = again.stress(side, coarse.contact.force[:, :, i], z)
+                    by_coarse = np.stack([np.interp(rooted.x, other.x, one) for one in other.value.T], axis=1)
+                    apart = curves_apart(sign * felt[side].value, sign * by_coarse)
+                    off[side].append(ENTRY_SHARES[f"root_{side}"] * apart)
+                else:  # slices know how far they are off
+                    off[side].append(influence.error.get(f"root_{side}", np.nan) * np.abs(largest[side][-1]))
+        ends = (*largest.values(), *off.values())
+        return ToothStress(rooted.x, *(np.stack(one, axis=1) for one in ends))
 
     def _across(self, rooted: RootedLines, stress: ToothStress) -> tuple[float, float]:
         i = self.at

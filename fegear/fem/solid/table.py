@@ -126,22 +126,16 @@ def solid_table(
     m, r = gear.module, np.atleast_1d(np.asarray(radii, dtype=float))
     asked = bands_of_table(influence.fine, r / m, np.asarray(positions, dtype=float) / m, np.asarray(half_width) / m, m)
     z, before, after, b = (x * m for x in (asked.place, asked.before, asked.after, asked.half_width))
-    fine = band_numbers(influence.fine, asked)
-    root = {side: _root(influence.fine, side, asked, m) for side in influence.fine.fillets}
-    relative = {key: np.full((r.size, 1), np.nan) for key in fine}
+    fine = band_numbers(influence.fine, asked, m)
+    root = fine.root
+    relative = {key: np.full((r.size, 1), np.nan) for key in fine.names}
     if influence.settings.source == "slices":
-        relative = {key: np.full((r.size, 1), influence.error[_MISSED[key]]) for key in fine}
+        relative = {key: np.full((r.size, 1), influence.error[_MISSED[key]]) for key in fine.names}
     elif influence.coarse is not None:
-        coarse = band_numbers(influence.coarse, asked)
-        apart = {key: np.abs(coarse[key] / fine[key] - 1.0) for key in fine}
-        for side, found in root.items():
-            sign = 1.0 if side == "tension" else -1.0
-            along = curves_apart(sign * found.along, sign * _root(influence.coarse, side, asked, m).along)
-            apart[f"root_{side}"] = along / np.abs(found.value)
         beside = _radii_beside(influence.fine, asked.radius)
-        for key, difference in apart.items():
+        for key, difference in fine.apart(band_numbers(influence.coarse, asked, m)).items():
             relative[key] = ENTRY_SHARES[_ESTIMATE[key]] * _worst_beside(difference.max(axis=1), beside)
-    c = {key: fine[key] / (gear.material.young_modulus * m) for key in ("c_self", "c_prev", "c_next")}
+    c = {key: value / (gear.material.young_modulus * m) for key, value in fine.compliance.items()}
     errors = {
         "c_self": relative["c_self"] * c["c_self"],
         "c_neighbour": np.maximum(relative["c_prev"] * c["c_prev"], relative["c_next"] * c["c_next"]),
@@ -204,8 +198,32 @@ def bands_of_table(
     return BandsOfTable(r, z, before, after, solution.band_half_width(r), width)
 
 
-def band_numbers(solution: SolidSolution, asked: BandsOfTable) -> dict[str, Array]:
-    """Compliances and largest root stresses, shape (R, Z) each."""
+@dataclass(frozen=True)
+class BandNumbers:
+    """What bands feel: compliances of shape (R, Z), module and Young's modulus one, and root stress by side."""
+
+    compliance: Mapping[str, Array]
+    root: Mapping[Side, RootStressOfBands]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all numbers, in the order of the table's columns."""
+        return (*self.compliance, *(f"root_{side}" for side in self.root))
+
+    def apart(self, other: BandNumbers) -> dict[str, Array]:
+        """How far another solution's numbers lie from these, over these, shape (R, Z) each.
+
+        Of root stress the curves along the face are compared where they are large: largest values may agree by chance.
+        """
+        found = {key: np.abs(other.compliance[key] / value - 1.0) for key, value in self.compliance.items()}
+        for side, root in self.root.items():
+            sign = 1.0 if side == "tension" else -1.0
+            found[f"root_{side}"] = curves_apart(sign * root.along, sign * other.root[side].along) / np.abs(root.value)
+        return found
+
+
+def band_numbers(solution: SolidSolution, asked: BandsOfTable, module: float = 1.0) -> BandNumbers:
+    """Compliances and largest root stresses, stress per unit force on a gear of this module."""
     pressed = asked.bands(solution)
     shape = asked.radius.size, asked.place.size
     found = {"c_self": np.empty(shape)}
@@ -214,9 +232,7 @@ def band_numbers(solution: SolidSolution, asked: BandsOfTable) -> dict[str, Arra
             found["c_self"][i, j] = _own(solution, float(r), asked, j, float(b))
     for k, name in ((-1, "c_prev"), (1, "c_next")):
         found[name] = np.diagonal(solution.deflection(k, pressed, pressed)).reshape(shape)
-    for side in solution.fillets:
-        found[f"root_{side}"] = _root(solution, side, asked, 1.0).value
-    return found
+    return BandNumbers(found, {side: _root(solution, side, asked, module) for side in solution.fillets})
 
 
 def _radii_beside(solution: SolidSolution, radius: Array) -> Mask:

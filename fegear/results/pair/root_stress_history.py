@@ -282,9 +282,9 @@ def _stress_values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[V
         return replace(found, name=f"{found.name}{end}")
 
     pressed = [] if s.compression is None else [
-        value("largest_compression", at=int(np.argmin(s.compression[:, i])))
+        value("largest_compression", s.compression_off(i), s.largest_pressed(i))
     ]  # fmt: skip
-    return [value("largest_tension", s.error(i), s.worst(i)), *pressed, value("tension_range")]
+    return [value("largest_tension", s.error(i), s.worst(i)), *pressed, value("tension_range", s.range_off(i))]
 
 
 def _places(over: Mapping[Side, StressOverFace]) -> tuple[Column, ...]:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fegear.contact.fourier import FourierSeries
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.fem.solid.table import BandNumbers
     from fegear.studies.cost.answers import Quantity, Source
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.ladder import Configuration, Ladder
@@ -308,6 +309,8 @@ _NAMES = {"c_self": "c_0 over the face", "c_next": "c_1 over the face", "root_te
 def solid_knobs(asked: Asked) -> list[Knob]:
     """What edges of the section and functions along the face cost, for the bands of ``[stiffness] face_positions``.
 
+    The error of root stress is that of its curve along the face where it is large, as in the table over the face.
+
     Parameters
     ----------
     asked : Asked
@@ -337,16 +340,14 @@ def _varied(
     answers, spent = zip(*(timed(partial(_answer, asked, one), repeat=False) for one in settings), strict=True)
     seconds = [one.cpu for one in spent[:-1]]
     at = f"{others}, against {against or f'{setting[-1]:.3g}'}; largest of the bands"
+    apart = [answers[-1].apart(one) for one in answers[:-1]]
     return [
-        make_knob(
-            quantity, name, at, setting[:-1], step[:-1],
-            [miss("c_0", one[key].ravel(), answers[-1][key].ravel()).largest for one in answers[:-1]], 0.0, seconds,
-        )
+        make_knob(quantity, name, at, setting[:-1], step[:-1], [float(one[key].max()) for one in apart], 0.0, seconds)
         for key, quantity in _NAMES.items()
-    ]  # fmt: skip
+    ]
 
 
-def _answer(asked: Asked, settings: SolidSettings) -> dict[str, Array]:
+def _answer(asked: Asked, settings: SolidSettings) -> BandNumbers:
     """Compliances and root stresses of the bands of the case."""
     scene, gear = asked.scene, asked.scene.gears[asked.gear]
     m = gear.module
