@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -36,12 +36,15 @@ from fegear.results.forecasts import HERTZ, PATCH, RING
 from fegear.results.gear.drawing import tooth_figure
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fegear.base.arrays import Array
     from fegear.case.built.tooth_influence import GearToSolve
     from fegear.case.reading import Scene
     from fegear.engine.outcome import Value
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.influence import Influence
     from fegear.fem.plane.table import StiffnessTable
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
@@ -368,6 +371,42 @@ def _solving_forecast(scene: Scene, name: str) -> Forecast:
     if scene.case.gear[name].tooth_mesh is not None:
         return Forecast({"mesh": scene.case.gear[name].tooth_mesh, "order": settings.order})
     return Forecast(asdict(settings), 0.0, forecasts.shapes(scene, [name]))
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What a table of unit loads on one gear depends on beside the gear's solution."""
+
+    teeth: int
+
+
+def of_solved_gear(compute: Callable[[Influence, int], Any], reach: int, seconds: float) -> Stage:
+    """The stage of what one solved spur gear gives by itself, for results of its pairs.
+
+    Parameters
+    ----------
+    compute : callable
+        ``compute(fine, reach)``, of the gear's finer solution.
+    reach : int
+        Neighbours to either side of the loaded tooth that it is known for.
+    seconds : float
+        What it takes.
+    """
+
+    def found(asked: Reach, upstream: Upstream, _work: Work) -> Any:
+        (influence,) = upstream.values()
+        return compute(cast("GearInfluence", influence).fine, asked.teeth)
+
+    return Stage(
+        subjects=lambda scene: tuple(scene.spur_gears),
+        needs=lambda _scene, name: needs_solution(name),
+        inputs=lambda _scene, _name: Reach(reach),
+        compute=found,
+        present=lambda data, _inputs: Outcome(data),
+        cites=citing(*RING),
+        forecast=lambda _scene, _name: forecasts.constant(seconds),
+        internal=True,
+    )
 
 
 STIFFNESS = Stage(

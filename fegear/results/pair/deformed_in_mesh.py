@@ -17,7 +17,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
-from fegear.results.gear.stiffness import needs_solution, solution_of
+from fegear.results.gear.stiffness import of_solved_gear, solution_of
 from fegear.results.pair.loaded_teeth import loaded_pair, needs_gears, plane_pairs
 from fegear.results.pair.stress_in_mesh import mesh_inputs
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.plane.moved_outlines import MovedOutline
     from fegear.engine.stage import Upstream, Work
-    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.influence import Influence
     from fegear.fem.plane.outline_motion import OutlineMotion
     from fegear.geometry.pair import GearPair, Member
     from fegear.results.pair.stress_in_mesh import MeshInputs
@@ -41,30 +41,13 @@ _REACH = _AHEAD + 1
 _STEPS = 50
 
 
-@dataclass(frozen=True)
-class MotionInputs:
-    """What the motion of an outline depends on beside the gear's solution."""
-
-    reach: int
-
-
-def _motion(asked: MotionInputs, upstream: Upstream, _work: Work) -> OutlineMotion:
+def _motion(fine: Influence, reach: int) -> OutlineMotion:
     from fegear.fem.plane.outline_motion import outline_motion
 
-    (influence,) = upstream.values()
-    return outline_motion(cast("GearInfluence", influence).fine, asked.reach)
+    return outline_motion(fine, reach)
 
 
-OUTLINE_MOTION = Stage(
-    subjects=lambda scene: tuple(scene.spur_gears),
-    needs=lambda _scene, name: needs_solution(name),
-    inputs=lambda _scene, _name: MotionInputs(_REACH),
-    compute=_motion,
-    present=lambda data, _inputs: Outcome(data),
-    cites=citing(*RING),
-    forecast=lambda _scene, _name: forecasts.constant(0.25),
-    internal=True,
-)
+OUTLINE_MOTION = of_solved_gear(_motion, _REACH, seconds=0.25)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ Figures of the mesh stiffness matrix: its three numbers over the mesh cycle, and
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -17,7 +17,7 @@ from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Subject, Task
 from fegear.engine.table import Column, Table
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import wide_pairs
@@ -73,13 +73,6 @@ class MeshStiffnessData:
         return over_q(self.found.pair, self.found.mean(self.found.matrix[:, self.flanks.at]))
 
 
-@dataclass(frozen=True)
-class MeshStiffnessInputs:
-    """The pair; all else is its loaded flanks."""
-
-    name: str = field(compare=False)
-
-
 def needs_mesh_stiffness(name: str) -> tuple[Task, ...]:
     """The task of this stage for a pair."""
     return (Task("mesh-stiffness-matrix", name),)
@@ -90,7 +83,7 @@ def mesh_stiffness_of(upstream: Upstream, name: str) -> MeshStiffnessData:
     return cast("MeshStiffnessData", upstream[Task("mesh-stiffness-matrix", name)])
 
 
-def _compute(asked: MeshStiffnessInputs, upstream: Upstream, _work: Work) -> MeshStiffnessData:
+def _compute(asked: Subject, upstream: Upstream, _work: Work) -> MeshStiffnessData:
     from fegear.contact.wide.mesh_matrix import even_moments, mesh_parameters_of, mesh_stiffness
 
     flanks = loaded_flanks(upstream, asked.name)
@@ -226,7 +219,7 @@ def _over_q(one: MeshStiffness, te: Array, case: int, shuttling: bool) -> Array:
     return error
 
 
-def _present(data: MeshStiffnessData, asked: MeshStiffnessInputs) -> Outcome:
+def _present(data: MeshStiffnessData, asked: Subject) -> Outcome:
     name, i, found = asked.name, data.flanks.at, data.found
     (stiffness, kappa, mu), doubt = data.mean, data.mean_error
     (kappa_i, mu_i), (kappa_j, mu_j) = own_axis_parameters(data)
@@ -356,7 +349,7 @@ def _as_map(name: str, data: MeshStiffnessData) -> Figure:
 
 MESH_STIFFNESS_MATRIX = Stage(
     subjects=lambda scene: wide_pairs(scene) or tuple(scene.pairs),
-    inputs=lambda _scene, name: MeshStiffnessInputs(name),
+    inputs=Subject.of,
     compute=_compute,
     present=_present,
     needs=needs_flanks,

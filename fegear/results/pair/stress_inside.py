@@ -19,7 +19,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
-from fegear.results.gear.stiffness import needs_solution
+from fegear.results.gear.stiffness import of_solved_gear
 from fegear.results.pair.loaded_teeth import gears_of, plane_pairs
 
 if TYPE_CHECKING:
@@ -28,19 +28,12 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.engine.stage import Upstream, Work
-    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.influence import Influence
     from fegear.fem.plane.inner_stress import InnerStress
     from fegear.geometry.pair import GearPair, Member
 
 #: Neighbours whose stress under a load is known.
 _REACH = 3
-
-
-@dataclass(frozen=True)
-class ReachInputs:
-    """What stress inside depends on beside the gear's solution."""
-
-    reach: int
 
 
 @dataclass(frozen=True)
@@ -89,23 +82,13 @@ class StressInsideData:
     gears: Mapping[Member, ToothStress]
 
 
-def _inner(asked: ReachInputs, upstream: Upstream, _work: Work) -> InnerStress:
+def _inner(fine: Influence, reach: int) -> InnerStress:
     from fegear.fem.plane.inner_stress import inner_stress
 
-    (influence,) = upstream.values()
-    return inner_stress(cast("GearInfluence", influence).fine, asked.reach)
+    return inner_stress(fine, reach)
 
 
-INNER_STRESS = Stage(
-    subjects=lambda scene: tuple(scene.spur_gears),
-    needs=lambda _scene, name: needs_solution(name),
-    inputs=lambda _scene, _name: ReachInputs(_REACH),
-    compute=_inner,
-    present=lambda data, _inputs: Outcome(data),
-    cites=citing(*RING),
-    forecast=lambda _scene, _name: forecasts.constant(0.35),
-    internal=True,
-)
+INNER_STRESS = of_solved_gear(_inner, _REACH, seconds=0.35)
 
 
 def _inputs(scene: Scene, name: str) -> PairInputs:
