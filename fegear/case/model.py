@@ -17,6 +17,7 @@ from fegear.case.operation import RatingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
 from fegear.case.planetary import PlanetaryPart
+from fegear.case.shaft import BearingPart, ShaftInSpacePart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
 from fegear.case.train import TrainPart
@@ -68,6 +69,13 @@ class Case(Part):
     )
     planetary: dict[str, PlanetaryPart] = Field(
         default_factory=dict, description="Planetary sets, each by a name of your choice."
+    )
+    shaft: dict[str, ShaftInSpacePart] = Field(
+        default_factory=dict,
+        description="Shafts in space with their gears and bearings, each by a name of your choice.",
+    )
+    bearing: dict[str, BearingPart] = Field(
+        default_factory=dict, description="Bearings of the shafts, each by a name of your choice."
     )
     dynamics: DynamicsPart = Field(
         default_factory=DynamicsPart, description="Speeds, frequencies, harmonics and friction of the running train."

@@ -126,6 +126,11 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Motion of a planetary set with contact loss", ("planet-motion",),
               "steady motions of a planetary set over speed in which teeth part and meet again"),
     ),
+    "Shafts and bearings": (
+        Entry("shaft-deflection", "shafts.shaft_deflection.SHAFT_DEFLECTION",
+              "Shafts on their bearings", ("shaft-deflection",),
+              "deflection of shafts under all meshes, bearing forces and lives, misalignment of each mesh by cause"),
+    ),
     "Gear trains in motion": (
         Entry("gear-train", "train.gear_train.GEAR_TRAIN", "Gear train", ("gear-train",),
               "bodies, shafts, meshes, speeds and mean forces of the train, as fegear takes them"),

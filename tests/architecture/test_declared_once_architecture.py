@@ -9,7 +9,7 @@ from pathlib import Path
 HOUSE = Path(__file__).resolve().parents[2] / "fegear"
 MECHANICS = ("geometry", "formulas", "fem", "shafts", "contact", "design", "dynamics")
 #: Rooms whose tables take meanings from the mechanics.
-ROOMS = ("gear", "pair", "relief", "helical", "planetary", "train", "rating")
+ROOMS = ("gear", "pair", "relief", "helical", "planetary", "shafts", "train", "rating")
 #: Shorter clauses are ordinary words, as "base circle" is: several quantities may be called so.
 WORDS = 4
 SHOWING = ("Column", "Value", "Axis")

@@ -1,0 +1,85 @@
+"""A two-stage gearbox on its shafts: forces of the meshes balance at the bearings, tilts by cause, what is refused."""
+
+import copy
+import math
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case.built.shafts import deflected, shaft_inputs, tilt_of
+from fegear.case.reading import build_scene
+
+CASE = tomllib.loads(Path(__file__).parents[2].joinpath("cases", "two_stage_shafts.toml").read_text(encoding="utf-8"))
+
+
+def _scene(**keys):
+    case = copy.deepcopy(CASE)
+    for path, value in keys.items():
+        table, name, key = path.split("__")
+        case[table][name][key] = value
+    return build_scene(case, "box", Path())
+
+
+def test_bearings_take_what_the_meshes_press():
+    asked = shaft_inputs(_scene())
+    bent, _ = deflected(asked)
+    assert all(found.balance.max() < 1e-9 for found in bent.values())
+    first, second = asked.meshes
+    # Driver right-handed and counter-clockwise: the driven gear is pushed up, away, and toward -z by F_t tan(beta).
+    radius = first.found.driver.base_radius / math.cos(first.found.working_pressure_angle)
+    tangential = 100.0 / radius
+    assert first.force[1] == pytest.approx(tangential, rel=1e-12)
+    assert first.force[2] == pytest.approx(-100.0 * first.found.driver.twist, rel=1e-12)
+    assert second.force[1] == pytest.approx(-250.0 / 0.04, rel=1e-12)
+    on_input = bent["in"].bearing_forces.sum(axis=0)
+    assert on_input[:3] == pytest.approx(first.force, rel=1e-9)
+    on_output = bent["out"].bearing_forces.sum(axis=0)
+    assert on_output[:2] == pytest.approx(-second.force[:2], rel=1e-9)
+
+
+def test_rigid_shafts_on_rigid_bearings_leave_parallel_axes():
+    case = copy.deepcopy(CASE)
+    for part in case["shaft"].values():
+        part["rigid"] = True
+        for place in part["bearings"]:
+            place["bearing"] = "rigid"
+        part["bearings"][0]["bearing"] = "locating"
+    case["bearing"] = {"rigid": {}, "locating": {"fixed": True}}
+    asked = shaft_inputs(build_scene(case, "box", Path()))
+    bent, _ = deflected(asked)
+    assert all(not tilt_of(mesh, bent).any() for mesh in asked.meshes)
+
+
+def test_tilt_falls_with_stiffness_in_order_one():
+    tilts = []
+    for stiffness in ("1e3 N/um", "1e4 N/um"):
+        case = copy.deepcopy(CASE)
+        for part in case["shaft"].values():
+            part["rigid"] = True
+            for place in part["bearings"]:
+                place["bearing"] = "linear"
+        case["bearing"] = {"linear": {"radial": stiffness, "axial": stiffness}}
+        asked = shaft_inputs(build_scene(case, "box", Path()))
+        tilts.append(tilt_of(asked.meshes[0], deflected(asked)[0]))
+    assert tilts[1][:2] == pytest.approx(tilts[0][:2] / 10.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("keys", "word"),
+    [
+        ({"shaft__out__axis": ["230 mm", "0 mm"]}, "centre distance of pair II"),
+        ({"shaft__out__bearings": [{"bearing": "plain", "at": "10 mm"}]}, "loose"),
+        ({"shaft__out__bearings": []}, "without support"),
+        ({"shaft__out__bearings": [{"bearing": "fixed", "at": "130 mm"}]}, "off the shaft"),
+        ({"shaft__out__bearings": [{"bearing": "bal", "at": "10 mm"}]}, 'nearest known name is "ball"'),
+        ({"shaft__out__sections": []}, "must not be empty"),
+        ({"shaft__out__gears": [{"gear": "a", "at": "80 mm"}]}, "stands on shaft in already"),
+        ({"pair__II__torque": "200 N*m"}, "torque about its axis that nothing takes"),
+    ],
+)
+def test_bad_gearboxes_are_refused_in_one_sentence(keys, word):
+    with pytest.raises(InputError, match=word) as error:
+        shaft_inputs(_scene(**keys))
+    assert "\n" not in str(error.value)
