@@ -36,13 +36,14 @@ def excitation(amplitude=0.0):
     return MeshExcitation.from_mesh(k, e)
 
 
-def reference(system, rpm, amplitude, periods, method, rtol, start=None):
-    """By scipy: largest mesh force and contact changes over the last two periods, and the state at the end."""
-    mean = 0.64 * 4.2e8 + 0.36 * 2.6e8
+def reference(system, rpm, amplitude, periods, method, rtol, start=None, mesh=(STIFFNESS, JUMPS), looked=2):
+    """By scipy: largest mesh force and contact changes over the last periods, and the state at the end."""
+    stiffness, jumps = mesh
+    mean = np.dot(stiffness, np.diff(jumps, prepend=0.0))
     j = np.array([system.motor, system.gear_1, system.gear_2, system.load])
-    cs = 2 * system.shaft_ratio * math.sqrt(2.18e4 / (1 / j[0] + 1 / j[1]))
+    cs = 2 * system.shaft_ratio * math.sqrt(system.shaft_1 / (1 / j[0] + 1 / j[1]))
     cg = 2 * system.mesh_ratio * math.sqrt(mean * j[1] * j[2] / (R * R * (j[1] + j[2])))
-    w, s, ks = system.force, system.backlash, 2.18e4
+    w, s, ks = system.force, system.backlash, system.shaft_1
     f = 28 * rpm / 60
     torque = np.array([w * R, 0.0, 0.0, -w * R])
 
@@ -60,13 +61,13 @@ def reference(system, rpm, amplitude, periods, method, rtol, start=None):
         return np.concatenate([y[4:], (torque + np.array([-a, a - m, m - b, b])) / j])
 
     # static state: the mesh carries w, the shafts w R
-    x0 = w / STIFFNESS[0] + amplitude
+    x0 = w / stiffness[0] + amplitude
     angle = np.array([w * R / ks + x0 / R, x0 / R, 0.0, -w * R / ks])
     y = np.concatenate([angle, np.zeros(4)]) if start is None else start
     t, largest, changes = 0.0, -math.inf, 0
     mode = 0 if R * (y[1] - y[2]) > e(0.0) else (2 if R * (y[1] - y[2]) < -s else 1)
     for n in range(periods):
-        for k, jump in zip(STIFFNESS, JUMPS, strict=True):
+        for k, jump in zip(stiffness, jumps, strict=True):
             end = (n + jump) / f
             while t < end:
 
@@ -80,8 +81,8 @@ def reference(system, rpm, amplitude, periods, method, rtol, start=None):
                 front.direction, back.direction = (-1 if mode == 0 else 1), (1 if mode == 2 else -1)
                 events = [[front], [front, back], [back]][mode] if math.isfinite(s) else [front]
                 run = solve_ivp(rhs, (t, end), y, method, events=events, args=(mode, k), rtol=rtol,
-                                atol=rtol * 1e-6, dense_output=n >= periods - 2)  # fmt: skip
-                if n >= periods - 2 and mode != 1:
+                                atol=rtol * 1e-6, dense_output=n >= periods - looked)  # fmt: skip
+                if n >= periods - looked and mode != 1:
                     fine = np.linspace(t, run.t[-1], 200)
                     values = [force(u, run.sol(u), mode, k) for u in fine]
                     i = int(np.argmax(values))
@@ -91,7 +92,7 @@ def reference(system, rpm, amplitude, periods, method, rtol, start=None):
                     largest = max(largest, values[i], -best.fun)
                 t, y = run.t[-1], run.y[:, -1]
                 if run.status == 1:
-                    changes += n >= periods - 2
+                    changes += n >= periods - looked
                     mode = (0 if len(run.t_events[0]) else 2) if mode == 1 else 1
     return largest, changes, y
 
@@ -160,3 +161,47 @@ def test_the_tolerance_asked_for_is_met(name, tolerance):
     system = four_inertia(force, backlash, shaft)
     fine = shooting(system, rpm, amplitude, 2e-13).largest[0]
     assert abs(shooting(system, rpm, amplitude, tolerance).largest[0] - fine) <= tolerance * force
+
+
+def random_rig(seed):
+    """Inertias, shafts, damping, backlash, stiffness, speed and error of a rig within a wide range."""
+    rng = np.random.default_rng(seed)
+    gear, motor, shaft = rng.uniform(0.5e-3, 4e-3), rng.uniform(2e-3, 4e-2), rng.uniform(0.5e4, 8e4)
+    high = rng.uniform(2e8, 6e8)
+    low, jumps = high * rng.uniform(0.5, 0.95), (*np.sort(rng.uniform(0.1, 0.9, 2)).tolist(), 1.0)
+    force, backlash = rng.uniform(500.0, 9000.0), (math.inf if rng.random() < 0.3 else rng.uniform(0.5e-5, 5e-5))
+    system = FourInertia(motor, gear, gear, motor, shaft, shaft, R, R, 28, 28, force, rng.uniform(0.05, 0.5),
+                         rng.uniform(0.03, 0.15), backlash)  # fmt: skip
+    natural = math.sqrt(2.0 * R * R / gear * high) / (2.0 * math.pi)  # of the gears on the teeth alone [Hz]
+    rpm = 60.0 / 28 * natural * rng.uniform(0.2, 1.6)
+    # An error above the backlash would press both flanks at once, which the reference does not know.
+    error = min(rng.uniform(0.0, 1.5) * force / high, 0.8 * backlash)
+    return system, rpm, error, ((high, low, high), jumps)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_random_rigs_move_as_an_own_integration_says(seed):
+    """Started on the steady motion, scipy stays on it for its periods, with its contact changes and its largest force.
+
+    Both the stiffness (of which the damping is a share) and the error of transmission are drawn.
+    """
+    system, rpm, amplitude, mesh = random_rig(seed)
+    (high, low, _), (first, second, _) = mesh
+    places = [0, first, first, second, second, 1]
+    k = Periodic.through_points(places, [high, high, low, low, high, high])
+    e = Periodic.fit(lambda s: amplitude * np.cos(2 * np.pi * s), degree=10, tolerance=1e-13)
+    mean = high * (1.0 - second + first) + low * (second - first)
+    model = MotionModel(system.train(mean), (MeshExcitation.from_mesh(k, e),), rpm * math.pi / 30)
+    state = steady_state(model, tolerance=1e-11)
+    assert state.kind == "periodic", state.kind
+    path = state.trajectory(state.periods)
+    start = np.concatenate([path.angles(0.0), path.angles(0.0, 1)])
+    largest, changes, end = reference(
+        system, rpm, amplitude, state.periods, "DOP853", 1e-12, start, mesh, looked=state.periods
+    )
+    assert changes == state.changes
+    assert state.largest[0] / system.force == pytest.approx(largest / system.force, abs=1e-8)
+    twist = np.array([[1, -1, 0, 0], [0, 1, -1, 0], [0, 0, 1, -1]])
+    for part in (slice(0, 4), slice(4, 8)):
+        before, after = twist @ start[part], twist @ end[part]
+        assert np.max(np.abs(after - before)) < 1e-7 * np.max(np.abs(before))
