@@ -13,6 +13,8 @@ import in_process
 import pytest
 
 ROOT = Path(__file__).parents[2]
+#: Pages that hooks of docs/ make; the finished site is searched for dead links when it is built.
+MADE_PAGES = {"how-to/index.md", "theory/index.md", "sources/index.md", "readme.md"}
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
@@ -93,7 +95,7 @@ def test_every_link_leads_somewhere():
         for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
             # What a page's own run makes is under results/, pictures that are taken for it under its name: the hooks of
             # docs/ refuse a link to what they do not make.
-            made = link.startswith(("results/", f"{page.stem}_files/"))
+            made = link.startswith(("results/", f"{page.stem}_files/", "gallery/")) or link in MADE_PAGES
             if "://" not in link and not made:
                 assert (page.parent / link).exists(), f"{page.name} links to {link}"
 

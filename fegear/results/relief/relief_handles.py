@@ -133,8 +133,8 @@ def _relief(scene: Scene, gear: str) -> Relief | None:
 
 
 def _roll(scene: Scene, gear: str, radius: float) -> float:
-    base = scene.gears[gear].base_radius
-    return math.sqrt(max((radius / base) ** 2 - 1.0, 0.0))
+    one = scene.gears[gear]
+    return one.tooth.side * math.sqrt(max((radius / one.base_radius) ** 2 - 1.0, 0.0))
 
 
 def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
