@@ -269,7 +269,7 @@ PER_SI: dict[str, float] = {
     "N/(mm.um)": 1e-9,
     "1/mm": 1e-3,
     "kg/mm": 1e-3,
-    "MPa^0.5": 1e-3,
+    "MPa^(1/2)": 1e-3,
     "degC": 1.0,  # inside, too
     "K": 1.0,
     "mPa.s": 1e3,

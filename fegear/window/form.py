@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["text", "toml", "number", "choice", "switch", "several"]
 #: Tables that carry names of the user's choice.
-NAMED = ("gear", "pair", "transmissibility", "planetary")
+NAMED = ("gear", "pair", "shaft", "bearing", "transmissibility", "planetary")
 
 
 @dataclass(frozen=True, slots=True)

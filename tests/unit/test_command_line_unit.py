@@ -73,7 +73,7 @@ def test_plan_tells_what_and_why_and_what_not(case, tmp_path):
     assert "Predicted: about 0.01 s" in done.stdout
     done = fegear("plan", case, "--set", 'results=["stiffness"]', "--set", "accuracy.tolerance=1e-2", cwd=tmp_path)
     lines = done.stdout.splitlines()
-    assert any("root_edge_length = " in line and "patch_half_width = 0.3027" in line for line in lines)
+    assert any("root_edge_length = " in line and "patch_half_width = 0.36" in line for line in lines)
     assert sum("     about " in line for line in lines) == 4
     assert not (tmp_path / "results").exists()
 

@@ -187,10 +187,10 @@ def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case
     whole = fegear(case, *asked, "--out", "whole", cwd=tmp_path, cache=tmp_path / "one")
     assert whole.returncode == 0, whole.stderr
     assert f"{points} of {points} points have results." in whole.stdout
-    # 2 shapes on two meshes or more each: all points and two workers never solved one twice.
+    # 2 shapes on a mesh or more each: all points and two workers never solved one twice.
     summary = json.loads((tmp_path / "whole" / "summary.json").read_text())
     shapes = summary["timings"]["shapes_solved"]
-    assert shapes >= 4
+    assert shapes >= 2
     assert len(list((tmp_path / "one" / "solutions").rglob("*.entry"))) == points + shapes
 
     kept = tmp_path / "two"
@@ -261,7 +261,7 @@ def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path, 
         told.append((found["recalled"], [r for r in found["remarks"] if "disk cache" in r], found["results"]))
     assert [bool(cached) for cached, _, _ in told] == [False, False, True, False]
     assert [len(remarks) for _, remarks, _ in told] == [0, 0, 1, 0]
-    assert told[2][0]["gear-solution of a"]["shapes"] == 2
+    assert told[2][0]["gear-solution of a"]["shapes"] == 1
     assert told[2][0]["gear-solution of a"]["seconds_when_computed"] > 0.0
     assert set(found["origin"].values()) == {"computed"}
     assert all(results == told[0][2] for _, _, results in told)

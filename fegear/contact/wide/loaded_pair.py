@@ -224,10 +224,10 @@ class LoadedWidePair:
         off: dict[Side, list[Array]] = {"tension": [], "compression": []}
         for i in range(self.found.load.size):
             felt = {side: rooted.stress(side, self.found.contact.force[:, :, i], z) for side, _ in _SIDES}
-            for side, sign in _SIDES:
-                largest[side].append(felt[side].largest(sign)[0])
             if i == self.at:
                 over_face[member] = felt
+            for side, sign in _SIDES:
+                largest[side].append(felt[side].largest(sign)[0])
                 if again:
                     other = again.stress(side, coarse.contact.force[:, :, i], z)
                     by_coarse = np.stack([np.interp(rooted.x, other.x, one) for one in other.value.T], axis=1)

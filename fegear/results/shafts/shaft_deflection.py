@@ -16,6 +16,7 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Stage
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
+from fegear.shafts.rolling_bearing import RollingBearing
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -101,11 +102,24 @@ def _present(data: DeflectionData, inputs: DeflectionInputs) -> Outcome:
         tables.append(_meshes(data, inputs))
         for mesh, tilt in zip(inputs.asked.meshes, _in_plane_of_action(data.tilts, inputs), strict=True):
             values.append(Value(
-                f"shaft_misalignment_{mesh.pair}", float(tilt) * mesh.found.face_width, "um",
+                f"{mesh.pair}.shaft_misalignment", float(tilt) * mesh.found.face_width, "um",
                 meaning="over the face in the plane of action, by shafts, bearings and housing",
             ))  # fmt: skip
-    remarks = ("Mesh forces act in the middle of the faces; gear bodies do not stiffen their shafts.",)
-    return Outcome(data, tuple(tables), tuple(values), {}, remarks, tuple(figures))
+    return Outcome(data, tuple(tables), tuple(values), {}, tuple(_remarks(inputs)), tuple(figures))
+
+
+def _remarks(inputs: DeflectionInputs) -> list[str]:
+    """What the model neglects, and what is not from a print at hand."""
+    said = ["Shafts: mesh forces act in the middle of the faces, and gear bodies do not stiffen their shafts."]
+    if inputs.asked.meshes:
+        said.append(
+            "Shafts: these tilts do not enter load distribution, rating and transmission error; what is misaligned "
+            "there is what line_error gives."
+        )
+    seats = [seat.bearing for shaft in inputs.asked.shafts for seat in shaft.seats]
+    if any(isinstance(one, RollingBearing) and one.kind == "roller" for one in seats):
+        said.append("Shafts: the law of roller contacts (ISO/TS 16281) is recalled, not compared with the standard.")
+    return said
 
 
 def _in_plane_of_action(tilts: Array, inputs: DeflectionInputs) -> Array:
