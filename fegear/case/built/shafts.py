@@ -232,6 +232,7 @@ def tilt_of(mesh: MeshPlace, bent: dict[str, Deflection]) -> Array:
 
 def deflected(asked: ShaftInputs) -> tuple[dict[str, Deflection], dict[str, Deflection]]:
     """All shafts in equilibrium by name, as they are and as if they did not bend."""
-    return tuple(  # type: ignore[return-value]
+    bent, rigid = (
         dict(zip(asked.names, deflect(these, asked.housing), strict=True)) for these in (asked.shafts, asked.rigid)
     )
+    return bent, rigid
