@@ -30,7 +30,7 @@ _BLOK = 0.62
 
 
 #: Thermal contact coefficient B_M = sqrt(lambda rho c) of steel [N/(m s^0.5 K)], of scuffing and micropitting alike:
-#: 13.780 N/(mm s^0.5 K), as a printed report has it for 18CrNiMo7-6 (docs/rating/kisssoft_stage_3.toml). ISO/TR
+#: 13.780 N/(mm s^0.5 K), as a printed report has it for 18CrNiMo7-6 (fegear/verify/data/kisssoft_stage_3.toml). ISO/TR
 #: 13989-1, A.3, has 435 N/(mm^0.5 m^0.5 s^0.5 K) for martensitic steels, .2 % less.
 STEEL_HEAT = 13780.0
 

@@ -1,14 +1,12 @@
 """Ring gears compared with a prototype of the project: compliances, neighbours and root stress of one ring.
 
-``tests/data/ring_z60.json`` has inputs, definitions and numbers on two levels: 60 teeth, 5 positions over the flank.
+``fegear/verify/data/ring_prototype.json`` has inputs, definitions and numbers on two levels: 60 teeth, 5 positions over the flank.
 It is no literature. `solve_alone` has the whole ring in scikit-fem, without ring closure or reference elements.
 """
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,8 +17,9 @@ from fegear.fem.plane.scikit_fem_alone import solve_alone
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import settings_at
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.verify.kept import kept
 
-RING = json.loads((Path(__file__).parents[1] / "data" / "ring_z60.json").read_text("utf-8"))["case"]
+RING = kept("ring_prototype")["case"]
 INPUTS = RING["inputs"]
 WIDTH = np.asarray(0.02)
 RADII = np.array([row["R"] for row in RING["rows"]])

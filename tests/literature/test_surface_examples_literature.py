@@ -1,6 +1,6 @@
 """Micropitting, scuffing and rating of a printed report through a case file, and the film of its spur stage.
 
-Source: KISSsoft 03/2017 reports of 26.02.2020 on the NREL 5 MW gearbox (docs/rating/kisssoft_stage_*.toml),
+Source: KISSsoft 03/2017 reports of 26.02.2020 on the NREL 5 MW gearbox (fegear/verify/data/kisssoft_stage_*.toml),
 which print ISO/TR 15144-1:2014 method B, ISO/TR 13989:2000 and ISO 6336:2006 factor by factor.
 """
 

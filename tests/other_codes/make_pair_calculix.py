@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import pair_by_calculix as calculix
 import pair_meshed as meshed
 
-FILE = Path(__file__).with_name("pair_calculix.json")
+FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "pair_calculix.json"
 
 
 def made(level, position):

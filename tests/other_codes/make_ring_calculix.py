@@ -17,7 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 import ring_by_calculix as calculix
 
-FILE = Path(__file__).with_name("ring_calculix.json")
+FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "ring_calculix.json"
 
 
 def made(position, approach_um):

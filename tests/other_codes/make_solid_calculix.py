@@ -17,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import solid_by_calculix as calculix
 
-FILE = Path(__file__).with_name("solid_calculix.json")
+FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "solid_calculix.json"
 #: Edge lengths of tooth 0 as a multiple of the usual ones; the layers from an end of the face, and inside it [modules].
 LEVELS = {"coarse": (2.0, (0.2, 0.3), 0.5), "fine": (1.0, (0.1, 0.15, 0.25), 0.25)}
 CASES = {"spur": (0.0, ("middle", "front")), "helical": (20.0, ("middle", "front", "back"))}

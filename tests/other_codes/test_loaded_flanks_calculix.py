@@ -7,7 +7,6 @@ largest root tension, and of the load on a quarter of the face 3 % of what it wo
 """
 
 import importlib.util
-import json
 import math
 from pathlib import Path
 
@@ -24,9 +23,10 @@ from fegear.fem.solid.settings import solid_settings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.shaft_tilt import ShaftTilt
+from fegear.verify.kept import kept
 
 HERE = Path(__file__).parent
-FOUND = json.loads((HERE / "pair_calculix.json").read_text())
+FOUND = kept("pair_calculix")
 
 
 def _module(name):

@@ -6,7 +6,6 @@ edges of .05 modules. The ring's tip corner carries 2.0 % less than fegear says 
 stresses its fillet 3.5 % less, the pair beside it carries .3 % more.
 """
 
-import json
 import sys
 from pathlib import Path
 
@@ -18,11 +17,12 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.verify.kept import kept
 
 sys.path.insert(0, str(Path(__file__).parent))
 import ring_by_calculix as calculix
 
-TOLD = json.loads(Path(__file__).with_name("ring_calculix.json").read_text("utf-8"))
+TOLD = kept("ring_calculix")
 #: Load of each pair, and root tension.
 WITHIN = {"two pairs": (2e-3, 8e-3), "one pair and a tip corner": (2.5e-2, 4e-2)}
 

@@ -6,7 +6,6 @@ the far teeth, whose edges were varied by themselves (`solid_by_calculix.OTHERS`
 """
 
 import importlib.util
-import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -25,11 +24,12 @@ from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.fem.solid.table import solid_table
 from fegear.geometry.gear import Gear, Material
+from fegear.verify.kept import kept
 
 _spec = importlib.util.spec_from_file_location("solid_by_calculix", Path(__file__).with_name("solid_by_calculix.py"))
 calculix = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(calculix)
-FOUND = json.loads(Path(__file__).with_name("solid_calculix.json").read_text())
+FOUND = kept("solid_calculix")
 #: One over two to the third power, less one.
 _LEFT = 1.0 / 7.0
 

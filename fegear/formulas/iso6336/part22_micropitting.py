@@ -2,7 +2,7 @@
 
 Source: ISO/TR 15144-1:2014, Calculation of micropitting load capacity of cylindrical spur and helical gears - Part 1,
 from which ISO/TS 6336-22:2018 was made; formulas are numbered as there, and known here from secondary sources, of which
-printed reports (docs/rating/kisssoft_stage_*.toml) hold X_Y, p_dyn,Y, lambda_GF,Y, lambda_GFT and W_W.
+printed reports (fegear/verify/data/kisssoft_stage_*.toml) hold X_Y, p_dyn,Y, lambda_GF,Y, lambda_GFT and W_W.
 lambda_GF,Y = h_Y / Ra with the film of Dowson and Higginson, thinned by the heat of the contact.
 """
 

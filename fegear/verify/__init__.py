@@ -1,0 +1,1 @@
+"""What fegear's numbers are compared with, and `fegear verify`, which repeats the comparisons."""
