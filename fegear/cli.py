@@ -20,6 +20,7 @@ from fegear.commands.open import open  # noqa: A004  (the name of the command)
 from fegear.commands.run import plan, run
 from fegear.commands.schema import results, schema
 from fegear.commands.studies import check, compare, cost, effects, sweep
+from fegear.commands.verify import verify
 
 app = typer.Typer(
     help="Finite-element workbench for gear teeth.",
@@ -58,6 +59,7 @@ COMMANDS = (
     (effects, "What each effect changes in a case."),
     (cost, "What accuracy costs in time."),
     (check, "Spur gears solved whole by scikit-fem alone, compared with the stated errors."),
+    (verify, "Printed numbers, other programs and independent code, compared here and now."),
     (export, "Drawings and meshes for other programs."),
     (schema, "What editors need to complete and check case files."),
 )

@@ -148,5 +148,3 @@ def faults(name: str, example: dict[str, Any]) -> list[str]:
             verb = "falls on the printed digits and has a reason" if row.rounded else "is off without a reason"
             wrong.append(f"{name}: {row.symbol} {verb}: printed {row.printed}, found {row.found}")
     return wrong
-
-

@@ -7,7 +7,7 @@ Nothing of a row's other side may come from fegear: it is printed, another progr
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from fegear.base.arrays import ArrayLike
+    from numpy.typing import ArrayLike
 
 #: What a number can be compared with, in the order of the page.
 AGAINST = {
@@ -38,6 +38,8 @@ class Compared:
         Largest difference, relative to `scale`, with which the row holds.
     stated : float or None
         Error that fegear states of the number, relative to `scale`.
+    because : str
+        Why it is known to differ; such a number is counted by itself.
     """
 
     found: float
@@ -45,6 +47,7 @@ class Compared:
     scale: float
     allowed: float
     stated: float | None = None
+    because: str = ""
 
     @property
     def deviation(self) -> float:
@@ -57,8 +60,12 @@ class Compared:
         """Whether the difference is allowed."""
         return self.deviation <= self.allowed * (1.0 + 1e-9)
 
+    def known(self, because: str) -> Compared:
+        """The same, known to differ."""
+        return replace(self, because=because)
 
-def printed(found: float, text: str, digits_of_input: float = 0.0) -> Compared:
+
+def printed(found: float, text: str, input_moves: float = 0.0) -> Compared:
     """A number in print: it holds within half a unit of its last digit.
 
     Parameters
@@ -66,11 +73,11 @@ def printed(found: float, text: str, digits_of_input: float = 0.0) -> Compared:
     found : float
     text : str
         As printed.
-    digits_of_input : float, optional
+    input_moves : float, optional
         What the rounding of the printed inputs may move it by, in its own unit.
     """
     wanted = float(text)
-    half = 0.5 * 10.0 ** -len(text.partition(".")[2]) + digits_of_input
+    half = 0.5 * 10.0 ** -len(text.partition(".")[2]) + input_moves
     scale = abs(wanted) or 1.0
     return Compared(float(found), wanted, scale, half / scale)
 
@@ -92,7 +99,9 @@ def near(
         Errors that fegear states, in the unit of `found`.
     """
     mine, other, error = np.broadcast_arrays(
-        np.asarray(found, dtype=float), np.asarray(wanted, dtype=float), np.nan if stated is None else np.asarray(stated)
+        np.asarray(found, dtype=float),
+        np.asarray(wanted, dtype=float),
+        np.nan if stated is None else np.asarray(stated),
     )
     for one, two, three in zip(mine.ravel(), other.ravel(), error.ravel(), strict=True):
         size = float(scale or abs(two) or 1.0)
@@ -113,6 +122,8 @@ class Row:
         One of `AGAINST`.
     source : str
         Of the other side: paper, program with its version or mesh, equation.
+    what : str
+        What is compared, a sentence.
     compare : callable
         Gives the compared numbers.
     """
@@ -121,12 +132,8 @@ class Row:
     capability: str
     against: str
     source: str
+    what: str
     compare: Callable[[], Iterable[Compared]]
-
-    @property
-    def what(self) -> str:
-        """First sentence of the function's docstring."""
-        return (self.compare.__doc__ or "").strip().partition("\n\n")[0].replace("\n    ", " ").rstrip(".")
 
 
 @dataclass(frozen=True)
@@ -146,19 +153,34 @@ class Outcome:
     seconds: float
 
     @property
-    def worst(self) -> Compared:
-        """The number that comes nearest to what is allowed, or goes furthest beyond."""
-        return max(self.compared, key=lambda one: one.deviation / one.allowed if one.allowed else one.deviation)
+    def held(self) -> tuple[Compared, ...]:
+        """The numbers that are not known to differ."""
+        return tuple(one for one in self.compared if not one.because)
 
     @property
     def largest(self) -> Compared:
-        """The number with the largest difference."""
-        return max(self.compared, key=lambda one: one.deviation)
+        """The number with the largest difference, of those that are not known to differ."""
+        return max(self.held, key=lambda one: one.deviation)
+
+    @property
+    def wrong(self) -> tuple[Compared, ...]:
+        """Numbers that do not hold, and those that hold though they are known to differ."""
+        return tuple(one for one in self.compared if one.holds is bool(one.because))
+
+    def plain(self) -> dict[str, object]:
+        """What programs read."""
+        largest = self.largest
+        return {
+            "name": self.row.name, "against": self.row.against, "capability": self.row.capability,
+            "source": self.row.source, "what": self.row.what, "numbers": len(self.compared),
+            "known_to_differ": len(self.compared) - len(self.held), "largest_difference": largest.deviation,
+            "stated_error": largest.stated, "allowed": largest.allowed, "holds": self.holds, "seconds": self.seconds,
+        }  # fmt: skip
 
     @property
     def holds(self) -> bool:
-        """Whether every number does; a row without numbers does not."""
-        return bool(self.compared) and all(one.holds for one in self.compared)
+        """Whether every number does, or is known to differ and does; a row without numbers does not."""
+        return bool(self.held) and not self.wrong
 
 
 def run(row: Row) -> Outcome:
@@ -176,10 +198,11 @@ class Rows:
     def add(
         self, capability: str, against: str, source: str
     ) -> Callable[[Callable[[], Iterable[Compared]]], Callable[[], Iterable[Compared]]]:
-        """Make a function a row."""
+        """Make a function a row: its name, and what it compares as its docstring says."""
 
         def added(compare: Callable[[], Iterable[Compared]]) -> Callable[[], Iterable[Compared]]:
-            self.all.append(Row(compare.__name__.replace("_", "-"), capability, against, source, compare))
+            name, what = compare.__name__.replace("_", "-"), (compare.__doc__ or "").strip()
+            self.all.append(Row(name, capability, against, source, what, compare))
             return compare
 
         return added

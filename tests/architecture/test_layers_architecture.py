@@ -33,6 +33,7 @@ LAYERS = {
     "results": 8,
     "studies": 9,
     "output": 10,
+    "verify": 10,
     "window": 11,
     "commands": 11.5,
     "workbench": 11,

@@ -10,75 +10,13 @@ import pytest
 from fegear.base.errors import GeometryError
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.tooth import Tooth
+from fegear.verify.own import random_internal_teeth
+from fegear.verify.rolled import nearest
 
 
 @lru_cache
 def random_teeth(count: int = 200) -> list[InternalTooth]:
-    """Internal teeth, spur and helical, that are not refused."""
-    rng, found = np.random.default_rng(28), []
-    while len(found) < count:
-        z = int(rng.integers(25, 160))
-        z0 = int(rng.integers(10, max(12, z - 8)))
-        beta = float(rng.choice([0.0, math.radians(rng.uniform(1.0, 35.0))]))
-        cutter = PinionCutter(z0, rng.uniform(-0.3, 0.5), rng.uniform(1.0, 1.4), tip_radius=rng.uniform(0.0, 0.4))
-        x = rng.uniform(-0.6, 0.8)
-        tip = z / 2 / math.cos(beta) - x - rng.uniform(0.4, 1.1)
-        try:
-            tooth = InternalTooth(
-                z, cutter, math.radians(rng.uniform(15.0, 26.0)), x, rng.uniform(0.0, 0.05), tip,
-                tip_rounding=float(rng.choice([0.0, rng.uniform(0.0, 0.1)])), helix_angle=beta,
-            )  # fmt: skip
-        except GeometryError:
-            continue
-        found.append(tooth)
-    return found
-
-
-def outside(tooth: InternalTooth, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Distance of points from a tooth of the cutter on +y, from the definition of an involute alone."""
-    cutter, alpha = tooth.cutter, tooth.pressure_angle
-    pitch = cutter.teeth / 2 / math.cos(tooth.helix_angle)
-    base, tip, rho = pitch * math.cos(alpha), pitch + cutter.profile_shift + cutter.addendum, cutter.tip_radius
-    half = (math.pi / 2 + 2 * cutter.profile_shift * math.tan(tooth.normal_pressure_angle)) / cutter.teeth
-    half += math.tan(alpha) - alpha
-    string = math.sqrt((tip - rho) ** 2 - base**2) + rho  # of the flank's last point
-    lean = half - string / base
-    centre = np.array([math.cos(lean) * (string - rho) + base * math.sin(lean),
-                       base * math.cos(lean) - math.sin(lean) * (string - rho)])  # fmt: skip
-    x = np.abs(x)
-    radius, angle = np.hypot(x, y), np.arctan2(x, y)
-    length = np.sqrt(np.maximum(radius**2 - base**2, 0.0))
-    from_flank = length - base * (half - angle + np.arctan2(length, base))
-    from_flank = np.where(radius < base, np.inf, from_flank)
-    beside = np.arctan2(x - centre[0], y - centre[1])
-    from_rounding = np.hypot(x - centre[0], y - centre[1]) - rho
-    tip_side = angle < math.atan2(*centre)
-    return np.where(tip_side, radius - tip, np.where(beside <= math.pi / 2 + lean, from_rounding, from_flank))
-
-
-def nearest(tooth: InternalTooth, points: np.ndarray, sweep: float = 1.3) -> np.ndarray:
-    """Least distance of points of the gear from a tooth of the cutter as both roll, shape (N,)."""
-    # the gear's tooth on +y; its space to the right is put on +y
-    half = math.pi / tooth.teeth
-    u, v = (
-        points[0] * math.cos(half) - points[1] * math.sin(half),
-        points[1] * math.cos(half) + points[0] * math.sin(half),
-    )
-
-    def at(turn: np.ndarray) -> np.ndarray:
-        one, other = turn * tooth.cutter.teeth / tooth.teeth, turn
-        x, y = u * np.cos(one) + v * np.sin(one), v * np.cos(one) - u * np.sin(one)
-        y = y - tooth.generating_distance
-        return outside(tooth, x * np.cos(other) - y * np.sin(other), y * np.cos(other) + x * np.sin(other))
-
-    turns = np.linspace(-sweep, sweep, 2001)[:, None]
-    step = 2.0 * sweep / 2000
-    best = turns[np.argmin(at(turns), axis=0), 0]
-    for _ in range(4):
-        near = best + np.linspace(-1.0, 1.0, 41)[:, None] * step
-        best = near[np.argmin(at(near), axis=0), np.arange(best.size)]
-        step /= 15.0
-    return at(best)
+    return list(random_internal_teeth(count))
 
 
 def test_outlines_of_200_random_teeth_are_the_envelope_of_their_cutter_to_1e_12() -> None:

@@ -1,12 +1,10 @@
 """Loads of planets over the mesh cycle: closed forms, enumeration of contact states, and what phasing cancels."""
 
-import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from planetary_sets import constant, jumping, meshed, unshifted
 
 from fegear.base.errors import ConvergenceError
 from fegear.dynamics.planetary.one_sided import equilibrium
@@ -15,6 +13,8 @@ from fegear.dynamics.planetary.planet_loads import force_on, planet_loads
 from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
+from fegear.verify.planetary_sets import constant, jumping, meshed, unshifted
+from fegear.verify.rolled import enumerated
 
 SUN, RING, PIN = 3.0e8, 4.1e8, 2.2e8
 
@@ -65,20 +65,6 @@ def test_of_four_planets_the_opposite_one_lifts_too(error):
     left = max(0.0, 1.0 - 2.0 * math.cos(math.radians(20.0)) * k * error / 4.0 / run.mean_force)
     assert np.allclose(loads.shares, [left, 2.0 - left, left, 2.0 - left], atol=1e-10)
     assert np.all((loads.lifted > 0.5) == (np.array([True, False, True, False]) & (left == 0.0)))
-
-
-def enumerated(linear, rows, k, gap, load):
-    """Equilibrium by trying every state of contact; forces of the one that is consistent."""
-    for state in itertools.product([True, False], repeat=len(rows)):
-        on = np.array(state)
-        matrix = linear + (rows[on].T * k[on]) @ rows[on]
-        z, *_ = np.linalg.lstsq(matrix, load + rows[on].T @ (k[on] * gap[on]), rcond=1e-12)
-        if np.max(np.abs(matrix @ z - load - rows[on].T @ (k[on] * gap[on]))) > 1e-9 * np.max(np.abs(load)):
-            continue
-        strain = rows @ z - gap
-        if np.all(strain[on] >= -1e-18) and np.all(strain[~on] <= 1e-18):
-            return np.where(on, k * strain, 0.0)
-    return None
 
 
 def test_contact_states_are_those_of_an_enumeration():

@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from planetary_sets import unshifted
 
 from fegear.base.errors import FegearError, GeometryError, InputError
 from fegear.dynamics.planetary.kinematics import passing, running, sidebands
 from fegear.dynamics.planetary.planet_set import CENTRALS
+from fegear.verify.planetary_sets import unshifted
 
 FOUND = unshifted(24, 30, 3)
 RATIO = Fraction(84, 24)

@@ -1,7 +1,8 @@
 """Ring gears compared with a prototype of the project: compliances, neighbours and root stress of one ring.
 
-``fegear/verify/data/ring_prototype.json`` has inputs, definitions and numbers on two levels: 60 teeth, 5 positions over the flank.
-It is no literature. `solve_alone` has the whole ring in scikit-fem, without ring closure or reference elements.
+``fegear/verify/data/ring_prototype.json`` has inputs, definitions and numbers on two levels: 60 teeth, 5 positions
+over the flank. It is no literature. `solve_alone` has the whole ring in scikit-fem, without ring closure or
+reference elements.
 """
 
 from __future__ import annotations

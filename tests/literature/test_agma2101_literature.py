@@ -26,6 +26,7 @@ from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
+from fegear.verify.kept import kept
 
 INCH, PSI, LBF, FPM = 0.0254, 6894.757, 4.4482216, 0.00508
 SPEED = 1800 * math.pi / 30
@@ -110,28 +111,11 @@ def test_own_geometry_factors_stand_near_shigleys_charts():
 #: AGMA 908-B89, tables of I and J as machine design textbooks (Norton) reprint them: 20 deg, h_ao 1.25, r_ao 0.25, full
 #: depth, thinning .024: spur gears loaded at the HPSTC; 10 deg of helix, tip loaded, axial contact ratio 2: printed to
 #: two digits of J and three of I.
-SPUR = (
-    (21, 21, 0.33, 0.33), (21, 26, 0.33, 0.35), (26, 26, 0.35, 0.35), (21, 35, 0.34, 0.37), (26, 35, 0.36, 0.38),
-    (35, 35, 0.39, 0.39), (21, 55, 0.34, 0.40), (26, 55, 0.37, 0.41), (35, 55, 0.40, 0.42), (55, 55, 0.43, 0.43),
-    (21, 135, 0.35, 0.43), (26, 135, 0.38, 0.44), (35, 135, 0.41, 0.45), (55, 135, 0.45, 0.47), (135, 135, 0.49, 0.49),
-)  # fmt: skip
-#: The same loaded at the tip, by teeth; and I of the same pairs, recalled.
-SPUR_TIP = {21: 0.24, 26: 0.25, 35: 0.26, 55: 0.28, 135: 0.29}
+TABLES = kept("agma908")
+SPUR, SPUR_25, HELICAL = (tuple(map(tuple, TABLES[name])) for name in ("spur", "spur_25", "helical"))
+SPUR_TIP, SPUR_25_TIP = dict(TABLES["spur_tip"]), dict(TABLES["spur_25_tip"])
+#: I of the spur pairs, recalled. (Tables of 25 deg: the reprints do not say the tool.)
 SPUR_I = (0.078, 0.084, 0.079, 0.091, 0.088, 0.080, 0.102, 0.101, 0.095, 0.080, 0.118, 0.121, 0.120, 0.112, 0.080)
-#: 25 deg, full depth, HPSTC; the reprints do not tell the tool.
-SPUR_25 = (
-    (14, 14, 0.33, 0.33), (14, 17, 0.33, 0.36), (14, 21, 0.33, 0.39), (14, 26, 0.33, 0.41), (14, 35, 0.34, 0.44),
-    (14, 55, 0.34, 0.47), (14, 135, 0.35, 0.51), (17, 17, 0.36, 0.36), (17, 21, 0.36, 0.39), (17, 26, 0.37, 0.42),
-    (17, 35, 0.37, 0.45), (17, 55, 0.38, 0.48), (17, 135, 0.38, 0.52), (21, 21, 0.39, 0.39), (21, 26, 0.40, 0.42),
-    (21, 35, 0.40, 0.45), (21, 55, 0.41, 0.49), (21, 135, 0.42, 0.53), (26, 26, 0.43, 0.43), (26, 35, 0.43, 0.46),
-    (26, 55, 0.44, 0.49), (26, 135, 0.45, 0.53), (35, 35, 0.46, 0.46), (35, 55, 0.47, 0.50), (35, 135, 0.48, 0.54),
-    (55, 55, 0.51, 0.51), (55, 135, 0.53, 0.56), (135, 135, 0.57, 0.57),
-)  # fmt: skip
-SPUR_25_TIP = {14: 0.28, 17: 0.30, 21: 0.31, 26: 0.33, 35: 0.34, 55: 0.36, 135: 0.38}
-HELICAL = (
-    (21, 21, 0.127, 0.46, 0.46), (21, 55, 0.195, 0.49, 0.55), (26, 26, 0.131, 0.49, 0.49), (26, 55, 0.186, 0.52, 0.56),
-    (35, 35, 0.136, 0.54, 0.54), (55, 55, 0.143, 0.59, 0.59),
-)  # fmt: skip
 
 
 def test_bending_factor_jumps_at_an_axial_contact_ratio_of_one_and_the_pitting_factor_does_not():

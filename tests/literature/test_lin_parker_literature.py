@@ -4,9 +4,9 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from planetary_sets import lin_parker
 
 from fegear.dynamics.planetary.set_modes import set_modes
+from fegear.verify.planetary_sets import lin_parker
 
 #: Printed for three planets: those of rotational modes, and those of pairs of translational modes [Hz].
 ROTATION = (0.0, 1475.7, 1930.3, 2658.3, 7462.8, 11775.3)

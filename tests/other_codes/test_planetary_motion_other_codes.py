@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planetary_sets import jumping, lin_parker, meshed
 from scipy.integrate import solve_ivp
 
 from fegear.dynamics.motion.motion import simulate
@@ -17,6 +16,7 @@ from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.modes import modes
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Mesh, Train
+from fegear.verify.planetary_sets import jumping, lin_parker, meshed
 
 STEADY = 5.0e8
 

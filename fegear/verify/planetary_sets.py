@@ -1,6 +1,9 @@
-"""Planetary sets that several tests take: their geometry, and the example of Lin and Parker (1999)."""
+"""Planetary sets that rows and tests take: their geometry, and the example of Lin and Parker (1999)."""
+
+from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,25 +15,34 @@ from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.geometry.involute import inv
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def unshifted(sun, planet, angles, module=2e-3, pressure_angle=20.0, ring=None, addendum=1.0):
+    from fegear.dynamics.planetary.planet_set import Central
+
+
+def unshifted(
+    sun: int, planet: int, angles: ArrayLike, module: float = 2e-3, pressure_angle: float = 20.0,
+    ring: int | None = None, addendum: float = 1.0,
+) -> PlanetarySet:  # fmt: skip
     """A set without profile shifts: both working pressure angles are that of the rack, where the ring suits."""
     alpha = math.radians(pressure_angle)
     half = 0.5 * math.pi / planet + float(inv(alpha))
     return PlanetarySet(
         sun, planet, ring or sun + 2 * planet, math.pi * module * math.cos(alpha), 0.5 * (sun + planet) * module,
-        even_angles(angles) if np.ndim(angles) == 0 else np.asarray(angles), half, (0.5 * planet + addendum) * module,
+        even_angles(int(np.asarray(angles))) if np.ndim(angles) == 0 else np.asarray(angles), half,
+        (0.5 * planet + addendum) * module,
     )  # fmt: skip
 
 
-def lin_parker(planets):
+def lin_parker(planets: int) -> SetModel:
     """The example of Lin and Parker (1999), table 1: masses and I/r^2 in kg, stiffnesses in N/m, 24.6 degrees.
 
     Frequencies depend on I/r^2 and the pressure angles, not on the radii; so tooth numbers that suit are as good.
     """
     found = unshifted(24, 30, planets, pressure_angle=24.6, addendum=-5.0)  # six planets fit
 
-    def body(name, mass, turning_mass, turning):
+    def body(name: Central, mass: float, turning_mass: float, turning: float) -> CentralBody:
         square = found.lever(name) ** 2
         return CentralBody(mass, turning_mass * square, 1e8, turning * square)
 
@@ -43,14 +55,19 @@ def lin_parker(planets):
     )
 
 
-def constant(stiffness):
+def constant(stiffness: float) -> MeshExcitation:
+    """A mesh of one stiffness [N/m]."""
     return MeshExcitation.from_mesh(Periodic.constant(stiffness))
 
 
-def jumping(low, high, share):
+def jumping(low: float, high: float, share: float) -> MeshExcitation:
     """Teeth whose stiffness jumps where a second pair comes in."""
     return MeshExcitation.from_mesh(Periodic.through_points([0.0, share, share, 1.0], [high, high, low, low]))
 
 
-def meshed(model, sun, ring, torque=500.0, driving="sun", **how):
+def meshed(
+    model: SetModel, sun: MeshExcitation, ring: MeshExcitation, torque: float = 500.0, driving: Central = "sun",
+    **how: Any,
+) -> MeshedSet:  # fmt: skip
+    """A set with its meshes in their phases."""
     return MeshedSet(model, sun, ring, mesh_phases(model.found, **how), torque, driving)

@@ -1,0 +1,51 @@
+"""All rows, chosen by name or by what they are compared with, and what is said of each when it has run."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.verify import calculix, own, printed, programs
+from fegear.verify.row import AGAINST
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.verify.row import Outcome, Row
+
+#: In the order of the page: printed numbers first.
+ALL: tuple[Row, ...] = (*printed.ROWS.all, *calculix.ROWS.all, *programs.ROWS.all, *own.ROWS.all)
+
+
+def chosen(names: Sequence[str], against: str = "") -> tuple[Row, ...]:
+    """Rows by name, all without names, of one kind if it is named.
+
+    Raises
+    ------
+    InputError
+        If there is no such row or kind.
+    """
+    if against and against not in AGAINST:
+        raise InputError("against", against, f"must be one of {', '.join(AGAINST)}")
+    known = {row.name: row for row in ALL}
+    for name in names:
+        if name not in known:
+            like = get_close_matches(name, known, 1)
+            hint = f"did you mean {like[0]}?" if like else "see fegear verify --list"
+            raise InputError("row", name, "is none that there is", hint)
+    rows = tuple(known[name] for name in names) if names else ALL
+    return tuple(row for row in rows if not against or row.against == against)
+
+
+def said(outcome: Outcome) -> str:
+    """A row that has run, for the terminal: two lines, and one for each number that is not as it should be."""
+    row, largest = outcome.row, outcome.largest
+    differing = len(outcome.compared) - len(outcome.held)
+    count = f"{len(outcome.compared)}" + (f", {differing} known to differ" if differing else "")
+    stated = "" if largest.stated is None else f", stated {largest.stated:.1e}"
+    sizes = f"largest difference {largest.deviation:.1e}{stated}, allowed {largest.allowed:.0e}"
+    verdict = "" if outcome.holds else "  DOES NOT HOLD"
+    lines = [f"  {row.name:42} {row.capability}", f"  {'':42} numbers: {count}, {sizes}{verdict}"]
+    lines += [f"  {'':42} {one.found:.9g} for {one.wanted:.9g}" for one in outcome.wrong]
+    return "\n".join(lines)

@@ -1,0 +1,68 @@
+"""Rows of `fegear verify`: each holds, no name twice, and a row that does not hold is found."""
+
+import json
+import math
+
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.cli import app
+from fegear.verify.row import AGAINST, Compared, Outcome, Row, near, printed, run
+from fegear.verify.rows import ALL, chosen
+
+
+@pytest.mark.parametrize("row", ALL, ids=lambda row: row.name)
+def test_every_row_holds(row):
+    found = run(row)
+    assert found.holds, found.wrong
+    assert row.what.endswith(".")
+    assert row.source
+
+
+def test_there_are_rows_of_every_kind_and_no_name_twice():
+    assert len(ALL) >= 60
+    assert len({row.name for row in ALL}) == len(ALL)
+    assert {row.against for row in ALL} == set(AGAINST)
+
+
+def test_a_printed_number_holds_within_half_a_unit_of_its_last_digit():
+    assert printed(1.2349, "1.23").holds
+    assert not printed(1.2352, "1.23").holds
+    assert printed(1.2352, "1.23", input_moves=3e-4).holds
+    assert printed(0.04, "0.0").holds
+
+
+def made(*compared: Compared) -> Outcome:
+    return run(Row("x", "capability", "own", "source", "What.", lambda: compared))
+
+
+def test_a_row_that_is_off_or_empty_does_not_hold():
+    (good,), (bad,) = near(1.0, 1.0 + 1e-9, 1e-8), near(1.0, 1.1, 1e-3)
+    assert made(good).holds
+    assert not made(good, bad).holds
+    assert not made().holds
+    assert not made(next(near(math.nan, 1.0, 1.0))).holds
+    # A number that is known to differ has to: once it holds, the list is wrong.
+    assert made(good, bad.known("why")).holds
+    assert made(good, bad.known("why")).largest is good
+    assert not made(good.known("why"), good).holds
+
+
+def test_names_are_looked_up_and_corrected():
+    assert [row.name for row in chosen(["beams", "cones"])] == ["beams", "cones"]
+    assert {row.against for row in chosen([], "program")} == {"program"}
+    with pytest.raises(InputError, match="did you mean beams"):
+        chosen(["beam"])
+    with pytest.raises(InputError, match="must be one of printed, program, own"):
+        chosen([], "others")
+
+
+def test_the_command_says_what_it_found_and_ends_with_1_where_a_row_does_not_hold(capsys, monkeypatch):
+    app(["verify", "beams", "--json"], standalone_mode=False)
+    told = json.loads(capsys.readouterr().out)
+    assert told["holding"] == 1
+    assert told["rows"][0]["largest_difference"] < 1e-10
+    wrong = Row("wrong", "capability", "own", "source", "What.", lambda: near(1.0, 2.0, 1e-3))
+    monkeypatch.setattr("fegear.verify.rows.ALL", (wrong,))
+    assert app(["verify"], standalone_mode=False) == 1
+    assert "DOES NOT HOLD" in capsys.readouterr().out
