@@ -127,9 +127,12 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "steady motions of a planetary set over speed in which teeth part and meet again"),
     ),
     "Shafts and bearings": (
+        Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes"),
         Entry("shaft-deflection", "shafts.shaft_deflection.SHAFT_DEFLECTION",
               "Shafts on their bearings", ("shaft-deflection",),
-              "deflection of shafts under all meshes, bearing forces and lives, misalignment of each mesh by cause"),
+              "deflection of shafts under all meshes, bearing forces and lives"),
+        Entry("misalignment", "shafts.misalignment.MISALIGNMENT", "Misalignment of the meshes", ("misalignment",),
+              "how far shafts, bearings and housing misalign each mesh, by cause, and what opens over its face"),
     ),
     "Gear trains in motion": (
         Entry("gear-train", "train.gear_train.GEAR_TRAIN", "Gear train", ("gear-train",),

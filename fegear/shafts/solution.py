@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import ConvergenceError, InputError
+from fegear.base.shown import shown
 from fegear.shafts.beam import carry
 
 if TYPE_CHECKING:
@@ -27,14 +28,19 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.shafts.beam import Shaft
     from fegear.shafts.bearing import Bearing
+    from fegear.shafts.life import LifeRating
 
 #: Shares of the usual stiffness that are added at first; the last solution has none.
 _HELP = (1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0)
 _ITERATIONS, _HALVINGS = 60, 40
 #: Residual over the forces at which Newton's method has ended.
 _DONE = 1e-12
+#: Of sums of displacements, a few times that of the machine.
+_ROUND_OFF = 2e-15
 #: Torques about an axis that balance to so much of the largest are round-off.
 _BALANCED = 1e-9
+#: Places along a shaft at which its line is known besides its bearings, steps and forces.
+_PLACES = 101
 #: Smallest over largest stiffness of a shaft on its bearings below which it is loose.
 _LOOSE = 1e-12
 
@@ -74,7 +80,7 @@ class LoadedShaft:
     Raises
     ------
     InputError
-        If a bearing or force is off the shaft, it has no bearings, is loose, or its torques do not balance.
+        If a bearing or force is off the shaft, it has no bearings, or is loose.
     """
 
     shaft: Shaft
@@ -91,12 +97,6 @@ class LoadedShaft:
             self.shaft.place(float(at), f"{self.name}.load.at")
         if not self.seats:
             raise InputError(f"{self.name}.bearings", "(none)", "leave the shaft without support", "give two bearings")
-        torque = self.loads[:, 5]
-        if abs(torque.sum()) > _BALANCED * max(float(np.abs(torque).max(initial=0.0)), 1e-12):
-            raise InputError(
-                self.name, f"{torque.sum():.6g} N m", "is a torque about its axis that nothing takes",
-                "give a coupling that takes it",
-            )  # fmt: skip
         length = self.shaft.length
         scale = np.array([1.0, 1.0, 1.0, 1.0 / length, 1.0 / length])
         held = np.zeros((5, 5))
@@ -114,6 +114,33 @@ class LoadedShaft:
                 f"{self.name}.bearings", f"{len(self.seats)} in number", f"leave the shaft loose {loose}",
                 "give a bearing that holds it there",
             )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ShaftLine:
+    """How a shaft's axis lies; arrays of shape (n,)."""
+
+    z: Array = shown("mm", "from the left end of the shaft")
+    x: Array = shown("um", "displacement of the axis along x")
+    y: Array = shown("um", "displacement of the axis along y")
+    along: Array = shown("um", "displacement along the axis")
+    turn_x: Array = shown("arcsec", "turn of the section about x")
+    turn_y: Array = shown("arcsec", "turn of the section about y")
+    twist: Array = shown("arcsec", "twist from the left end")
+
+
+@dataclass(frozen=True)
+class BearingLoads:
+    """What the bearings of a shaft carry; arrays of shape (b,)."""
+
+    at: Array = shown("mm", "place of the bearing from the left end")
+    force_x: Array = shown("N", "of the bearing on the shaft, along x")
+    force_y: Array = shown("N", "of the bearing on the shaft, along y")
+    force_axial: Array = shown("N", "of the bearing on the shaft")
+    force_radial: Array = shown("N", "of the bearing, across the axis")
+    shift: Array = shown("um", "of the shaft in its seat")
+    tilt: Array = shown("arcsec", "of the shaft in its seat")
+    life: Array = shown("", "basic rating life L_10 in revolutions (ISO 281)")
 
 
 @dataclass(frozen=True)
@@ -157,6 +184,27 @@ class Deflection:
         return self.loaded.shaft.bent(z, at, loads)
 
     @property
+    def line(self) -> ShaftLine:
+        """The whole axis, bearings, steps and forces among its places."""
+        shaft, (at, _) = self.loaded.shaft, self._all
+        z = np.unique(np.concatenate([np.linspace(0.0, shaft.length, _PLACES), shaft.steps, at]))
+        return ShaftLine(z, *self.at(z).T)
+
+    def bearing_loads(self, lives: tuple[LifeRating | None, ...]) -> BearingLoads:
+        """What every bearing carries, and how long by its ratings; NaN without."""
+        force, ring = self.bearing_forces, self.rings
+        radial = np.hypot(force[:, 0], force[:, 1])
+        turns = [
+            np.nan if life is None else life.revolutions(float(across), float(one[2]))
+            for life, across, one in zip(lives, radial, force, strict=True)
+        ]
+        at = np.array([seat.at for seat in self.loaded.seats])
+        return BearingLoads(
+            at, force[:, 0], force[:, 1], force[:, 2], radial, np.hypot(ring[:, 0], ring[:, 1]),
+            np.hypot(ring[:, 3], ring[:, 4]), np.array(turns),
+        )  # fmt: skip
+
+    @property
     def balance(self) -> Array:
         """Sum of all forces, and of all moments about the left end, over the largest: round-off, shape (2,)."""
         at, loads = self._all
@@ -185,8 +233,8 @@ class _System:
         """u of every ring, shape (5 b,)."""
         return np.asarray(self.compliance @ p + self.motion @ q + self.free)
 
-    def equations(self, p: Array, q: Array, helped: float) -> tuple[Array, Array]:
-        """Residual and its derivative by (p, q)."""
+    def equations(self, p: Array, q: Array, helped: float) -> tuple[Array, Array, Array]:
+        """Residual, its derivative by (p, q), and that of its first rows by the displacement of the rings."""
         u, size = self.moved(p, q), p.size
         force, stiffness, rigid = np.zeros(size), np.zeros((size, size)), np.zeros(size, dtype=bool)
         for n, bearing in enumerate(self.bearings):
@@ -197,11 +245,28 @@ class _System:
             stiffness[here, here] += more
             rigid[here] = bearing.rigid
         residual = np.concatenate([np.where(rigid, u, p + force), self.motion.T @ p + self.outer])
+        by_rings = np.where(rigid[:, None], np.eye(size), stiffness)
         derivative = np.zeros((residual.size, residual.size))
-        derivative[:size, :size] = np.where(rigid[:, None], self.compliance, np.eye(size) + stiffness @ self.compliance)
-        derivative[:size, size:] = np.where(rigid[:, None], self.motion, stiffness @ self.motion)
+        derivative[:size, :size] = by_rings @ self.compliance + np.diag(np.where(rigid, 0.0, 1.0))
+        derivative[:size, size:] = by_rings @ self.motion
         derivative[size:, :size] = self.motion.T
-        return residual, derivative
+        return residual, derivative, by_rings
+
+
+def refuse_torque(shafts: tuple[LoadedShaft, ...]) -> None:
+    """Refuse torques about an axis that nothing takes.
+
+    Raises
+    ------
+    InputError
+    """
+    for one in shafts:
+        torque = one.loads[:, 5]
+        if abs(torque.sum()) > _BALANCED * max(float(np.abs(torque).max(initial=0.0)), 1e-12):
+            raise InputError(
+                one.name, f"{torque.sum():.6g} N m", "is a torque about its axis that nothing takes",
+                "give a coupling that takes it",
+            )  # fmt: skip
 
 
 def _system(shafts: tuple[LoadedShaft, ...], housing: Array | None) -> _System:
@@ -225,6 +290,15 @@ def _system(shafts: tuple[LoadedShaft, ...], housing: Array | None) -> _System:
     return _System(shafts, compliance, motion, free, outer, np.concatenate(scale))
 
 
+def _solved(matrix: Array, right: Array) -> Array:
+    """Solution of equations whose rows and unknowns are of very different sizes."""
+    most = np.abs(matrix).max(axis=1)
+    most[most == 0.0] = 1.0
+    columns = np.abs(matrix / most[:, None]).max(axis=0)
+    columns[columns == 0.0] = 1.0
+    return np.asarray(np.linalg.solve(matrix / most[:, None] / columns, right / most[:, None]) / columns[:, None])
+
+
 def _newton(system: _System, p: Array, q: Array, helped: float) -> tuple[Array, Array, bool]:
     """From a start to the solution, halving steps that do not help; the last says whether it was reached."""
     size = p.size
@@ -234,25 +308,24 @@ def _newton(system: _System, p: Array, q: Array, helped: float) -> tuple[Array, 
     balance = np.concatenate([[1.0, 1.0, 1.0, length, length] for length in lengths])
     rigid = np.concatenate([bearing.rigid for bearing in system.bearings])
     reach = max(float(np.abs(system.free * system.scale).max(initial=0.0)), 1e-9)
-    rows = np.concatenate([np.where(rigid, reach / system.scale, force * system.scale), force * balance])
+    # Of very stiff bearings a force is the round-off of a displacement times their stiffness: no less can be asked.
+    stout = np.concatenate([np.abs(bearing.usual).sum(axis=1) for bearing in system.bearings])
+    carried = force * system.scale + _ROUND_OFF / _DONE * reach * stout / system.scale
+    rows = np.concatenate([np.where(rigid, reach / system.scale, carried), force * balance])
 
     def size_of(residual: Array) -> float:
         return float(np.abs(residual / rows).max())
 
-    residual, derivative = system.equations(p, q, helped)
+    residual, derivative, _ = system.equations(p, q, helped)
     for _ in range(_ITERATIONS):
-        scaled = derivative / rows[:, None]
-        most = np.abs(scaled).max(axis=1)
-        columns = np.abs(scaled / most[:, None]).max(axis=0)
-        columns[columns == 0.0] = 1.0
         try:
-            step = -np.linalg.solve(scaled / most[:, None] / columns, residual / rows / most) / columns
+            step = -_solved(derivative, residual[:, None])[:, 0]
         except np.linalg.LinAlgError:
             return p, q, False
         before, share = size_of(residual), 1.0
         for _ in range(_HALVINGS):
             new = p + share * step[:size], q + share * step[size:]
-            residual, derivative = system.equations(*new, helped)
+            residual, derivative, _ = system.equations(*new, helped)
             if size_of(residual) < (1.0 - 1e-4 * share) * before or size_of(residual) < _DONE:
                 break
             share *= 0.5
@@ -275,9 +348,12 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
 
     Raises
     ------
+    InputError
+        If the torques of a shaft do not balance.
     ConvergenceError
         If no equilibrium is found.
     """
+    refuse_torque(shafts)
     system = _system(shafts, housing)
     p, q = np.zeros(system.free.size), np.zeros(5 * len(shafts))
     for helped in _HELP:
@@ -295,3 +371,51 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
         found.append(Deflection(one, p[first:last].reshape(-1, 5), u[first:last].reshape(-1, 5), left))
         first = last
     return tuple(found)
+
+
+def response(found: tuple[Deflection, ...], at: tuple[Array, ...], housing: Array | None = None) -> Array:
+    """How much places of deflected shafts move by small further forces at them: tangent at the bearings' state.
+
+    Parameters
+    ----------
+    found : tuple of Deflection
+        All shafts of a housing, from `deflect`.
+    at : tuple of ndarray, shape (n,) each
+        Places on each shaft from its left end [m].
+    housing : ndarray, shape (5 b, 5 b), optional
+        As of `deflect`.
+
+    Returns
+    -------
+    ndarray, shape (6 N, 6 N)
+        Displacements and turns of all places of all shafts, one shaft after the other, per force and moment; symmetric.
+
+    Raises
+    ------
+    ConvergenceError
+        If a shaft is loose where it stands.
+    """
+    system = _system(tuple(one.loaded for one in found), housing)
+    p = np.concatenate([one.bearing_forces.ravel() for one in found])
+    q = np.concatenate([one.left_end[:5] for one in found])
+    _, derivative, by_rings = system.equations(p, q, 0.0)
+    total, size = 6 * sum(z.size for z in at), p.size
+    right, own, across = np.zeros((size + q.size, total)), np.zeros((total, total)), np.zeros((total, size + q.size))
+    rings, places = 0, 0
+    for n, (one, z) in enumerate(zip(found, at, strict=True)):
+        seats = np.array([seat.at for seat in one.loaded.seats])
+        b, these, held = seats.size, slice(places, places + 6 * z.size), slice(rings, rings + 5 * seats.size)
+        bent = one.loaded.shaft.compliance(np.concatenate([seats, z]))
+        own[these, these] = bent[b:, :, b:].reshape(6 * z.size, -1)
+        across[these, held] = bent[b:, :, :b, :5].reshape(6 * z.size, -1)
+        moved = carry(z)[:, :5]
+        across[these, size + 5 * n : size + 5 * n + 5] = np.swapaxes(moved, 1, 2).reshape(-1, 5)
+        right[held, these] = bent[:b, :5, b:].reshape(5 * b, -1)
+        right[size + 5 * n : size + 5 * n + 5, these] = np.swapaxes(moved, 0, 1).reshape(5, -1)
+        rings, places = held.stop, these.stop
+    right[:size] = by_rings @ right[:size]
+    try:
+        return np.asarray(own - across @ _solved(derivative, right))
+    except np.linalg.LinAlgError:
+        names = ", ".join(one.loaded.name for one in found)
+        raise ConvergenceError(f"The bearings of {names} leave a shaft loose: give them preload") from None

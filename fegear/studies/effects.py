@@ -238,7 +238,8 @@ FACTS: dict[str, EffectFact] = {
     ),
     "misalignment": EffectFact(
         "gears run with errors of axes, lead, profile and centre distance; a gap over the face counts",
-        "`misalignment` of a helical pair or of one with a width, or `line_error` of one with a width",
+        "`misalignment` of a helical pair or of one with a width, `line_error` of one with a width, or shafts that "
+        "carry both its gears",
         ("misaligned flanks",),
     ),
 }

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.case.built.shafts import deflected, shaft_inputs, tilt_of
+from fegear.case.built.loaded_flanks import check_flanks_to_load
+from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 
 CASE = tomllib.loads(Path(__file__).parents[2].joinpath("cases", "two_stage_shafts.toml").read_text(encoding="utf-8"))
@@ -23,10 +24,10 @@ def _scene(**keys):
 
 
 def test_bearings_take_what_the_meshes_press():
-    asked = shaft_inputs(_scene())
-    bent, _ = deflected(asked)
+    box = gearbox_of(_scene())
+    bent = dict(zip(box.names, box.under(box.even), strict=True))
     assert all(found.balance.max() < 1e-9 for found in bent.values())
-    first, second = asked.meshes
+    first, second = box.meshes
     # Driver right-handed and counter-clockwise: the driven gear is pushed up, away, and toward -z by F_t tan(beta).
     radius = first.found.driver.base_radius / math.cos(first.found.working_pressure_angle)
     tangential = 100.0 / radius
@@ -47,9 +48,9 @@ def test_rigid_shafts_on_rigid_bearings_leave_parallel_axes():
             place["bearing"] = "rigid"
         part["bearings"][0]["bearing"] = "locating"
     case["bearing"] = {"rigid": {}, "locating": {"fixed": True}}
-    asked = shaft_inputs(build_scene(case, "box", Path()))
-    bent, _ = deflected(asked)
-    assert all(not tilt_of(mesh, bent).any() for mesh in asked.meshes)
+    box = gearbox_of(build_scene(case, "box", Path()))
+    bent = box.under(box.even)
+    assert all(not one.over_face.any() and not one.in_plane.any() for one, _ in box.misalignment(bent, box.even))
 
 
 def test_tilt_falls_with_stiffness_in_order_one():
@@ -61,9 +62,9 @@ def test_tilt_falls_with_stiffness_in_order_one():
             for place in part["bearings"]:
                 place["bearing"] = "linear"
         case["bearing"] = {"linear": {"radial": stiffness, "axial": stiffness}}
-        asked = shaft_inputs(build_scene(case, "box", Path()))
-        tilts.append(tilt_of(asked.meshes[0], deflected(asked)[0]))
-    assert tilts[1][:2] == pytest.approx(tilts[0][:2] / 10.0, rel=1e-9)
+        box = gearbox_of(build_scene(case, "box", Path()))
+        tilts.append(box.misalignment(box.under(box.even), box.even)[0][0].over_face)
+    assert tilts[1] == pytest.approx(tilts[0] / 10.0, rel=1e-9, abs=1e-18)
 
 
 @pytest.mark.parametrize(
@@ -81,5 +82,15 @@ def test_tilt_falls_with_stiffness_in_order_one():
 )
 def test_bad_gearboxes_are_refused_in_one_sentence(keys, word):
     with pytest.raises(InputError, match=word) as error:
-        shaft_inputs(_scene(**keys))
+        gearbox_of(_scene(**keys))
     assert "\n" not in str(error.value)
+
+
+def test_gears_that_stand_askew_on_their_shafts_are_refused_where_flanks_are_loaded():
+    case = copy.deepcopy(CASE)
+    case["effects"] = {"misalignment": True}
+    case["shaft"]["mid"]["gears"][0]["at"] = "43 mm"
+    with pytest.raises(InputError, match=r"pair.I.axial_offset.*stands 3 mm.*write axial_offset = \"3 mm\""):
+        check_flanks_to_load(build_scene(case, "box", Path()), "I")
+    case["pair"]["I"]["axial_offset"] = "3 mm"
+    check_flanks_to_load(build_scene(case, "box", Path()), "I")

@@ -14,8 +14,11 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.part import at
 from fegear.case.text_file import read_columns
+from fegear.contact.wide.on_shafts import gaps_of_even_loads
+from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
 
@@ -50,6 +53,8 @@ class FlankErrors:
         Errors of the pinion's profile and lead angle.
     apart : float
         Error of the centre distance [m].
+    shafts : ShaftGaps
+        What the shafts of the case open under loads that are spread evenly over the faces.
     """
 
     face_position: Array = field(default_factory=lambda: np.empty(0))
@@ -57,11 +62,13 @@ class FlankErrors:
     tilt: ShaftTilt = PARALLEL
     cutting: tuple[FlankModification, ...] = ()
     apart: float = 0.0
+    shafts: ShaftGaps = RIGID
 
     @property
     def given(self) -> bool:
         """Whether there are any."""
-        return bool(self.line_gap.size or self.cutting or self.apart or self.tilt != PARALLEL)
+        own = bool(self.line_gap.size or self.cutting or self.apart or self.tilt != PARALLEL)
+        return own or self.shafts.given
 
 
 def flank_errors(scene: Scene, name: str) -> FlankErrors:
@@ -74,8 +81,9 @@ def flank_errors(scene: Scene, name: str) -> FlankErrors:
     """
     z, gap = _line_gap(scene, name)
     part, pair = scene.case.pair[name].misalignment, scene.pairs[name]
+    shafts = gaps_of_even_loads(gearbox_of(scene), name) if on_shafts(scene, name) else RIGID
     if part is None:
-        return FlankErrors(z, gap)
+        return FlankErrors(z, gap, shafts=shafts)
     prefix = f"pair.{name}.misalignment"
     try:
         tilt = ShaftTilt(*part.deviation(pair))
@@ -89,7 +97,7 @@ def flank_errors(scene: Scene, name: str) -> FlankErrors:
     except InputError as error:
         names = {"in_plane": "driven.in_plane", "out_of_plane": "driven.out_of_plane"}
         raise at(prefix, error, names if part.driver or part.driven else {"out_of_plane": "shaft_angle"}) from None
-    return FlankErrors(z, gap, tilt, cutting, part.centre_distance)
+    return FlankErrors(z, gap, tilt, cutting, part.centre_distance, shafts)
 
 
 def cutter_modification(scene: Scene, name: str) -> tuple[FlankModification, ...]:

@@ -11,6 +11,7 @@ from fegear.case.built.flank_errors import cutter_modification, flank_errors
 from fegear.case.built.flank_modifications import gear_face
 from fegear.case.built.loaded_pair import build_relief
 from fegear.case.built.pair_inputs import gear_flanks, gear_name
+from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear
 from fegear.case.effects import EffectsPart
 from fegear.case.part import at
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.case.built.pair_inputs import Flanks
     from fegear.case.reading import Scene
     from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.shaft_gaps import ShaftGaps
     from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.pair import GearPair
 
@@ -101,6 +103,10 @@ class FlanksToLoad:
             return any(flank.spacing.size for flank in self.flanks)
         return effect != "misalignment" or self.errors.given
 
+    def on(self, shafts: ShaftGaps) -> FlanksToLoad:
+        """The same on shafts that open other gaps."""
+        return replace(self, errors=replace(self.errors, shafts=shafts))
+
     def gaps(self, *, relief: bool, misalignment: bool, spacing_errors: bool = False) -> FlankGaps:
         """What keeps the flanks apart."""
         from fegear.contact.wide.gaps import FlankGaps
@@ -116,7 +122,7 @@ class FlanksToLoad:
         if misalignment:
             off = self.errors
             apart = replace(
-                apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt,
+                apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt, shafts=off.shafts,
                 driver_flank=(*apart.driver_flank, *off.cutting),
             )  # fmt: skip
         if spacing_errors:
@@ -158,6 +164,18 @@ def _placed(pair: GearPair, apart: float, name: str) -> GearPair:
         raise at(f"pair.{name}.misalignment", error) from None
 
 
+def _check_misalignment(scene: Scene, name: str) -> None:
+    part = scene.case.pair[name]
+    if on_shafts(scene, name):
+        check_heights(scene, name)
+    elif part.line_error is None and part.misalignment is None:
+        raise InputError(
+            "effects.misalignment", "true", f"finds no misalignment and no gap over the face of pair {name}",
+            f'give pair.{name}.misalignment = {{ driven = {{ out_of_plane = "10 um" }} }} or shafts that carry both '
+            "gears, or leave the effect out",
+        )  # fmt: skip
+
+
 def check_flanks_to_load(scene: Scene, name: str) -> None:
     """Refuse pairs that cannot be loaded with their width, and effects without data.
 
@@ -179,11 +197,8 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
             f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", "is below 1",
             "lengthen the teeth or raise the number of teeth",
         )  # fmt: skip
-    if effects.misalignment and part.line_error is None and part.misalignment is None:
-        raise InputError(
-            "effects.misalignment", "true", f"finds no misalignment and no gap over the face of pair {name}",
-            f'give pair.{name}.misalignment = {{ driven = {{ out_of_plane = "10 um" }} }}, or leave the effect out',
-        )  # fmt: skip
+    if effects.misalignment:
+        _check_misalignment(scene, name)
     asked = flanks_to_load(scene, name)
     gears = scene.case.gear.values()
     if effects.relief and not (asked.cutter or any(gear.relief or gear.over_face for gear in gears)):

@@ -1,97 +1,49 @@
-"""From ``[shaft.NAME]`` and ``[bearing.NAME]`` to loaded shafts: the forces of all meshes, and what they tilt.
-
-The force of a mesh acts in the middle of the face: how the load lies over the face is not yet fed back.
-"""
+"""From ``[shaft.NAME]`` and ``[bearing.NAME]`` to a gearbox: shafts, seats and where its pairs mesh."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.part import at, nearest
-from fegear.shafts.solution import Deflection, LoadedShaft, Seat, deflect
+from fegear.shafts.gearbox import Gearbox
+from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.solution import LoadedShaft, Seat, refuse_torque
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.geometry.pair import GearPair
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6
 
 
-@dataclass(frozen=True)
-class MeshPlace:
-    """Where a pair of the case meshes between two shafts.
+def on_shafts(scene: Scene, pair: str) -> bool:
+    """Whether both gears of a pair stand on shafts of the case."""
+    standing = {place.gear for part in scene.case.shaft.values() for place in part.gears}
+    part = scene.case.pair[pair]
+    return part.driver in standing and part.driven in standing
 
-    Parameters
-    ----------
-    pair : str
-    shafts : tuple of str
-        Of driver and driven.
-    at : tuple of float
-        Middle of the faces from the left ends [m].
-    towards : ndarray, shape (2,)
-        From the driver's axis to the driven one's.
-    sense : int
-        1 where the driver turns counter-clockwise seen from +z, else -1.
-    found : GearPair
-    load : float
-        Along the transverse line of action [N].
+
+def check_heights(scene: Scene, pair: str) -> None:
+    """Refuse a pair whose gears stand at other heights on their shafts than the pair says.
+
+    Raises
+    ------
+    InputError
     """
-
-    pair: str
-    shafts: tuple[str, str]
-    at: tuple[float, float]
-    towards: Array
-    sense: int
-    found: GearPair
-    load: float
-
-    @property
-    def ahead(self) -> Array:
-        """Direction in which the driver pushes the driven gear at the pitch point, shape (2,)."""
-        return self.sense * np.array([-self.towards[1], self.towards[0]])
-
-    @property
-    def force(self) -> Array:
-        """On the driven gear, shape (3,) [N]."""
-        angle = self.found.working_pressure_angle
-        across = self.load * (self.ahead * math.cos(angle) + self.towards * math.sin(angle))
-        driver = self.found.driver
-        return np.append(across, -self.sense * self.load * driver.base_radius * driver.twist)
-
-    def loads(self) -> tuple[Array, Array]:
-        """Force and moment at the axes of driver and driven, shape (6,) each."""
-        angle, found = self.found.working_pressure_angle, []
-        for gear, side in ((self.found.driver, 1.0), (self.found.driven, -1.0)):
-            arm = np.append(side * self.towards * gear.base_radius / math.cos(angle), 0.0)
-            force = -side * self.force
-            found.append(np.concatenate([force, np.cross(arm, force)]))
-        return found[0], found[1]
-
-
-@dataclass(frozen=True)
-class ShaftInputs:
-    """Shafts of a case under the forces of its meshes, as they are and with rigid shafts.
-
-    Parameters
-    ----------
-    shafts, rigid : tuple of LoadedShaft
-    names : tuple of str
-    housing : ndarray, shape (5 b, 5 b)
-    meshes : tuple of MeshPlace
-    """
-
-    shafts: tuple[LoadedShaft, ...]
-    rigid: tuple[LoadedShaft, ...]
-    names: tuple[str, ...]
-    housing: Array
-    meshes: tuple[MeshPlace, ...]
+    mesh = next(one for one in mesh_places(scene) if one.pair == pair)
+    starts = [scene.case.shaft[name].start for name in mesh.shafts]
+    higher = mesh.sense * (starts[1] + mesh.at[1] - starts[0] - mesh.at[0])  # toward end I, as the key counts
+    given = scene.case.pair[pair].axial_offset
+    if abs(higher - given) > _APART:
+        raise InputError(
+            f"pair.{pair}.axial_offset", f"{given * 1e3:.6g} mm",
+            f"is not where shafts {mesh.shafts[0]} and {mesh.shafts[1]} hold its gears: the driven one "
+            f"stands {higher * 1e3:.6g} mm toward end I",
+            f'write axial_offset = "{higher * 1e3:.6g} mm", or move a gear',
+        )  # fmt: skip
 
 
 def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
@@ -159,8 +111,8 @@ def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, flo
     return MeshPlace(name, (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1]), across / apart, sense, pair, load)
 
 
-def shaft_inputs(scene: Scene) -> ShaftInputs:
-    """Collect the shafts of a case with all that acts on them.
+def gearbox_of(scene: Scene) -> Gearbox:
+    """Collect the shafts of a case with all that acts on them from outside, and its meshes.
 
     Raises
     ------
@@ -168,10 +120,8 @@ def shaft_inputs(scene: Scene) -> ShaftInputs:
         If a name is unknown, a shaft is not held, or something is off it.
     """
     meshes = mesh_places(scene)
-    made: dict[bool, list[LoadedShaft]] = {False: [], True: []}
-    seat_compliance: list[float] = []
+    shafts, seat_compliance = [], []
     for name, part in scene.case.shaft.items():
-        places, loads = _outer(scene, name, meshes)
         seats = []
         for n, place in enumerate(part.bearings):
             known = scene.case.bearing
@@ -185,54 +135,19 @@ def shaft_inputs(scene: Scene) -> ShaftInputs:
                 raise at(f"bearing.{place.bearing}", error) from None
             across, along = (1.0 / k if k else 0.0 for k in (data.housing_radial, data.housing_axial))
             seat_compliance += [across, across, along, 0.0, 0.0]
-        for rigid, these in made.items():
-            try:
-                body = part.build(rigid=rigid)
-            except InputError as error:
-                raise at(f"shaft.{name}", error) from None
-            these.append(LoadedShaft(body, tuple(seats), places, loads, f"shaft.{name}"))
-    return ShaftInputs(tuple(made[False]), tuple(made[True]), tuple(scene.case.shaft), np.diag(seat_compliance), meshes)
-
-
-def _outer(scene: Scene, name: str, meshes: tuple[MeshPlace, ...]) -> tuple[Array, Array]:
-    """Where forces act on a shaft and what they are; the coupling takes the torque that is left."""
-    part = scene.case.shaft[name]
-    places: list[float] = []
-    loads: list[Array] = []
-    for mesh in meshes:
-        for shaft, place, load in zip(mesh.shafts, mesh.at, mesh.loads(), strict=True):
-            if shaft == name:
-                places.append(place)
-                loads.append(load)
-    for one in part.loads:
-        places.append(one.at)
-        loads.append(np.array([*(one.force or (0.0,) * 3), *(one.moment or (0.0,) * 3)]))
-    if part.coupling is not None:
-        places.append(part.coupling)
-        loads.append(np.array([0.0] * 5 + [-sum(float(load[5]) for load in loads)]))
-    return np.array(places), np.array(loads).reshape(-1, 6)
-
-
-def tilt_of(mesh: MeshPlace, bent: dict[str, Deflection]) -> Array:
-    """Deviation of a mesh's axes from parallel, in and out of their plane, and the wind-up of both gears [rad].
-
-    As `ShaftTilt` counts them, positive where the gap opens toward +z; the wind-up lies in the plane of action.
-    Shape (3,).
-    """
-    turns, wind = [], 0.0
-    for shaft, place, gear in zip(mesh.shafts, mesh.at, (mesh.found.driver, mesh.found.driven), strict=True):
-        half, length = 0.5 * gear.face_width, bent[shaft].loaded.shaft.length
-        ends = np.clip([place - half, place + half], 0.0, length)
-        twisted = bent[shaft].at([*ends, place])
-        turns.append(np.array([twisted[2, 4], -twisted[2, 3]]))
-        wind -= mesh.sense * gear.base_radius * float(twisted[1, 5] - twisted[0, 5]) / gear.face_width
-    apart = turns[1] - turns[0]
-    return np.array([apart @ mesh.towards, apart @ mesh.ahead, wind])
-
-
-def deflected(asked: ShaftInputs) -> tuple[dict[str, Deflection], dict[str, Deflection]]:
-    """All shafts in equilibrium by name, as they are and as if they did not bend."""
-    bent, rigid = (
-        dict(zip(asked.names, deflect(these, asked.housing), strict=True)) for these in (asked.shafts, asked.rigid)
-    )
-    return bent, rigid
+        places = np.array([one.at for one in part.loads])
+        loads = np.array([[*(one.force or (0.0,) * 3), *(one.moment or (0.0,) * 3)] for one in part.loads])
+        try:
+            body = part.build()
+        except InputError as error:
+            raise at(f"shaft.{name}", error) from None
+        for where, key in ((part.coupling, "coupling"), *((one.at, "gears") for one in part.gears)):
+            if where is not None:
+                body.place(where, f"shaft.{name}.{key}")
+        shafts.append(LoadedShaft(body, tuple(seats), places, loads.reshape(-1, 6), f"shaft.{name}"))
+    box = Gearbox(
+        tuple(shafts), tuple(part.coupling for part in scene.case.shaft.values()), meshes, np.diag(seat_compliance),
+        tuple(scene.case.shaft),
+    )  # fmt: skip
+    refuse_torque(box.loaded(box.even))
+    return box

@@ -84,6 +84,13 @@ def hat_averages(lines: ContactLines, values: Array) -> Array:
     return np.asarray(np.divide(found, support, out=np.zeros_like(found), where=support > 0.0))
 
 
+def averaged_gaps(lines: ContactLines, gap: Array, loads: int) -> Array:
+    """`hat_averages` of gaps (P, M), the same under all loads, or (P, M, L), shape (P, M, L)."""
+    each = np.moveaxis(gap.reshape(*gap.shape[:2], -1), 2, 0)
+    found = np.stack([hat_averages(lines, one) for one in each], axis=2)
+    return np.asarray(np.broadcast_to(found, (*found.shape[:2], loads)))
+
+
 @tallied("load sharing")
 def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: int = _MOST_STEPS) -> Contact:
     """Find forces and approach at all roll positions under all loads.
@@ -91,8 +98,9 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
     Parameters
     ----------
     known : FlankCompliance
-    gap : ndarray, shape (P, M)
-        Distance of the unloaded flanks at the stations along the line of action [m], removal positive.
+    gap : ndarray, shape (P, M) or (P, M, L)
+        Distance of the unloaded flanks at the stations along the line of action [m], removal positive; the last of
+        them one for each load.
     load : ndarray, shape (L,)
         Total loads along the transverse line of action [N], positive.
     most_steps : int
@@ -112,9 +120,9 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
     cases = load.size
     place = np.repeat(np.arange(positions), cases)
     total = np.tile(load, positions)
-    averaged = hat_averages(lines, gap)
-    nearest = np.where(lines.present, averaged, np.inf).min(axis=1)
-    apart = np.where(lines.present, averaged - nearest[:, None], 0.0)
+    averaged = np.moveaxis(averaged_gaps(lines, gap, cases), 2, 1).reshape(-1, most)
+    nearest = np.where(lines.present[place], averaged, np.inf).min(axis=1)
+    apart = np.where(lines.present[place], averaged - nearest[:, None], 0.0)
     force, approach = np.zeros((place.size, most)), np.zeros(place.size)
     stiffness, residual = np.zeros(place.size), np.zeros(place.size)
     index = np.arange(place.size)
@@ -131,17 +139,17 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
             )
         here, w = place[index], total[index]
         matrix, constant = _tangent(known, here, v)
-        new, z, rate = _bordered(matrix, apart[here] + constant, active, w)
+        new, z, rate = _bordered(matrix, apart[index] + constant, active, w)
         kept = np.where(active, np.maximum(new, 0.0), 0.0)
-        distance = np.einsum("bij,bj->bi", matrix, np.where(active, new, 0.0)) + constant + apart[here] - z[:, None]
+        distance = np.einsum("bij,bj->bi", matrix, np.where(active, new, 0.0)) + constant + apart[index] - z[:, None]
         leaves = active & (new <= 0.0)
-        scale = np.abs(z)[:, None] + apart[here]
+        scale = np.abs(z)[:, None] + apart[index]
         enters = lines.present[here] & ~active & (distance < -1e-13 * scale)
         close = (np.abs(kept - v) <= 1e-9 * np.abs(v) + 1e-12 * w[:, None]).all(axis=1)
         changes = leaves | enters
         done = ~changes.any(axis=1) & (close | (known.fixed_half_width is not None))
         at = index[done]
-        force[at], approach[at], stiffness[at] = kept[done], z[done] + nearest[here[done]], rate[done]
+        force[at], approach[at], stiffness[at] = kept[done], z[done] + nearest[at], rate[done]
         wrong = np.where(active, np.abs(distance), np.maximum(-distance, 0.0)) * lines.present[here]
         residual[at] = (wrong.max(axis=1) / np.abs(z))[done]
         if steps > _MANY_AT_ONCE:

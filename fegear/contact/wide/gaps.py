@@ -13,7 +13,7 @@ helicoid is compared with the driven gear's, turned as its shaft is, and the lea
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ import numpy as np
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.tally import note
 from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED, Relief
 from fegear.geometry.shaft_tilt import PARALLEL
@@ -54,6 +55,8 @@ class FlankGaps(ReadOnlyArrays):
         Spacing error of each tooth in the order of meshing [m]; empty for none.
     base_pitch : int
         Which teeth meet: pair j is on teeth base_pitch - j.
+    shafts : ShaftGaps
+        What the shafts of a gearbox open as its meshes load them.
     """
 
     driver_relief: Relief = UNMODIFIED
@@ -66,16 +69,39 @@ class FlankGaps(ReadOnlyArrays):
     driver_spacing: Array = field(default_factory=lambda: np.empty(0))
     driven_spacing: Array = field(default_factory=lambda: np.empty(0))
     base_pitch: int = 0
+    shafts: ShaftGaps = RIGID
 
-    def at(self, pair: GearPair, lines: ContactLines) -> Array:
-        """Gap at the stations, shape (P, M) [m]: the sum of all, where unmodified flanks touch."""
+    def under(self, load: float) -> FlankGaps:
+        """The same with the shafts as they are under one load [N]."""
+        return replace(self, shafts=self.shafts.under(load)) if self.shafts.given else self
+
+    def at(self, pair: GearPair, lines: ContactLines, load: ArrayLike | None = None) -> Array:
+        """Gap at the stations [m]: the sum of all, where unmodified flanks touch.
+
+        Parameters
+        ----------
+        pair : GearPair
+        lines : ContactLines
+        load : array_like, shape (L,), optional
+            [N]: which shafts' gaps hang on; without it, those of `under`.
+
+        Returns
+        -------
+        ndarray, shape (P, M), or (P, M, L) where shafts bend under loads
+        """
         gap = self.of_pair(lines.pair, lines.z)
         for member in MEMBERS:
             gap = gap + self.removed(member, lines.roll_angle(pair, member), lines.z + pair.face_height(member))
         if self.tilt != PARALLEL:
             note("misaligned flanks")
             gap = gap + self.tilt.gap(pair, lines.x, lines.z)
-        return np.asarray(gap if lines.edges is None else gap + lines.edges.gap)
+        if lines.edges is not None:
+            gap = gap + lines.edges.gap
+        if self.shafts.given:
+            note("misaligned flanks")
+            bent = self.shafts.at(lines.x, lines.z, load)
+            gap = bent + (gap if load is None else gap[..., None])
+        return np.asarray(gap)
 
     def removed(self, member: Member, roll: Array, z: Array) -> Array:
         """What is missing from a gear's flank at roll angles [rad] and heights on its own face [m]."""
@@ -151,6 +177,8 @@ def _least(pair: GearPair, gaps: FlankGaps, at: _Places) -> Array:
     middle = np.clip(pair.roll_angle(at.x, "driver"), form, tip)
     room = _REACH * pair.driver.module / np.maximum(middle * rb, _REACH * pair.driver.module)
     of_pair, up = gaps.of_pair(at.pair, at.z), pair.face_height("driven")
+    if gaps.shafts.given:
+        of_pair = of_pair + gaps.shafts.at(at.x, at.z)
 
     def gap(roll: Array) -> Array:
         apart, driven_roll = _helicoids(pair, gaps, at, roll)

@@ -122,7 +122,7 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
     """
     tangential = load * pair.driver.base_radius / pair.driver.pitch_radius / pair.face_width
     stiffness = pair_stiffness(pair, tangential).mesh_beta
-    return face_load_factor(straight_gap(pair, gaps), stiffness, tangential)
+    return face_load_factor(straight_gap(pair, gaps.under(load)), stiffness, tangential)
 
 
 def iso_root_exponent(pair: GearPair) -> float:

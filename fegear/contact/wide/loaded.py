@@ -323,6 +323,6 @@ class FlankPair:
         known = self.compliance(float(loads.max())) if known is None else known
         assembled = time.perf_counter()
         with one_thread(with_scipy=False):
-            known, contact = solve_spots(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
+            known, contact = solve_spots(known, (gaps or FlankGaps()).at(self.pair, known.lines, loads), loads)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)

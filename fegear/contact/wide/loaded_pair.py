@@ -127,8 +127,8 @@ class LoadedWidePair:
     def history(self) -> LoadHistory:
         """See `LoadedTeeth`; errors are the change by the coarser solution, and what slices miss."""
         coarse, i, missed = self.error.coarse, self.at, self.missed
-        found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines))
-        again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines))
+        found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines, self.found.load))
+        again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines, coarse.load))
         largest, other = (one.hertz_pressure[:, i].max() for one in (found, again))
         error = history_error(found, again) + missed * found.load * (1.0 - found.share)
         where = (

@@ -19,7 +19,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.plane.pair_history import PairHistory
-from fegear.contact.wide.complementarity import deflection, hat_averages
+from fegear.contact.wide.complementarity import averaged_gaps, deflection
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -32,7 +32,7 @@ def flank_pair_history(found: LoadedFlanks, gap: Array) -> PairHistory:
     Parameters
     ----------
     found : LoadedFlanks
-    gap : ndarray, shape (P, M)
+    gap : ndarray, shape (P, M) or (P, M, L)
         Distance of the unloaded flanks at the stations [m].
 
     Returns
@@ -44,13 +44,13 @@ def flank_pair_history(found: LoadedFlanks, gap: Array) -> PairHistory:
     """
     lines, pitch = found.lines, found.pair.base_pitch
     force, te = found.contact.force, found.transmission_error
-    apart = hat_averages(lines, gap)
+    apart = averaged_gaps(lines, gap, found.load.size)
     pressure = np.where(lines.at_edge[:, :, None], 0.0, found.pressure)
     where = [(p, s) for p in range(lines.roll.size) for s in lines.at(p)]
     x = np.array([lines.roll[p] + lines.pair[p, s.start] * pitch for p, s in where])
     order = np.argsort(x)
     load = np.array([force[p, s].sum(axis=0) for p, s in where])[order]
-    moved = np.array([te[p] * force[p, s].sum(axis=0) - apart[p, s] @ force[p, s] for p, s in where])[order]
+    moved = np.array([((te[p] - apart[p, s]) * force[p, s]).sum(axis=0) for p, s in where])[order]
     deflection = np.divide(moved, load, out=np.zeros_like(load), where=load > 0.0)
     return PairHistory(
         x[order], np.asarray(found.pair.roll_angle(x[order], "driver")), load, load / found.load, deflection,
@@ -101,12 +101,12 @@ def separation(found: LoadedFlanks, gap: Array) -> Array:
     Parameters
     ----------
     found : LoadedFlanks
-    gap : ndarray, shape (P, M)
+    gap : ndarray, shape (P, M) or (P, M, L)
         Of the unloaded flanks [m].
     """
-    apart = hat_averages(found.lines, gap)
+    apart = averaged_gaps(found.lines, gap, found.load.size)
     force, te = found.contact.force, found.transmission_error
-    each = [deflection(found.known, force[:, :, i]) + apart - te[:, None, i] for i in range(found.load.size)]
+    each = [deflection(found.known, force[:, :, i]) + apart[:, :, i] - te[:, None, i] for i in range(found.load.size)]
     return np.maximum(np.stack(each, axis=2), 0.0) * (force <= 0.0)
 
 

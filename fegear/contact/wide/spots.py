@@ -37,7 +37,7 @@ def solve_spots(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankC
     Parameters
     ----------
     known : FlankCompliance
-    gap : ndarray, shape (P, M)
+    gap : ndarray, shape (P, M) or (P, M, L)
         [m].
     load : ndarray, shape (L,)
         [N].
@@ -60,7 +60,7 @@ def solve_spots(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankC
     except ConvergenceError:
         pass
     # Each load on its own, so that what it does hangs on no other.
-    parts = [_own_width(known, gap, load[i : i + 1]) for i in range(load.size)]
+    parts = [_own_width(known, gap[..., i] if gap.ndim > 2 else gap, load[i : i + 1]) for i in range(load.size)]
     widest = max((one for one, _ in parts), key=lambda one: 0.0 if one.spot is None else float(one.spot.max()))
     contacts = [one for _, one in parts]
 

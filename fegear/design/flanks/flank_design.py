@@ -188,7 +188,7 @@ def design_flanks(
         If no relief of a family keeps to the largest K_Hbeta.
     """
     report = progress or (lambda _fraction: None)
-    pair = flanks.pair
+    pair, apart = flanks.pair, apart.under(task.load)
     panel = flanks.panel * pair.driver.module
     lines = design_lines(pair, task.loading, task.positions, panel)
 

@@ -69,7 +69,7 @@ def _compute(inputs: ContactPatternInputs, upstream: Upstream, _work: Work) -> C
     loaded = loaded_flanks(upstream, inputs.name)
     loads = (_LIGHT * loaded.nominal, *loaded.loads)
     found = loaded.flanks.solve(loads, loaded.gaps, loaded.known)
-    return ContactPatternData(loaded, loads, contact_pattern(found, loaded.gaps.at(found.pair, found.lines)))
+    return ContactPatternData(loaded, loads, contact_pattern(found, loaded.gaps.at(found.pair, found.lines, loads)))
 
 
 def _ends(places: Array, printed: Array) -> tuple[float, float]:

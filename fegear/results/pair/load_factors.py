@@ -106,7 +106,7 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
         why_not = str(error)
     return FlankLoadFactorsData(
         loaded, _apart(transverse, transverse_load_factor(coarse, perfect_coarse)), root, root_coarse,
-        by_iso, why_not, straight_gap(pair, loaded.gaps), iso_root_exponent(pair), transverse,
+        by_iso, why_not, straight_gap(pair, loaded.gaps.under(loaded.nominal)), iso_root_exponent(pair), transverse,
     )  # fmt: skip
 
 

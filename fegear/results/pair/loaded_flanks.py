@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.shafts import on_shafts
 from fegear.contact.loaded_teeth import Change, Neglected
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
@@ -28,11 +29,14 @@ if TYPE_CHECKING:
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
     from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
+    from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.contact.wide.over_pitch import Stated
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
 
+#: Where the shafts of a case come from (`fegear.results.shafts.loaded_shafts`).
+_SHAFTS = Task("loaded-shafts", "all")
 #: Effects that keep flanks apart.
 _OF_GAPS = ("relief", "spacing_errors", "misalignment")
 #: Share of the mean transmission error that gaps may be off by without a remark.
@@ -103,6 +107,8 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     from fegear.fem.solid.slice_laws import missed_by_slices
 
     effects = asked.effects
+    if _SHAFTS in upstream:
+        asked = asked.on(cast("LoadedShafts", upstream[_SHAFTS]).gaps_of(asked.name))
     solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
     fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
     coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
@@ -120,8 +126,8 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     }
     stated, i = over.stated, asked.loads.index(asked.nominal)
     changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}
-    unloaded = unloaded_error(asked.pair, gaps, found.lines.roll)
-    beside = beside_the_lines(asked.pair, gaps, found.lines)
+    unloaded = unloaded_error(asked.pair, gaps.under(asked.nominal), found.lines.roll)
+    beside = beside_the_lines(asked.pair, gaps.under(asked.nominal), found.lines)
     apart = asked.gaps(relief=False, misalignment=effects.misalignment)
     return LoadedWidePair(
         flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, Neglected(changes), unloaded,
@@ -235,7 +241,8 @@ def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
+    gears = needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
+    return (*gears, _SHAFTS) if scene.case.effects.misalignment and on_shafts(scene, name) else gears
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

@@ -197,7 +197,7 @@ def _wide_bench(inputs: DrawInputs, upstream: Upstream, moved: float = 0.0) -> F
         pair = replace(flanks.pair, centre_distance=flanks.pair.centre_distance + moved)
         flanks = replace(flanks, pair=pair)
         known = flanks.compliance(inputs.load)
-    gaps = replace(loaded.gaps, driver_spacing=none, driven_spacing=none)
+    gaps = replace(loaded.gaps.under(inputs.load), driver_spacing=none, driven_spacing=none)
     z, coupling = loaded.places_along, loaded.coupling
     one, other = (
         rooted_lines(

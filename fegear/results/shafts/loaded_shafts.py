@@ -1,0 +1,160 @@
+"""Stage ``loaded-shafts``: all shafts of a case and all its meshes in one equilibrium, for what reports it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
+from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.shafts import gearbox_of
+from fegear.contact.wide.on_shafts import EvenForces, FlankForces, LoadedShafts, load_gearbox
+from fegear.contact.wide.shaft_gaps import RIGID
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.geometry.pair import MEMBERS
+from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.pair.loaded_flanks import load_flanks
+from fegear.shafts.rolling_bearing import RollingBearing
+
+if TYPE_CHECKING:
+    from fegear.case.built.loaded_flanks import FlanksToLoad
+    from fegear.case.reading import Scene
+    from fegear.contact.wide.on_shafts import MeshForces
+    from fegear.engine.stage import Upstream, Work
+    from fegear.shafts.gearbox import Gearbox
+
+#: Seconds of the shafts alone, and of one mesh with its flanks under one load.
+_SHAFTS, _FLANKS = 0.05, 1.0
+
+
+@dataclass(frozen=True)
+class LoadedShaftsInputs:
+    """What the stage reads.
+
+    Parameters
+    ----------
+    gearbox : Gearbox
+    flanks : tuple of FlanksToLoad or None
+        Of every mesh whose flanks are loaded with it; None where the load stays even over the face.
+    scales : tuple of float
+        Loads over the nominal ones, ascending.
+    """
+
+    gearbox: Gearbox
+    flanks: tuple[FlanksToLoad | None, ...]
+    scales: tuple[float, ...]
+
+
+def loaded_shafts(upstream: Upstream) -> LoadedShafts:
+    """What this stage computed."""
+    return cast("LoadedShafts", upstream[LOADED_SHAFTS_TASK])
+
+
+#: The one task of this stage.
+LOADED_SHAFTS_TASK = Task("loaded-shafts", "all")
+
+
+def shafts_of(scene: Scene) -> tuple[str, ...]:
+    """One solution for all shafts of a case."""
+    return ("all",) if scene.case.shaft else ()
+
+
+def _feeding(scene: Scene, pair: str) -> bool:
+    """Whether the flanks of a pair move its force on the shafts."""
+    return scene.case.effects.misalignment and pair in scene.wide_pairs
+
+
+def _scales(scene: Scene, pair: str) -> set[float]:
+    """Loads of a pair over its nominal one, levels of its spectrum among them."""
+    part, found = scene.case.pair[pair], scene.pairs[pair]
+    nominal = part.normal_load(found) or 1.0
+    loads = {load / nominal for load in part.all_loads(found)}
+    for level in part.operation.spectrum or ():
+        torque = level.torque / found.driver.base_radius / nominal if level.torque else level.load_factor
+        loads |= {torque} if torque else set()
+    return loads
+
+
+def _inputs(scene: Scene, _name: str) -> LoadedShaftsInputs:
+    box = gearbox_of(scene)
+    flanks = tuple(flanks_to_load(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
+    scales = {1.0}.union(*(_scales(scene, mesh.pair) for mesh in box.meshes))
+    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)))
+
+
+def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> LoadedShafts:
+    meshes: list[MeshForces] = []
+    for number, (mesh, asked) in enumerate(zip(inputs.gearbox.meshes, inputs.flanks, strict=True)):
+        if asked is None:
+            meshes.append(EvenForces(mesh.even / mesh.load))
+            continue
+        bodies = {m: solid_solution_of(upstream, gear).fine for m, gear in zip(MEMBERS, asked.gears, strict=True)}
+        flanks, gaps, found = load_flanks(asked.on(RIGID), bodies, work.cache)
+        meshes.append(FlankForces(flanks, gaps, found.known, mesh.heights))
+        work.progress((number + 1) / (len(inputs.flanks) + 1))
+    states = load_gearbox(inputs.gearbox, meshes, inputs.scales)
+    return LoadedShafts(inputs.gearbox, states, tuple(one is not None for one in inputs.flanks))
+
+
+def _present(data: LoadedShafts, inputs: LoadedShaftsInputs) -> Outcome:
+    settings: dict[str, object] = {
+        "scales": list(inputs.scales), "newton_steps": [state.steps for state in data.states],
+        "left": max(state.left for state in data.states), "flanks_loaded": list(data.feeding),
+    }  # fmt: skip
+    return Outcome(data, settings=settings, remarks=tuple(_remarks(data)))
+
+
+def _remarks(data: LoadedShafts) -> list[str]:
+    """What the model neglects, and what is not from a print at hand."""
+    said = ["Shafts: gear bodies do not stiffen their shafts; sections below a gear may be given as stiff as it is."]
+    meshes = data.gearbox.meshes
+    even = [mesh.pair for mesh, feeding in zip(meshes, data.feeding, strict=True) if not feeding]
+    if even:
+        said.append(
+            f"Shafts: forces of {', '.join(even)} are spread evenly over the face; with the effect misalignment "
+            "flanks of pairs with a width are loaded as the shafts tilt them."
+        )
+    if any(data.feeding):
+        said.append(
+            "Shafts: they follow the load over the face averaged over a base pitch, not the passing of single teeth; "
+            "that the axes part is neglected in the working pressure angle."
+        )
+    seats = [seat.bearing for shaft in data.gearbox.shafts for seat in shaft.seats]
+    if any(isinstance(one, RollingBearing) and one.kind == "roller" for one in seats):
+        said.append("Shafts: the law of roller contacts (ISO/TS 16281) is recalled, not compared with the standard.")
+    return said
+
+
+def _fed(scene: Scene) -> list[str]:
+    return [mesh.pair for mesh in gearbox_of(scene).meshes if _feeding(scene, mesh.pair)]
+
+
+def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
+    gears = [gear_name(scene, pair, member) for pair in _fed(scene) for member in MEMBERS]
+    return needs_solid_solution(*dict.fromkeys(gears)) if gears else ()
+
+
+def _check(scene: Scene, _name: str) -> None:
+    for pair in _fed(scene):
+        check_flanks_to_load(scene, pair)
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    return Forecast({}, _SHAFTS + _FLANKS * len(_fed(scene)))
+
+
+LOADED_SHAFTS = Stage(
+    subjects=shafts_of,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    needs=_needs,
+    check=_check,
+    effects=FLANK_EFFECTS,
+    effects_of=lambda scene, _name: FLANK_EFFECTS if _fed(scene) else ("misalignment",),
+    forecast=_forecast,
+    cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
+    internal=True,
+)

@@ -1,0 +1,228 @@
+"""All shafts of a gearbox under all its meshes: from forces over the faces to gaps between the flanks, and by cause."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.base.shown import shown
+from fegear.shafts.beam import carry
+from fegear.shafts.mesh import straight_slope
+from fegear.shafts.solution import deflect, response
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.shafts.mesh import MeshPlace
+    from fegear.shafts.solution import Deflection, LoadedShaft
+
+#: Misalignment of a mesh by cause, and its gap over the face.
+MeshState = tuple["MeshMisalignment", "MeshGap"]
+Cause = Literal["bearings", "housing", "bending", "torsion"]
+#: What moves flanks apart: displacement of the rings in the bearings, of the seats in the housing; the shafts bend, and
+#: twist.
+CAUSES: tuple[Cause, ...] = ("bearings", "housing", "bending", "torsion")
+
+
+#: Torques of a shaft's meshes are printed with few digits: a smaller share of them all is what rounding leaves.
+_ROUNDED = 5e-4
+#: What a gap departs from a straight line by less than this share of the largest one is round-off.
+_STRAIGHT = 1e-12
+
+
+@dataclass(frozen=True)
+class MeshMisalignment:
+    """How far a mesh is misaligned: in all, then by `CAUSES`; arrays of shape (5,)."""
+
+    in_plane: Array = shown("arcsec", "tilt of the axes in their plane, apart toward end II")
+    out_of_plane: Array = shown("arcsec", "tilt across that plane, the driven gear ahead toward end II")
+    over_face: Array = shown("um", "gap at end II less that at end I, of the straight line through it")
+    curved: Array = shown("um", "what the gap departs from that line, peak to peak")
+
+
+@dataclass(frozen=True)
+class MeshGap:
+    """What shafts open between the flanks of a mesh; arrays of shape (n,), by cause (4, n)."""
+
+    z: Array = shown("mm", "from the middle of the common face toward end II", label="face position z")
+    gap: Array = shown("um", "that the shafts open in the plane of action", label="gap of the flanks")
+    by_cause: Array = shown("um", "share of it")
+    line_load: Array = shown("N/mm", "load per face width, averaged over a base pitch", label="load per face width")
+
+
+@dataclass(frozen=True)
+class Gearbox:
+    """Shafts of one housing with the meshes between them.
+
+    Parameters
+    ----------
+    shafts : tuple of LoadedShaft
+        Under the forces from outside alone.
+    couplings : tuple of float or None
+        Where the torque of a shaft that its gears leave enters [m]; None where nothing takes it, and its meshes share
+        what rounding leaves.
+    meshes : tuple of MeshPlace
+    housing : ndarray, shape (5 b, 5 b)
+        Compliance of the seats.
+    names : tuple of str
+        Of the shafts.
+    """
+
+    shafts: tuple[LoadedShaft, ...]
+    couplings: tuple[float | None, ...]
+    meshes: tuple[MeshPlace, ...]
+    housing: Array
+    names: tuple[str, ...]
+
+    @cached_property
+    def _on_shafts(self) -> list[list[tuple[int, Array, Array]]]:
+        """Of every shaft, what meshes act on it: number, places and `MeshPlace.ways`."""
+        found: list[list[tuple[int, Array, Array]]] = [[] for _ in self.shafts]
+        for number, mesh in enumerate(self.meshes):
+            where = [self.names.index(name) for name in mesh.shafts]
+            lengths = (self.shafts[where[0]].shaft.length, self.shafts[where[1]].shaft.length)
+            for shaft, (places, ways) in zip(where, mesh.ways(lengths), strict=True):
+                found[shaft].append((number, places, ways))
+        return found
+
+    @property
+    def even(self) -> tuple[Array, ...]:
+        """Forces of all meshes spread evenly over their faces, shape (2, n) each."""
+        return tuple(mesh.even for mesh in self.meshes)
+
+    def loaded(self, forces: tuple[Array, ...], scale: float = 1.0) -> tuple[LoadedShaft, ...]:
+        """Shafts under the forces W and W x of all meshes at their heights; what acts from outside times `scale`.
+
+        Raises
+        ------
+        InputError
+            If a torque is left that nothing takes.
+        """
+        found = []
+        for one, coupling, on in zip(self.shafts, self.couplings, self._on_shafts, strict=True):
+            at, loads = [one.loads_at], [scale * one.loads]
+            for number, places, ways in on:
+                at.append(places)
+                loads.append(np.einsum("nak,kn->na", ways, forces[number]))
+            torques = np.concatenate([part[:, 5] for part in loads])
+            rounded = abs(torques.sum()) <= _ROUNDED * np.abs(torques).sum()
+            taken = coupling if coupling is not None else on[-1][1][0] if on and rounded else None
+            if taken is not None:
+                at.append(np.array([taken]))
+                loads.append(np.array([[0.0] * 5 + [-torques.sum()]]))
+            found.append(replace(one, loads_at=np.concatenate(at), loads=np.vstack(loads)))
+        return tuple(found)
+
+    def under(self, forces: tuple[Array, ...], scale: float = 1.0) -> tuple[Deflection, ...]:
+        """Shafts in equilibrium, see `loaded` and `deflect`."""
+        return deflect(self.loaded(forces, scale), self.housing)
+
+    def gaps(self, moved: tuple[Array, ...]) -> tuple[Array, ...]:
+        """Gaps that displacements open between the flanks of each mesh, at x = 0 and over x, shape (..., 2, n).
+
+        Nothing in the middle of the face at x = 0: what all flanks share turns the gears, and loads none of them.
+
+        Parameters
+        ----------
+        moved : tuple of ndarray, shape (..., k, 6)
+            Displacements of each shaft at `places`.
+        """
+        found: list[Array] = [np.zeros(())] * len(self.meshes)
+        for one, on in zip(moved, self._on_shafts, strict=True):
+            first = 0
+            for number, places, ways in on:
+                here = one[..., first : first + places.size, :]
+                found[number] = found[number] + np.einsum("nak,...na->...kn", ways, here)
+                first += places.size
+        for gap in found:
+            gap[..., 0, :] -= gap[..., 0, gap.shape[-1] // 2][..., None]
+        return tuple(found)
+
+    @property
+    def places(self) -> tuple[Array, ...]:
+        """Where the meshes act on each shaft, one mesh after the other [m]."""
+        return tuple(np.concatenate([np.empty(0), *(places for _, places, _ in on)]) for on in self._on_shafts)
+
+    def compliance(self, bent: tuple[Deflection, ...]) -> Array:
+        """How gaps of all meshes grow with their forces, W and W x at the heights of one mesh after the other.
+
+        Shape (2 N, 2 N) of N heights in all; symmetric but for the middle of each face, which stays. The sum of the
+        forces of a mesh is given, so that torques in couplings do not change.
+        """
+        places = self.places
+        moved = response(bent, places, self.housing)
+        sizes = [2 * mesh.heights.size for mesh in self.meshes]
+        starts = np.cumsum([0, *sizes])
+        ways = np.zeros((moved.shape[0], starts[-1]))
+        row = 0
+        for on in self._on_shafts:
+            for number, at, these in on:
+                for n in range(at.size):
+                    columns = starts[number] + np.array([n, at.size + n])
+                    ways[row : row + 6, columns] = these[n]
+                    row += 6
+        found = ways.T @ moved @ ways
+        for first, mesh in zip(starts, self.meshes, strict=False):
+            n = mesh.heights.size
+            found[first : first + n] -= found[first + n // 2]
+        return np.asarray(found)
+
+    def by_cause(self, bent: tuple[Deflection, ...]) -> tuple[Array, ...]:
+        """Displacements of each shaft at `places` by `CAUSES`, which add up to all of it, shape (4, k, 6).
+
+        The forces being known, rings, seats and bent shaft at the bearings leave a straight line to the shaft: it is
+        that of least squares through them, exact for two bearings.
+        """
+        pressed = self.housing @ np.concatenate([one.bearing_forces.ravel() for one in bent])
+        found, first = [], 0
+        for one, z in zip(bent, self.places, strict=True):
+            seats = np.array([seat.at for seat in one.loaded.seats])
+            count = 5 * seats.size
+            seat = pressed[first : first + count].reshape(-1, 5)
+            twisted, curved = one.bent(z), one.bent(z)
+            twisted[:, :5], curved[:, 5] = 0.0, 0.0
+            lines = _straight(one, seats, np.stack([one.rings, -seat, -one.bent(seats)[:, :5]]))
+            straight = np.einsum("nba,cb->cna", carry(z), lines)
+            found.append(np.stack([straight[0], straight[1], straight[2] + curved, twisted]))
+            first += count
+        return tuple(found)
+
+    def misalignment(self, bent: tuple[Deflection, ...], forces: tuple[Array, ...]) -> tuple[MeshState, ...]:
+        """How far every mesh is misaligned, and what opens over its face under its forces."""
+        causes = self.by_cause(bent)
+        moved = tuple(np.concatenate([part.sum(axis=0)[None], part]) for part in causes)
+        ends: dict[tuple[int, str], Array] = {}
+        for name, one, on in zip(self.names, moved, self._on_shafts, strict=True):
+            first = 0
+            for number, places, _ in on:
+                ends[number, name] = one[..., first : first + places.size, :]
+                first += places.size
+        found = []
+        for number, (mesh, both) in enumerate(zip(self.meshes, self.gaps(moved), strict=True)):
+            gap, z = both[:, 0], mesh.heights
+            tilt = mesh.tilt(ends[number, mesh.shafts[1]], ends[number, mesh.shafts[0]])
+            slope = straight_slope(z, gap[..., None])
+            left = gap - slope * z
+            left[np.abs(left) < _STRAIGHT * np.abs(gap).max()] = 0.0
+            shares = MeshMisalignment(tilt[:, 0], tilt[:, 1], slope[:, 0] * mesh.found.face_width, np.ptp(left, axis=1))
+            width = np.gradient(z) * np.where(np.abs(z) == z[-1], 0.5, 1.0)
+            found.append((shares, MeshGap(z, gap[0], gap[1:], forces[number][0] / width)))
+        return tuple(found)
+
+
+def _straight(one: Deflection, seats: Array, left: Array) -> Array:
+    """Motions of the left end nearest to displacements (c, b, 5) of the rings that are held, shape (c, 6)."""
+    held = np.any([seat.bearing.usual != 0.0 for seat in one.loaded.seats], axis=2)
+    held |= np.array([seat.bearing.rigid for seat in one.loaded.seats])
+    moved = np.swapaxes(carry(seats)[:, :5, :5], 1, 2)  # (b, 5 of the ring, 5 of the left end)
+    length = one.loaded.shaft.length
+    scale = np.array([1.0, 1.0, 1.0, length, length])
+    across = held & (np.arange(5) < 3)
+    for rows in (across, held):
+        matrix = (moved * scale[:, None] / scale)[rows]
+        if np.linalg.matrix_rank(matrix) == 5:
+            break
+    motion = np.linalg.lstsq(matrix, (left * scale)[:, rows].T, rcond=None)[0].T / scale
+    return np.pad(motion, ((0, 0), (0, 1)))

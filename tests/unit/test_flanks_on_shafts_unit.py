@@ -1,0 +1,148 @@
+"""Loaded flanks on shafts that they bend: one solution of two meshes, its limits, gaps of their own for each load."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.on_shafts import EvenForces, FlankForces, LoadedShafts, load_gearbox
+from fegear.contact.wide.shaft_gaps import ShaftGaps
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.bearing import LooseBearing, stiff
+from fegear.shafts.gearbox import Gearbox
+from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.solution import LoadedShaft, Seat
+
+MODULE, WIDTH, LOAD = 3e-3, 12e-3, 4000.0
+INF = math.inf
+
+
+def _gear(hand):
+    tooth = Tooth(20, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(15.0))
+    return Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, WIDTH, hand=hand)
+
+
+@pytest.fixture(scope="module")
+def flanks():
+    """Right on left and left on right, as the meshes of two stages."""
+    gears = {hand: _gear(hand) for hand in ("right", "left")}
+    settings = SolidSettings().scaled(1.7)
+    solved = {
+        hand: solve_solid(g.tooth, g.twist * MODULE, WIDTH / MODULE, 0.3, g.bore_radius / MODULE, settings, reach=2)
+        for hand, g in gears.items()
+    }
+    found = []
+    for one, other in (("right", "left"), ("left", "right")):
+        pair = GearPair(gears[one], gears[other])
+        found.append(FlankPair(pair, {"driver": solved[one], "driven": solved[other]}, positions=4))
+    return found
+
+
+SEATS = stiff(2e8, 2e8), stiff(1e8)
+
+
+def _gearbox(flanks, e=206e9, seats=SEATS):
+    pairs = [one.pair for one in flanks]
+    meshes = (
+        MeshPlace("I", ("in", "mid"), (0.03, 0.03), np.array([1.0, 0.0]), 1, pairs[0], LOAD),
+        MeshPlace("II", ("mid", "out"), (0.07, 0.07), np.array([0.6, 0.8]), -1, pairs[1], LOAD),
+    )
+    shafts = tuple(
+        LoadedShaft(Shaft((Section(0.1, d),), e, 0.3), (Seat(seats[0], 0.0), Seat(seats[1], 0.1)), np.empty(0),
+                    np.empty((0, 6)), name)
+        for name, d in (("in", 0.022), ("mid", 0.025), ("out", 0.028))
+    )  # fmt: skip
+    return Gearbox(shafts, (0.0, None, 0.1), meshes, np.zeros((30, 30)), ("in", "mid", "out"))
+
+
+def _meshes(flanks, box):
+    return [
+        FlankForces(one, FlankGaps(), one.compliance(LOAD), mesh.heights)
+        for one, mesh in zip(flanks, box.meshes, strict=True)
+    ]
+
+
+def test_two_meshes_together_are_the_converged_iteration_of_their_parts(flanks):
+    box = _gearbox(flanks)
+    meshes = _meshes(flanks, box)
+    (found,) = load_gearbox(box, meshes, [1.0])
+    assert found.left < 1e-9
+    gaps = [np.zeros_like(gap) for gap in found.gaps]
+    for _ in range(60):
+        forces = tuple(one.under(gap, LOAD)[0] for one, gap in zip(meshes, gaps, strict=True))
+        moved = tuple(one.at(z) for one, z in zip(box.under(forces), box.places, strict=True))
+        new = box.gaps(moved)
+        change = max(float(np.abs(one - other)[0].max()) for one, other in zip(gaps, new, strict=True))
+        gaps = [0.6 * one + 0.4 * other for one, other in zip(gaps, new, strict=True)]
+        if change < 1e-14:
+            break
+    for one, other, force, by_hand in zip(gaps, found.gaps, forces, found.forces, strict=True):
+        assert other == pytest.approx(one, rel=1e-6, abs=1e-13)
+        assert by_hand[0] == pytest.approx(force[0], rel=1e-6)
+        assert by_hand[0].sum() == pytest.approx(LOAD, rel=1e-9)
+    assert all(one.balance.max() < 1e-9 for one in found.bent)
+
+
+def test_rigid_shafts_on_rigid_bearings_change_no_bit(flanks):
+    box = _gearbox(flanks, INF, (stiff(INF, INF), stiff(INF)))
+    states = load_gearbox(box, _meshes(flanks, box), [0.5, 1.0])
+    for one, mesh in zip(flanks, box.meshes, strict=True):
+        gaps = FlankGaps(shafts=LoadedShafts(box, states, (True, True)).gaps_of(mesh.pair))
+        known = one.compliance(LOAD)
+        loads = [0.5 * LOAD, LOAD]
+        assert (one.solve(loads, gaps, known).contact.force == one.solve(loads, None, known).contact.force).all()
+
+
+def test_stiffness_to_infinity_converges_with_order_one(flanks):
+    one, off = flanks[0], []
+    known = one.compliance(LOAD)
+    perfect = one.solve([LOAD], None, known).line_load
+    for more in (1e2, 1e3, 1e4):
+        box = _gearbox(flanks, 206e9 * more, (stiff(2e8 * more, 2e8 * more), stiff(1e8 * more)))
+        states = load_gearbox(box, _meshes(flanks, box), [1.0])
+        gaps = FlankGaps(shafts=LoadedShafts(box, states, (True, True)).gaps_of("I"))
+        off.append(float(np.abs(one.solve([LOAD], gaps, known).line_load - perfect).max()))
+    assert off[0] > 0.0
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
+    assert off[1] / off[2] == pytest.approx(10.0, rel=0.005)
+
+
+def test_a_load_that_moves_gives_way_to_what_shafts_open(flanks):
+    """The load leaves the side that opens; fed back it misaligns its mesh less than an even load does."""
+    box = _gearbox(flanks)
+    even = [EvenForces(mesh.even / mesh.load) for mesh in box.meshes]
+    fed = _meshes(flanks, box)
+    (stays,), (moves,) = load_gearbox(box, even, [1.0]), load_gearbox(box, fed, [1.0])
+    for mesh, one, other in zip(box.meshes, stays.gaps, moves.gaps, strict=True):
+        slope = [float(np.polyfit(mesh.heights, gap[0], 1)[0]) for gap in (one, other)]
+        assert 0.0 < slope[1] / slope[0] < 1.0
+    opened = moves.gaps[0][0]
+    assert moves.forces[0][0][int(opened.argmin())] > moves.forces[0][0][int(opened.argmax())]
+
+
+def test_each_load_has_its_own_gap(flanks):
+    """With clearance in its bearings a lightly loaded shaft lies askew all the same."""
+    seats = (replace(LooseBearing(2e8, 2e8), radial_clearance=20e-6), stiff(1e8, 1e8))
+    box = _gearbox(flanks, seats=seats)
+    states = load_gearbox(box, _meshes(flanks, box), [0.3, 1.0])
+    shafts = LoadedShafts(box, states, (True, True)).gaps_of("I")
+    light, full = shafts.gap[:, 0, -1]
+    assert light != pytest.approx(0.3 * full, rel=0.1)
+    one, loads = flanks[0], [0.3 * LOAD, LOAD]
+    known = one.compliance(LOAD)
+    together = one.solve(loads, FlankGaps(shafts=shafts), known)
+    for i, load in enumerate(loads):
+        alone = one.solve([load], FlankGaps(shafts=shafts).under(load), known)
+        assert together.contact.force[:, :, i] == pytest.approx(alone.contact.force[:, :, 0], rel=1e-9, abs=1e-9)
+    between = shafts.under(0.65 * LOAD).gap[0]
+    assert between == pytest.approx(0.5 * (shafts.gap[0] + shafts.gap[1]), rel=1e-12)
+    assert not ShaftGaps().given
