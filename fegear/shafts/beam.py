@@ -171,7 +171,8 @@ class Shaft:
         for one, start in zip(self.sections, self.steps, strict=False):
             cuts.append(start + one.length * np.arange(1, one.pieces) / max(one.pieces, 1))
         ends = np.unique(np.clip(np.concatenate(cuts), 0.0, self.length))
-        which = np.searchsorted(self.steps, 0.5 * (ends[1:] + ends[:-1]), side="right") - 1
+        # The middle of two places a last digit apart is one of them: it may be the shaft's end.
+        which = np.searchsorted(self.steps[1:-1], 0.5 * (ends[1:] + ends[:-1]), side="right")
         conical = np.array([one.pieces > 0 for one in self.sections])[which]
         points, weights = [], []
         for count, chosen in ((_PRISM, ~conical), (_CONE, conical)):

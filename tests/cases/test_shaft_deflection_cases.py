@@ -11,6 +11,7 @@ from fegear.base.errors import InputError
 from fegear.case.built.loaded_flanks import check_flanks_to_load
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
+from fegear.formulas.iso6336.conditions import Replacement
 
 CASE = tomllib.loads(Path(__file__).parents[2].joinpath("cases", "two_stage_shafts.toml").read_text(encoding="utf-8"))
 
@@ -94,3 +95,24 @@ def test_gears_that_stand_askew_on_their_shafts_are_refused_where_flanks_are_loa
         check_flanks_to_load(build_scene(case, "box", Path()), "I")
     case["pair"]["I"]["axial_offset"] = "3 mm"
     check_flanks_to_load(build_scene(case, "box", Path()), "I")
+
+
+def test_method_c_takes_the_misalignment_of_computed_shafts():
+    """f_sh is the straight part of what the shafts open under an even load, in proportion to F_m/b."""
+    from fegear.case.built.rated_pair import pair_to_rate
+    from fegear.formulas.iso6336.safety import rate_pair
+
+    case = copy.deepcopy(CASE)
+    for gear in case["gear"].values():
+        gear["strength"] = {"material": "case-hardened-steel"}
+    case["pair"]["II"] |= {"speed": "600 rpm", "operation": {"application_factor": 1.25, "life": "1000 h"}}
+    scene = build_scene(case, "box", Path())
+    rating = rate_pair(pair_to_rate(scene, "II").conditions, Replacement())
+    box = gearbox_of(scene)
+    shares, _ = box.misalignment(box.under(box.even), box.even)[1]
+    more = 1.25 * rating["K_v"].value
+    assert rating["f_sh"].value == pytest.approx(more * abs(shares.over_face[0]), rel=1e-9)
+    case["pair"]["II"]["shafts"] = {"deformation": "5 um"}
+    assert rate_pair(pair_to_rate(build_scene(case, "box", Path()), "II").conditions, Replacement())[
+        "f_sh"
+    ].value == pytest.approx(5e-6)

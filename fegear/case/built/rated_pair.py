@@ -19,8 +19,10 @@ from fegear.base.errors import InputError
 from fegear.case.built.flank_errors import gear_deviations
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.rated_duty import assumed_of_pair, in_order, load_cycles, mates_of, refuse_fast, spectrum_levels
+from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.part import at
 from fegear.case.planetary import set_of_pair, set_pair, set_that_shares
+from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.conditions import Conditions
 from fegear.formulas.iso6336.pair_geometry import Body, of_pair
@@ -30,6 +32,7 @@ from fegear.formulas.iso6336.part3_root_stress import LEAST_RIM, SOLID_RIM
 from fegear.formulas.iso6336.part5_materials import BRINELL, MATERIALS, SOFT_IRON, TOUGH_IRON, allowable, usual_hardness
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
 from fegear.geometry.pair import MEMBERS
+from fegear.shafts.mesh import straight_slope
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -223,6 +226,8 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
     if given is not None:
         return Alignment(face_load_factor=given)
     modification = (shafts.modification if shafts else None) or _modification(scene, gears, said)
+    if shafts is None and on_shafts(scene, name):
+        return Alignment(modification=modification, computed=_of_computed_shafts(scene, name))
     if shafts is None:
         said.append(
             f"Pair {name}: no shafts were given; K_Hbeta of ISO 6336 knows the misalignment from manufacture alone "
@@ -246,6 +251,17 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
             key, remedy = f"pair.{name}.shafts.contact_pattern", "leave it out, or give face_load_factor (operation)"
             raise InputError(key, shafts.contact_pattern, rule, remedy) from None
     return Alignment(shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope)
+
+
+def _of_computed_shafts(scene: Scene, name: str) -> float:
+    """f_sh over F_m/b: straight part of the gap that the shafts open under loads spread evenly over the faces."""
+    pair = scene.pairs[name]
+    shafts = gaps_of_even_loads(gearbox_of(scene), name)
+    if not shafts.given:
+        return 0.0
+    tangential = float(shafts.load[-1]) * pair.driver.base_radius / pair.driver.pitch_radius
+    slope = float(straight_slope(shafts.height, shafts.gap[-1, 0, :, None])[0])
+    return abs(slope) * pair.face_width**2 / tangential
 
 
 def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixModification:

@@ -180,6 +180,8 @@ def method_c(
     remark = ""
     if alignment.deformation is not None:
         deformation = alignment.deformation
+    elif alignment.computed is not None:
+        deformation, remark = alignment.computed * line_load, "f_sh: of the computed shafts under an even load"
     elif alignment.shaft is not None:
         deformation, remark = shaft_deformation(alignment.shaft, line_load, pair.face_width, pair.diameters[0])
     else:
@@ -319,6 +321,8 @@ class Alignment:
         f_Hbeta5, tolerance of grade 5, which a favourable contact pattern takes off.
     face_load_factor : float, optional
         K_Hbeta itself, where it is given.
+    computed : float, optional
+        f_sh over F_m/b of shafts that were computed [m^2/N].
     """
 
     shaft: PinionShaft | None = None
@@ -328,3 +332,4 @@ class Alignment:
     contact_pattern: ContactPattern = "unknown"
     helix_slope_5: float | None = None
     face_load_factor: float | None = None
+    computed: float | None = None
