@@ -1,6 +1,7 @@
 # Shared set-up, sourced by run.sh, test.sh, docs.sh and .ci/run; it never touches the system's own Python.
 #   fegear_setup VENV EXTRA   makes the virtual environment VENV, installs fegear[EXTRA] into it (an empty EXTRA
 #                             means the program alone) and looks after the system libraries. Quick when all is there.
+#   fegear_extras VENV CASE   adds the libraries that only some results need, where this case asks for such
 # What only some tests need (CalculiX, Chromium) is installed where that is allowed; otherwise those tests are skipped.
 
 fegear_libraries() { # prints the Debian packages whose libraries are missing
@@ -23,14 +24,39 @@ fegear_apt_get() { # installs Debian packages, if this user may
     { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@"; } >&2
 }
 
-fegear_pip() { # runs pip; what it says goes to a file, of which only the reason of a failure is shown
-    if "$venv/bin/python" -m pip install --disable-pip-version-check --quiet "$@" >"$venv/pip.log" 2>&1; then
-        return 0
-    fi
+fegear_pip() { # runs pip: shows what is fetched and how much it has been; of what else pip says only the reason of a failure
+    {
+        PYTHONUNBUFFERED=1 "$venv/bin/python" -m pip install --disable-pip-version-check --progress-bar off --no-compile "$@" 2>&1
+        echo $? >"$venv/pip.code"
+    } | tee "$venv/pip.log" | awk '
+        $1 == "Downloading" && /[kM]B\)$/ && !/\.metadata / {
+            size = substr($(NF - 1), 2) / ($NF == "kB)" ? 1000 : 1)
+            total += size
+            if (size < 1) next
+            split($2, part, "-")
+            printf "  fetched %s %s, %.0f MB; %.0f MB in all\n", part[1], part[2], size, total
+            fflush()
+        }
+        /^Installing collected packages/ { printf "  unpacking %d packages\n", NF - 3; fflush() }' >&2
+    [ "$(cat "$venv/pip.code")" != 0 ] || return 0
     reason=$(grep '^ERROR' "$venv/pip.log" | tail -n 1)
     [ -n "$reason" ] || reason=$(grep -v '^ *$' "$venv/pip.log" | tail -n 1)
     echo "fegear: the libraries could not be installed (${reason#ERROR: }); pip's own words are in $venv/pip.log" >&2
     return 1
+}
+
+fegear_extras() { # VENV CASE...: installs the libraries that a case of `fegear run` needs beside the program, and no others
+    venv=$1
+    shift
+    # Where the case is refused, the run says why.
+    extras=$("$venv/bin/fegear" run --needs "$@" 2>/dev/null) && [ -n "$extras" ] || return 0
+    echo "Fetching what this case needs beside the program: $extras" >&2
+    fegear_pip --editable "$root[$extras]" || return 1
+    fegear_prepare
+}
+
+fegear_prepare() { # the equations of motion become machine code now, half a minute, not in the first run that needs them
+    "$venv/bin/python" -I -m fegear.dynamics.motion.prepare >/dev/null 2>&1 || :
 }
 
 fegear_setup() {
@@ -73,8 +99,7 @@ fegear_setup() {
         fi
     fi
     fegear_pip --editable "$root${extra:+[$extra]}" || return 1
-    # The equations of motion become machine code now, half a minute, not in the first run that needs them.
-    "$venv/bin/python" -I -m fegear.dynamics.motion.prepare >/dev/null 2>&1 || :
+    fegear_prepare
     # What `dev` installs holds what tests and site need: they are not set up once more.
     served="$extra"
     [ "$extra" != dev ] || served="dev test docs"

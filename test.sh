@@ -7,7 +7,7 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 fegear_setup "${FEGEAR_VENV:-$root/.venv}" test
 cd "$root"
 # Each worker is one process of one thread: the solves are too small for threads to help. Tests of one file stay together, so that
-# what they share is made once. Many tests start the program: bytecode is kept where Python keeps it, and that of the libraries,
-# nine tenths of all, is the one that pip made.
+# what they share is made once. Many tests start the program: bytecode is kept where Python keeps it, that of the
+# libraries too, which is made where it is used first.
 unset PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX
 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m pytest -n 2 --dist worksteal "$@"

@@ -42,11 +42,15 @@ def run(
     ] = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
+    only_needs: Annotated[
+        bool, typer.Option("--needs", hidden=True, help="Name missing extras, compute nothing.")
+    ] = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
     from fegear.base.solution_cache import SolutionCache, cache_on_disk
     from fegear.case.reading import read_scene
     from fegear.engine.executor import Executor
+    from fegear.engine.extras import missing
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
     from fegear.output.figures import Drawing, PictureProcess
@@ -60,6 +64,9 @@ def run(
     try:
         scene = read_scene(case, changes(overrides, wanted))
         planned = make_plan(scene, STAGES)
+        if only_needs:  # for the set-up, which installs what a case needs and no more
+            typer.echo(",".join(missing(planned, plots=not no_plots)))
+            return
         begin_page()
         target = out or default_folder(scene.name)
         with contextlib.ExitStack() as stack:

@@ -28,6 +28,8 @@ class Entry(NamedTuple):
         Names by which ``results = [...]`` asks for it; empty for stages that only serve others.
     about : str
         What its results say, in a line; empty for stages that only serve others.
+    extra : str
+        What of `fegear.engine.extras` it needs beside fegear itself; empty for most.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Entry(NamedTuple):
     title: str
     results: tuple[str, ...] = ()
     about: str = ""
+    extra: str = ""
 
 
 class Catalogue(Sequence[Stage]):
@@ -58,7 +61,9 @@ class Catalogue(Sequence[Stage]):
         """A catalogue, or one of stages that are at hand."""
         if isinstance(stages, cls):
             return stages
-        made = cls((Entry(stage.name, "", stage.title, stage.results, stage.about) for stage in stages), "")
+        made = cls(
+            (Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra) for stage in stages), ""
+        )
         made._loaded.update({stage.name: stage for stage in stages})
         return made
 
@@ -74,7 +79,9 @@ class Catalogue(Sequence[Stage]):
             entry = self._by_name[name]
             module, _, attribute = entry.home.rpartition(".")
             found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
-            named = replace(found, name=name, title=entry.title, results=entry.results, about=entry.about)
+            named = replace(
+                found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra
+            )
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)
         return self._loaded[name]

@@ -12,6 +12,7 @@ from fegear.base.errors import InputError
 from fegear.base.plain import content_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.engine.executor import Executor
+from fegear.engine.extras import require
 from fegear.engine.outcome import Named
 from fegear.engine.plan import ON_REQUEST
 from fegear.engine.stage import Work
@@ -176,7 +177,13 @@ def run_plan(
     Returns
     -------
     Results
+
+    Raises
+    ------
+    MissingLibraryError
+        If a library is missing that a step computes with.
     """
+    require(plan)
     watcher = watcher or Silence()
     work = Work(watcher.advance, SolutionCache() if cache is None else cache, executor or Executor())
     done: dict[Task, _Finished] = {}

@@ -158,7 +158,7 @@ class Stage:
         ``cites(scene, subject)`` -> what the result rests on.
     internal : bool
         Whether it takes internal gears and pairs; a plan refuses those of other stages.
-    name, title, results, about : str, str, tuple of str, str
+    name, title, results, about, extra : str, str, tuple of str, str, str
         What it is called: given by the catalogue, see `Entry`.
     """
 
@@ -178,6 +178,7 @@ class Stage:
     title: str = ""
     results: tuple[str, ...] = ()
     about: str = ""
+    extra: str = ""
 
     def effects_on(self, scene: Scene, subject: str) -> tuple[str, ...]:
         """Effects that change what it computes for a subject."""

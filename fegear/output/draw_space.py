@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import MissingLibraryError
+from fegear.base.extras import install
 from fegear.engine.figure.items import Skin, Spot, Surface
 from fegear.output.numbers import SEQUENTIAL, shade
 
@@ -33,7 +34,7 @@ def offscreen_pyvista() -> Any:
     Raises
     ------
     MissingLibraryError
-        If the system has nothing to draw with: VTK itself would end the process.
+        If pyvista is not installed, or the system has nothing to draw with: VTK itself would end the process.
     """
     if sys.platform.startswith("linux"):
         if ctypes.util.find_library("EGL") is None:
@@ -42,8 +43,10 @@ def offscreen_pyvista() -> Any:
             )
         # Else VTK first asks for an X server and warns that there is none.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    import pyvista as pv
-
+    try:
+        import pyvista as pv
+    except ImportError:
+        raise MissingLibraryError(f"{install('space')}.") from None
     return pv
 
 

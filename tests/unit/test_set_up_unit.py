@@ -40,7 +40,7 @@ def machine(tmp_path):
     programs = tmp_path / "bin"
     programs.mkdir()
     stand_ins = {"ldconfig": f"echo {LIBRARIES}", "id": "echo 1000"}
-    for name in ("dirname", "cksum", "cat", "grep", "tail", "rm", "ls"):
+    for name in ("dirname", "cksum", "cat", "grep", "tail", "rm", "ls", "tee", "awk"):
         stand_ins[name] = f'exec /usr/bin/{name} "$@"'
     for name, line in stand_ins.items():
         (programs / name).write_text(f"#!/bin/sh\n{line}\n")
@@ -173,3 +173,18 @@ def test_a_part_that_fails_anywhere_on_its_way_fails_what_must_pass(checked, par
     assert done.returncode != 0
     assert f"== {part}: FAILED" in done.stdout
     assert "== types: passed" in done.stdout
+
+
+def test_the_set_up_says_what_is_fetched_and_how_much_it_has_been(machine, tmp_path):
+    lines = (
+        "Collecting numpy<2.5", "  Downloading numpy-2.4.1-cp311.whl.metadata (62 kB)",
+        "Downloading numpy-2.4.1-cp311.whl (16.6 MB)", "Downloading idna-3.1-py3.whl (71 kB)",
+        "Downloading gmsh-4.15.0-py2.py3.whl (38.4 MB)", "Installing collected packages: gmsh, numpy, idna",
+    )  # fmt: skip
+    said = "; ".join(f"echo '{line}'" for line in lines)
+    done = machine("test.sh", tmp_path / "venv", said)
+    assert done.returncode == 0, done.stderr
+    assert "fetched numpy 2.4.1, 17 MB; 17 MB in all" in done.stderr
+    assert "fetched gmsh 4.15.0, 38 MB; 55 MB in all" in done.stderr
+    assert "unpacking 3 packages" in done.stderr
+    assert "idna" not in done.stderr

@@ -21,6 +21,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fegear.base.errors import MissingLibraryError
+from fegear.base.extras import install
 from fegear.dynamics.motion.kernel import collocation, polynomials, series, steps
 from fegear.dynamics.motion.kernel.arrays import (
     DONE,
@@ -53,9 +55,17 @@ def source_digest(folder: Path = Path(__file__).parent) -> str:
 
 @cache
 def compiled() -> Callable[..., Any]:
-    """`steps.travel` as machine code, compiled at first use and kept on disk for the next process."""
-    from fegear.dynamics.motion.machine_code import machine_code
+    """`steps.travel` as machine code, compiled at first use and kept on disk for the next process.
 
+    Raises
+    ------
+    MissingLibraryError
+        If numba is not installed.
+    """
+    try:
+        from fegear.dynamics.motion.machine_code import machine_code
+    except ImportError:
+        raise MissingLibraryError(f"{install('motion')}.") from None
     digest = source_digest()
     made: dict[object, Callable[..., Any]] = {
         function: machine_code(function, digest, _LONG if function is steps.travel else "")

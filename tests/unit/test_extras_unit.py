@@ -1,0 +1,81 @@
+"""Libraries that only some results need: named, refused before anything is computed, and not missed by the others."""
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import fegear
+from fegear.base.errors import MissingLibraryError
+from fegear.base.extras import EXTRAS
+from fegear.case.reading import read_scene
+from fegear.engine.extras import missing
+from fegear.engine.plan import make_plan
+from fegear.output.draw_space import offscreen_pyvista
+from fegear.results.catalogue import STAGES
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT / "cases"
+#: A case, the extras that it needs, of them those without which it is refused.
+NEEDS = (
+    ("pinion_and_wheel", (), ()),
+    ("planet_and_ring", (), ()),
+    ("lin_design_chart", ("motion",), ("motion",)),
+    ("litvin_localised", ("space",), ()),
+)
+
+
+@pytest.fixture
+def bare(monkeypatch):
+    """Without the libraries of all extras."""
+    for library, _ in EXTRAS.values():
+        monkeypatch.setitem(sys.modules, library, None)
+    monkeypatch.setattr("fegear.engine.extras.absent", lambda _extra: True)
+
+
+def test_extras_are_those_of_the_package():
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    offered, always = packages["optional-dependencies"], " ".join(packages["dependencies"])
+    for extra, (library, _) in EXTRAS.items():
+        assert any(line.startswith(library) for line in offered[extra])
+        assert library not in always
+    assert {entry.extra for entry in STAGES.entries} == {"", *EXTRAS}
+
+
+@pytest.mark.parametrize(("name", "needed", "refused"), NEEDS)
+def test_a_case_names_what_it_needs(bare, name, needed, refused):
+    plan = make_plan(read_scene(CASES / f"{name}.toml"), STAGES)
+    assert missing(plan) == needed
+    assert missing(plan, plots=False) == refused
+
+
+@pytest.mark.usefixtures("bare")
+def test_what_cannot_be_computed_is_refused_before_anything_is():
+    with pytest.raises(MissingLibraryError, match=r"numba is not installed; install it with: pip install 'fegear\[mot"):
+        fegear.run(CASES / "lin_design_chart.toml", progress=False)
+
+
+@pytest.mark.usefixtures("bare")
+def test_pictures_that_cannot_be_drawn_say_what_to_install():
+    with pytest.raises(MissingLibraryError, match=r"pip install 'fegear\[space\]'"):
+        offscreen_pyvista()
+
+
+def test_every_command_starts_without_them(tmp_path):
+    """In a new process where importing any of them fails: help of all commands, a new case, its run with its report."""
+    program = f"""
+import sys
+for name in {[library for library, _ in EXTRAS.values()] + ["vtk", "llvmlite", "nicegui", "dask", "pandas", "xarray"]}:
+    sys.modules[name] = None
+from fegear.cli import COMMANDS, app
+for command, _ in COMMANDS:
+    app([command.__name__, "-h"], standalone_mode=False)
+app(["new", "drive", "--teeth", "21", "53", "--module", "3mm", "--torque", "260 N m"], standalone_mode=False)
+app(["run", "drive.toml"], standalone_mode=False)
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert (tmp_path / "results" / "drive" / "report.html").stat().st_size > 10_000
+    assert list((tmp_path / "results" / "drive" / "plots").glob("*.png"))
