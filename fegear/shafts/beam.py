@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 _PRISM = 2
 #: Gauss points in a cone, and the largest ratio of diameters over one piece: they leave 1e-13 (1e-9 is asked for).
 _CONE, _RATIO = 12, 1.5
+#: Gauss's points and weights by their number.
+_GAUSS = {count: np.polynomial.legendre.leggauss(count) for count in (_PRISM, _CONE)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +178,7 @@ class Shaft:
         conical = np.array([one.pieces > 0 for one in self.sections])[which]
         points, weights = [], []
         for count, chosen in ((_PRISM, ~conical), (_CONE, conical)):
-            x, w = np.polynomial.legendre.leggauss(count)
+            x, w = _GAUSS[count]
             start, half = ends[:-1][chosen], 0.5 * np.diff(ends)[chosen]
             points.append((start[:, None] + half[:, None] * (1.0 + x)).ravel())
             weights.append((half[:, None] * w).ravel())
@@ -184,8 +186,11 @@ class Shaft:
 
     def strains(self, loads_at: Array, loads: Array, s: Array) -> Array:
         """Strains and curvatures at sections from forces and moments to the right of them, shape (G, 6)."""
-        carried = carry(loads_at[None, :] - s[:, None])
-        resultant = np.einsum("gjab,jb,gj->ga", carried, loads, (loads_at[None, :] > s[:, None]).astype(float))
+        arm = np.maximum(loads_at[None, :] - s[:, None], 0.0)
+        beyond = (arm > 0.0).astype(float)
+        resultant = beyond @ loads
+        resultant[:, 3] -= arm @ loads[:, 1]
+        resultant[:, 4] += arm @ loads[:, 0]
         return np.asarray(self.section_compliance(s) * resultant)
 
     def bent(self, places: ArrayLike, loads_at: Array, loads: Array) -> Array:
@@ -203,8 +208,11 @@ class Shaft:
         z = np.atleast_1d(np.asarray(places, dtype=float))
         s, weight = self.quadrature(np.concatenate([z, loads_at]))
         strain = self.strains(loads_at, loads, s) * weight[:, None]
-        passed = (z[:, None] > s[None, :]).astype(float)
-        return np.einsum("igba,gb,ig->ia", carry(z[:, None] - s[None, :]), strain, passed)
+        arm = np.maximum(z[:, None] - s[None, :], 0.0)
+        found = (arm > 0.0).astype(float) @ strain
+        found[:, 0] += arm @ strain[:, 4]
+        found[:, 1] -= arm @ strain[:, 3]
+        return found
 
     def compliance(self, places: ArrayLike) -> Array:
         """Compliance between places with the left end clamped, shape (n, 6, n, 6) [m/N, 1/N, 1/(N m)]."""

@@ -1,7 +1,7 @@
 """Where two gears mesh between their shafts: how flanks push the shafts, and how far these move the flanks apart.
 
 In the frame of a pair X points to where the driver pushes the driven gear at the pitch point, Y from the driver's axis
-to the driven one's, Z to the end from which the driver turns clockwise (`GearPair`). A force W along the transverse
+to the pitch point, Z to the end from which the driver turns clockwise (`GearPair`). A force W along the transverse
 line of action u is W N, N = u + tan(beta_b) e_Z, and acts at the pitch point + x u + z e_Z. By the principle of virtual
 work the gap that moved shafts open there is N . (motion of the driven gear - motion of the driver), taken at that point
 of either gear. It is linear in x: with W and W x at a height as forces, the gap at x = 0 and its slope over x are the
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.geometry.pair import MEMBERS
 from fegear.shafts.beam import carry
 
 if TYPE_CHECKING:
@@ -57,20 +58,16 @@ class MeshPlace:
     load: float
 
     @property
-    def ahead(self) -> Array:
-        """Direction in which the driver pushes the driven gear at the pitch point, shape (2,)."""
-        return self.sense * np.array([-self.towards[1], self.towards[0]])
-
-    @property
     def axes(self) -> Array:
         """X, Y and Z of the pair as rows in the coordinates of the shafts, shape (3, 3)."""
-        return np.array([[*self.ahead, 0.0], [*self.towards, 0.0], [0.0, 0.0, -self.sense]])
+        x, y = self.found.driven.tooth.side * self.towards  # a ring's axis and the pitch point lie on opposite sides
+        return np.array([[-self.sense * y, self.sense * x, 0.0], [x, y, 0.0], [0.0, 0.0, -self.sense]])
 
     @property
     def line_of_action(self) -> Array:
-        """u, shape (3,)."""
-        angle = self.found.working_pressure_angle
-        return np.asarray(np.array([math.cos(angle), math.sin(angle), 0.0]) @ self.axes)
+        """u, shape (3,): away from an external driver, toward the axis of a hollow one."""
+        angle, side = self.found.working_pressure_angle, self.found.driver.tooth.side
+        return np.asarray(np.array([math.cos(angle), side * math.sin(angle), 0.0]) @ self.axes)
 
     @property
     def normal(self) -> Array:
@@ -113,12 +110,12 @@ class MeshPlace:
         """
         u, normal, pair = self.line_of_action, self.normal, self.found
         found = []
-        for side, gear, up, at, length in zip(
-            (-1.0, 1.0), (pair.driver, pair.driven), (pair.face_height("driver"), pair.face_height("driven")),
-            self.at, lengths, strict=True,
-        ):  # fmt: skip
-            arm = -side * gear.base_radius / math.cos(pair.working_pressure_angle) * self.axes[1]
-            own = at - self.sense * (self.heights + up)
+        for member, side, to_pitch, at, length in zip(
+            MEMBERS, (-1.0, 1.0), (1.0, -pair.side), self.at, lengths, strict=True
+        ):
+            radius = pair.gear(member).base_radius / math.cos(pair.working_pressure_angle)
+            arm = to_pitch * radius * self.axes[1]
+            own = at - self.sense * (self.heights + pair.face_height(member))
             place = np.clip(own, 0.0, length)
             unit = side * np.stack(
                 [np.concatenate([normal, np.cross(arm, normal)]), np.concatenate([np.zeros(3), np.cross(u, normal)])],
@@ -140,7 +137,7 @@ class MeshPlace:
         ndarray, shape (..., 2)
             [rad].
         """
-        apart = (moved - driver)[..., :3] @ self.axes[[1, 0]].T
+        apart = (moved - driver)[..., :3] @ np.array([[*self.towards, 0.0], self.axes[0]]).T
         return straight_slope(self.heights, apart)
 
 

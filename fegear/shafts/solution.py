@@ -6,8 +6,8 @@ of the clamped shafts and H of the housing's seats, a ring moves in its seat by 
     p + f(u) = 0   (u = 0 where a bearing is rigid),        R^T p + equilibrium of the outer forces = 0.
 
 Nothing is divided by a compliance: rigid shafts (A = 0), rigid seats (H = 0) and rigid bearings need no large numbers.
-Newton's method; a stiffness added to every bearing at first, and taken away step by step, brings loose shafts into
-contact. Turning about the axis is free: torques must balance, and twist is measured from the left end.
+Newton's method; where it fails, a stiffness added to every bearing at first, and taken away step by step, brings loose
+shafts into contact. Turning about the axis is free: torques must balance, and twist is measured from the left end.
 """
 
 from __future__ import annotations
@@ -356,8 +356,11 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
     refuse_torque(shafts)
     system = _system(shafts, housing)
     p, q = np.zeros(system.free.size), np.zeros(5 * len(shafts))
-    for helped in _HELP:
-        p, q, reached = _newton(system, p, q, helped)
+    p, q, reached = _newton(system, p, q, 0.0)
+    if not reached:
+        p, q = np.zeros(system.free.size), np.zeros(5 * len(shafts))
+        for helped in _HELP:
+            p, q, reached = _newton(system, p, q, helped)
     if not reached:
         names = ", ".join(one.name for one in shafts)
         raise ConvergenceError(
@@ -406,12 +409,12 @@ def response(found: tuple[Deflection, ...], at: tuple[Array, ...], housing: Arra
         seats = np.array([seat.at for seat in one.loaded.seats])
         b, these, held = seats.size, slice(places, places + 6 * z.size), slice(rings, rings + 5 * seats.size)
         bent = one.loaded.shaft.compliance(np.concatenate([seats, z]))
-        own[these, these] = bent[b:, :, b:].reshape(6 * z.size, -1)
-        across[these, held] = bent[b:, :, :b, :5].reshape(6 * z.size, -1)
+        own[these, these] = bent[b:, :, b:].reshape(6 * z.size, 6 * z.size)
+        across[these, held] = bent[b:, :, :b, :5].reshape(6 * z.size, 5 * b)
         moved = carry(z)[:, :5]
-        across[these, size + 5 * n : size + 5 * n + 5] = np.swapaxes(moved, 1, 2).reshape(-1, 5)
-        right[held, these] = bent[:b, :5, b:].reshape(5 * b, -1)
-        right[size + 5 * n : size + 5 * n + 5, these] = np.swapaxes(moved, 0, 1).reshape(5, -1)
+        across[these, size + 5 * n : size + 5 * n + 5] = np.swapaxes(moved, 1, 2).reshape(6 * z.size, 5)
+        right[held, these] = bent[:b, :5, b:].reshape(5 * b, 6 * z.size)
+        right[size + 5 * n : size + 5 * n + 5, these] = np.swapaxes(moved, 0, 1).reshape(5, 6 * z.size)
         rings, places = held.stop, these.stop
     right[:size] = by_rings @ right[:size]
     try:

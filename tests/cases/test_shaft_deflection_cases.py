@@ -5,12 +5,14 @@ import math
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_flanks import check_flanks_to_load
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
+from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.formulas.iso6336.conditions import Replacement
 
 CASE = tomllib.loads(Path(__file__).parents[2].joinpath("cases", "two_stage_shafts.toml").read_text(encoding="utf-8"))
@@ -116,3 +118,86 @@ def test_method_c_takes_the_misalignment_of_computed_shafts():
     assert rate_pair(pair_to_rate(build_scene(case, "box", Path()), "II").conditions, Replacement())[
         "f_sh"
     ].value == pytest.approx(5e-6)
+
+
+def _many_shafts(case):
+    for n in range(10_000):
+        case["shaft"][f"s{n}"] = {"sections": [{"length": "1 m", "outer": "20 mm"}], "bearings": []}
+
+
+def _loop(case):
+    case["shaft"]["in"]["gears"].append({"gear": "d", "at": "80 mm"})
+    case["shaft"]["out"]["gears"] = []
+
+
+def _wide_clearance(case):
+    case["bearing"]["loose"] = {"radial": "100 N/um", "radial_clearance": "5 mm"}
+    case["shaft"]["in"]["bearings"] = [{"bearing": "fixed", "at": "10 mm"}, {"bearing": "loose", "at": "110 mm"}]
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (_many_shafts, r"shaft = 10,003 in all: are more than are solved together; give 100 at most"),
+        (_loop, "shaft = in, mid: drive each other in a loop; let one drive the others"),
+        (lambda case: case["shaft"]["in"].pop("sections"), r"shaft.in.sections = \(not given\): is required"),
+        (
+            lambda case: case["shaft"]["in"].update(sections=[{"length": "1 um", "outer": "30 mm"}] * 10_000),
+            "asks for 10,000 sections; ask for 1,000 at most",
+        ),
+        (
+            lambda case: [place.update(bearing="plain") for place in case["shaft"]["in"]["bearings"]],
+            "leave the shaft loose along its axis",
+        ),
+        (_wide_clearance, r"shaft.in = tilted by 2.4.* deg under its gears: is no small error; keep it within 0.5 deg"),
+    ],
+)
+def test_bad_models_are_refused_in_one_sentence(change, word):
+    case = copy.deepcopy(CASE)
+    change(case)
+    with pytest.raises(InputError, match=word) as error:
+        gaps_of_even_loads(gearbox_of(build_scene(case, "box", Path())), "I")
+    assert "\n" not in str(error.value)
+
+
+def test_a_shaft_without_a_mesh_and_one_of_a_thousand_loads_are_solved():
+    case = copy.deepcopy(CASE)
+    case["shaft"]["idle"] = {
+        "sections": [{"length": "100 mm", "outer": "20 mm"}],
+        "bearings": [{"bearing": "fixed", "at": "0 mm"}, {"bearing": "plain", "at": "100 mm"}],
+    }
+    whole = gaps_of_even_loads(gearbox_of(build_scene(case, "box", Path())), "I")
+    assert whole.gap == pytest.approx(gaps_of_even_loads(gearbox_of(_scene()), "I").gap, rel=1e-9, abs=1e-18)
+    one, many = copy.deepcopy(CASE), copy.deepcopy(CASE)
+    one["shaft"]["in"]["loads"] = [{"at": "60 mm", "force": ["0 N", "1000 N", "0 N"]}]
+    many["shaft"]["in"]["loads"] = [{"at": "60 mm", "force": ["0 N", "1 N", "0 N"]}] * 1000
+    gaps = [gaps_of_even_loads(gearbox_of(build_scene(case, "box", Path())), "I").gap for case in (one, many)]
+    assert gaps[1] == pytest.approx(gaps[0], rel=1e-9, abs=1e-18)
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_a_planet_and_its_ring_stand_on_shafts(clockwise):
+    """Both turn the same way, the ring's shaft carries what the planet's does, and couplings take both torques."""
+    case = tomllib.loads(Path(__file__).parents[2].joinpath("cases", "planet_and_ring.toml").read_text("utf-8"))
+    case["results"] = ["misalignment"]
+    held = [{"bearing": "fixed", "at": "0 mm"}, {"bearing": "plain", "at": "100 mm"}]
+    distance = build_scene(case, "ring", Path()).pairs["I"].centre_distance
+    case["bearing"] = {"plain": {"radial": "200 N/um"}, "fixed": {"radial": "200 N/um", "fixed": True}}
+    case["shaft"] = {
+        name: {
+            "axis": ["0 mm", f"{y * 1e3!r} mm"], "sections": [{"length": "100 mm", "outer": "40 mm"}],
+            "gears": [{"gear": name, "at": "60 mm"}], "bearings": held, "coupling": "0 mm",
+        }
+        for name, y in (("planet", distance), ("ring", 0.0))
+    }  # fmt: skip
+    case["shaft"]["planet"]["clockwise"] = clockwise
+    box = gearbox_of(build_scene(case, "ring", Path()))
+    planet, ring = box.under(box.even)
+    force = planet.bearing_forces[:, :3].sum(axis=0)
+    assert force == pytest.approx(-ring.bearing_forces[:, :3].sum(axis=0), rel=1e-9, abs=1e-9)
+    assert all(one.balance.max() < 1e-9 for one in (planet, ring))
+    pair = box.meshes[0].found
+    torques = [one.loaded.loads[-1, 5] for one in (planet, ring)]
+    assert torques[1] / torques[0] == pytest.approx(-pair.driven.teeth / pair.driver.teeth, rel=1e-9)
+    assert torques[0] * (-1.0 if clockwise else 1.0) == pytest.approx(500.0)  # the coupling drives the planet
+    assert np.isfinite(box.misalignment((planet, ring), box.even)[0][0].over_face).all()

@@ -215,3 +215,23 @@ def test_wind_up_of_a_wide_pinion_is_that_of_a_bar_with_an_even_torque():
     torsion = gap.by_cause[3]
     left, right = (torsion[-1], torsion[0]) if mesh.sense > 0 else (torsion[0], torsion[-1])
     assert right - left == pytest.approx(wanted * mesh.found.driver.base_radius, rel=1e-6)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("ring", ["", "driver", "driven"])
+def test_forces_turn_both_gears_at_their_base_circles(ring, sense):
+    """Torques are load times base radius; a ring is turned the way of its mate, which it pulls toward its own axis."""
+    from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+
+    small = Gear(Tooth(20, BasicRack(1.0, 1.25, 0.25)), 3e-3, 12e-3, 0.02)
+    hollow = Gear(InternalTooth(60, PinionCutter(25), tip_radius=29.3), 3e-3, 105e-3, 0.02)
+    pair = {"": GearPair(small, small), "driven": GearPair(small, hollow), "driver": GearPair(hollow, small)}[ring]
+    towards = np.array([0.6, -0.8])
+    mesh = MeshPlace("I", ("a", "b"), (0.05, 0.05), towards, sense, pair, 1000.0)
+    (_, on_driver), (_, on_driven) = mesh.ways((0.1, 0.1))
+    driver, driven = (1000.0 * ways[8, :, 0] for ways in (on_driver, on_driven))
+    assert driver[:3] == pytest.approx(-driven[:3])
+    assert driver[5] == pytest.approx(-sense * 1000.0 * pair.driver.base_radius)
+    assert driven[5] == pytest.approx((sense if ring else -sense) * 1000.0 * pair.driven.base_radius)
+    apart = driven[:2] @ towards  # flanks press external gears apart, and a gear and its ring together
+    assert apart == pytest.approx((-1.0 if ring else 1.0) * 1000.0 * math.sin(pair.working_pressure_angle))

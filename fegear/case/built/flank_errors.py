@@ -54,7 +54,8 @@ class FlankErrors:
     apart : float
         Error of the centre distance [m].
     shafts : ShaftGaps
-        What the shafts of the case open under loads that are spread evenly over the faces.
+        What the shafts of the case open under loads that are spread evenly over the faces, where the effect
+        `misalignment` is off.
     """
 
     face_position: Array = field(default_factory=lambda: np.empty(0))
@@ -81,7 +82,9 @@ def flank_errors(scene: Scene, name: str) -> FlankErrors:
     """
     z, gap = _line_gap(scene, name)
     part, pair = scene.case.pair[name].misalignment, scene.pairs[name]
-    shafts = gaps_of_even_loads(gearbox_of(scene), name) if on_shafts(scene, name) else RIGID
+    # With the effect on, the shafts' gaps are solved together with the flanks; without it these say what it would do.
+    apart = on_shafts(scene, name) and not scene.case.effects.misalignment
+    shafts = gaps_of_even_loads(gearbox_of(scene), name) if apart else RIGID
     if part is None:
         return FlankErrors(z, gap, shafts=shafts)
     prefix = f"pair.{name}.misalignment"

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6
+#: Shafts and bearings that are solved together at most.
+_SHAFTS, _BEARINGS = 100, 300
 
 
 def on_shafts(scene: Scene, pair: str) -> bool:
@@ -79,16 +81,12 @@ def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
             one = left.pop(name)
             ends = where[one.driver], where[one.driven]
             found.append(_mesh(scene, name, ends, senses[ends[0][0]]))
-            senses[ends[1][0]] = -senses[ends[0][0]]
+            senses[ends[1][0]] = -scene.pairs[name].side * senses[ends[0][0]]
     return tuple(found)
 
 
 def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, float]], sense: int) -> MeshPlace:
     pair, part = scene.pairs[name], scene.case.pair[name]
-    if pair.internal:
-        raise InputError(
-            f"pair.{name}", "an internal pair", "is not yet known to shafts", "take its gears off the shafts"
-        )
     first, second = (scene.case.shaft[shaft] for shaft, _ in ends)
     across = np.subtract(second.axis, first.axis)
     apart = float(np.hypot(*across))
@@ -111,6 +109,17 @@ def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, flo
     return MeshPlace(name, (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1]), across / apart, sense, pair, load)
 
 
+def _refuse_many(scene: Scene) -> None:
+    """Refuse more shafts and bearings than one dense system of equations should hold."""
+    shafts = scene.case.shaft.values()
+    bearings = sum(len(part.bearings) for part in shafts)
+    for key, count, most in (("shaft", len(shafts), _SHAFTS), ("shaft.bearings", bearings, _BEARINGS)):
+        if count > most:
+            raise InputError(
+                key, f"{count:,} in all", "are more than are solved together", f"give {most} at most; split the case"
+            )
+
+
 def gearbox_of(scene: Scene) -> Gearbox:
     """Collect the shafts of a case with all that acts on them from outside, and its meshes.
 
@@ -119,6 +128,7 @@ def gearbox_of(scene: Scene) -> Gearbox:
     InputError
         If a name is unknown, a shaft is not held, or something is off it.
     """
+    _refuse_many(scene)
     meshes = mesh_places(scene)
     shafts, seat_compliance = [], []
     for name, part in scene.case.shaft.items():

@@ -9,15 +9,17 @@ Newton's method with I - S' F' finds it whether or not an iteration by hand, v <
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fegear.base.errors import ConvergenceError
+from fegear.base.errors import ConvergenceError, InputError
 from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages
 from fegear.contact.wide.shaft_gaps import ShaftGaps
+from fegear.geometry.shaft_tilt import LARGEST_TILT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -156,6 +158,17 @@ def load_gearbox(gearbox: Gearbox, meshes: Sequence[MeshForces], scales: Sequenc
     return tuple(found)
 
 
+def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
+    """Refuse shafts that lie so askew that gaps are no longer linear in their tilt."""
+    for name, one, places in zip(gearbox.names, state.bent, gearbox.places, strict=True):
+        tilt = float(np.abs(one.at(places)[:, 3:5]).max(initial=0.0))
+        if tilt > LARGEST_TILT:
+            raise InputError(
+                f"shaft.{name}", f"tilted by {math.degrees(tilt):.4g} deg under its gears", "is no small error",
+                f"keep it within {math.degrees(LARGEST_TILT):g} deg: less clearance, stiffer bearings or sections",
+            )  # fmt: skip
+
+
 def _state(gearbox: Gearbox, meshes: Sequence[MeshForces], scale: float, start: tuple[Array, ...]) -> GearboxState:
     sizes = np.cumsum([gap.size for gap in start])[:-1]
     shapes = [gap.shape for gap in start]
@@ -184,6 +197,7 @@ def _state(gearbox: Gearbox, meshes: Sequence[MeshForces], scale: float, start: 
         largest = max(float(np.abs((v + left) * unit).max(initial=0.0)), 1e-15)
         size = float(np.abs(left * unit).max(initial=0.0))
         if size <= TOLERANCE * largest:
+            _refuse_askew(gearbox, state)
             return replace(state, steps=step, left=size / largest)
         compliance = gearbox.compliance(state.bent)
         move = np.linalg.solve(np.eye(v.size) - compliance @ growth, left)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of
-from fegear.contact.wide.on_shafts import EvenForces, FlankForces, LoadedShafts, load_gearbox
+from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
@@ -101,7 +101,7 @@ def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> Load
 def _present(data: LoadedShafts, inputs: LoadedShaftsInputs) -> Outcome:
     settings: dict[str, object] = {
         "scales": list(inputs.scales), "newton_steps": [state.steps for state in data.states],
-        "left": max(state.left for state in data.states), "flanks_loaded": list(data.feeding),
+        "tolerance": TOLERANCE, "flanks_loaded": list(data.feeding),
     }  # fmt: skip
     return Outcome(data, settings=settings, remarks=tuple(_remarks(data)))
 
