@@ -142,6 +142,11 @@ class MeshPlace:
 
 
 def straight_slope(at: Array, values: Array) -> Array:
-    """Slope of the straight line of least squares through values (..., n, k), shape (..., k)."""
-    off = at - at.mean()
-    return np.asarray(np.einsum("n,...nk->...k", off, values) / (off @ off))
+    """Slope of the straight line of least squares through values (..., n, k), shape (..., k).
+
+    Of what the values stand for all over the face: ends count half.
+    """
+    weight = np.ones(at.size)
+    weight[[0, -1]] = 0.5
+    off = at - weight @ at / weight.sum()
+    return np.asarray(np.einsum("n,...nk->...k", weight * off, values) / (weight * off @ off))

@@ -125,7 +125,7 @@ def _gearbox(seats=(HELD, HELD), names=("a", "b"), housing=None, e=206e9):
     mesh = _mesh(17.0, "right", 1, 0.4)
     shafts = []
     for name in names:
-        shaft = Shaft((Section(0.05, 0.03), Section(0.08, 0.04, 0.01)), e, 0.3)
+        shaft = Shaft((Section(0.02, 0.03), Section(0.11, 0.04, 0.01)), e, 0.3)  # faces hold no step
         held = Seat(seats[0], 0.005), Seat(seats[1], 0.12)
         shafts.append(LoadedShaft(shaft, held, np.array([0.09]), np.array([[300.0, -200.0, 50.0, 0, 0, 0]]), name))
     return Gearbox(
@@ -235,3 +235,15 @@ def test_forces_turn_both_gears_at_their_base_circles(ring, sense):
     assert driven[5] == pytest.approx((sense if ring else -sense) * 1000.0 * pair.driven.base_radius)
     apart = driven[:2] @ towards  # flanks press external gears apart, and a gear and its ring together
     assert apart == pytest.approx((-1.0 if ring else 1.0) * 1000.0 * math.sin(pair.working_pressure_angle))
+
+
+def test_what_heights_leave_out_falls_with_their_square(monkeypatch):
+    found = []
+    for count in (5, 9, 17, 33):
+        monkeypatch.setattr("fegear.shafts.mesh._HEIGHTS", count)
+        box = _gearbox()
+        shares, gap = box.misalignment(box.under(box.even), box.even)[0]
+        found.append([shares.over_face[0], gap.gap[0], gap.gap[-1]])
+    changes = np.abs(np.diff(found, axis=0))
+    assert changes[1:] == pytest.approx(changes[:-1] / 4.0, rel=0.1)
+    assert changes[-1].max() < 1e-3 * np.abs(found[-1]).max()  # of the 17 that are used

@@ -10,6 +10,7 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.on_shafts import EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import ShaftGaps
+from fegear.design.flanks.trials import FlankTrials
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.gear import Gear
@@ -146,3 +147,21 @@ def test_each_load_has_its_own_gap(flanks):
     between = shafts.under(0.65 * LOAD).gap[0]
     assert between == pytest.approx(0.5 * (shafts.gap[0] + shafts.gap[1]), rel=1e-12)
     assert not ShaftGaps().given
+
+
+def test_designs_try_modifications_at_the_gap_of_each_load(flanks):
+    box = _gearbox(flanks, seats=(LooseBearing(2e8, 2e8, radial_clearance=20e-6), stiff(1e8, 1e8)))
+    states = load_gearbox(box, [EvenForces(mesh.even / mesh.load) for mesh in box.meshes], [0.3, 1.0])
+    gaps = FlankGaps(shafts=LoadedShafts(box, states, (False, False)).gaps_of("I"))
+    one, loads = flanks[0], np.array([0.3 * LOAD, LOAD])
+    known = one.compliance(LOAD)
+    numbers = np.array([0.0, 0.0, 0.0, 0.0, 5e-6, 0.0, 0.0, 3e-6, 0.0])  # crowned, and sloped
+    together = FlankTrials(one.pair, known, gaps.at(one.pair, known.lines, loads), loads).of_numbers(
+        numbers, slope=True
+    )
+    for i, load in enumerate(loads):
+        apart = gaps.under(load).at(one.pair, known.lines)
+        alone = FlankTrials(one.pair, known, apart, loads[i : i + 1]).of_numbers(numbers, slope=True)
+        assert together.te[..., i] == pytest.approx(alone.te[..., 0], rel=1e-9)
+        assert together.face_load_factor[:, i] == pytest.approx(alone.face_load_factor[:, 0], rel=1e-9)
+        assert together.slope[..., i] == pytest.approx(alone.slope[..., 0], rel=1e-6, abs=1e-9)

@@ -188,7 +188,7 @@ def design_flanks(
         If no relief of a family keeps to the largest K_Hbeta.
     """
     report = progress or (lambda _fraction: None)
-    pair, apart = flanks.pair, apart.under(task.load)
+    pair, aligned = flanks.pair, apart.under(task.load)
     panel = flanks.panel * pair.driver.module
     lines = design_lines(pair, task.loading, task.positions, panel)
 
@@ -200,7 +200,7 @@ def design_flanks(
 
     own = compliance_at(lines)
     report(0.3)
-    gap = apart.at(pair, lines)
+    gap = aligned.at(pair, lines)
     station = station_relief(own, gap, task.loading, task.load)
     x, z = table_nodes(station, pair)
     removal = tabulated(station, pair, x, z)
@@ -208,12 +208,13 @@ def design_flanks(
     grid = task.grid or usual_grid(float(np.ptp(removal)), pair.path_length, pair.face_width, pair.base_pitch)
     # What is ground leaves most where contact lines begin and end, where the positions of the other results stand, and
     # may leave as much between few of them: it is chosen by both, and led on at more of them.
-    scan = FlankTrials(pair, known, apart.at(pair, known.lines), np.array(task.loads))
+    loads = np.array(task.loads)
+    scan = FlankTrials(pair, known, apart.at(pair, known.lines, loads), loads)
     force = design_force(known.lines, task.loading, task.load)
 
     def trials_at(roll: Array) -> FlankTrials:
         lines = lines_at(pair, np.unique(np.mod(roll - pair.x_start, pair.base_pitch) + pair.x_start), panel)
-        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines), scan.loads)
+        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines, loads), loads)
 
     trials = trials_at(np.concatenate([known.lines.roll, lines.roll]))
     even = pair.x_start + pair.base_pitch * (np.arange(SEARCHED) + 0.5) / SEARCHED
@@ -238,8 +239,8 @@ def design_flanks(
         EXACT: table,
         **{label: one.relief for label, one in found.items()},
     }
-    here = replace(scan, loads=np.array([task.load]))
-    judge = flank_judge(flanks, coarse, apart, task.load, task.deviation)
+    here = replace(scan, loads=np.array([task.load]), apart=aligned.at(pair, known.lines))
+    judge = flank_judge(flanks, coarse, aligned, task.load, task.deviation)
     states = tuple(_state(label, relief, here, judge, task)
                    for label, relief in reliefs.items())  # fmt: skip
     return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)

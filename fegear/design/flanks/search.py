@@ -87,16 +87,17 @@ def quick_values(
         choices = np.zeros((grid.choices(group).shape[0], numbers.shape[1]))
         choices[:, GROUPS[group]] = grid.choices(group)
         parts.append(quick.gaps(np.stack([trials.gap(one) for one in choices])))
-    apart = quick.gaps(trials.apart + trials.deviations)
+    alike = trials.apart.ndim == 2
+    apart = [quick.gaps(trials.apart_under(i) + trials.deviations) for i in range(1 if alike else trials.loads.size)]
     value, factor = np.empty(len(numbers)), np.empty(len(numbers))
     for first in range(0, len(numbers), _HELD):
         some = slice(first, first + _HELD)
         gap = np.sum([part[combinations[some, column]] for column, part in enumerate(parts)], axis=0)
         ripple = np.zeros((len(gap), trials.loads.size))
         largest = np.zeros(len(gap))
-        for weight, base in zip(trials.scatter.weights, apart, strict=True):
+        for number, weight in enumerate(trials.scatter.weights):
             for i, load in enumerate(trials.loads):
-                approach, k = quick.solve(gap + base, float(load))
+                approach, k = quick.solve(gap + apart[0 if alike else i][number], float(load))
                 ripple[:, i] += weight * np.ptp(approach, axis=1)
                 largest = np.maximum(largest, k)
         value[some], factor[some] = (ripple * trials.proportion).max(axis=1), largest

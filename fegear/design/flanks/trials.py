@@ -136,8 +136,8 @@ class FlankTrials:
     ----------
     pair : GearPair
     known : FlankCompliance
-    apart : ndarray, shape (P, M)
-        Gap that is there besides, a nominal misalignment say [m].
+    apart : ndarray, shape (P, M) or (P, M, L)
+        Gap that is there besides, a nominal misalignment say, or what shafts open under each load [m].
     loads : ndarray, shape (L,)
         [N].
     scatter : Scatter
@@ -154,10 +154,14 @@ class FlankTrials:
         """The stations, as modifications count them."""
         return FormsAt.over(self.pair, self.known.lines.x, self.known.lines.z)
 
+    def apart_under(self, load: int) -> Array:
+        """The gap under a load, by its number, shape (P, M) [m]."""
+        return self.apart[:, :, load] if self.apart.ndim > 2 else self.apart
+
     @property
     def cells(self) -> int:
         """Parts of the face whose loads K_Hbeta compares."""
-        nothing = solve_contact(self.known, self.apart, self.loads[:1])
+        nothing = solve_contact(self.known, self.apart_under(0), self.loads[:1])
         return LoadedFlanks(self.pair, self.known, nothing, self.loads[:1], {}).cells.size - 1
 
     @cached_property
@@ -183,7 +187,9 @@ class FlankTrials:
     def _tried(self, gap: Array, forms: Array) -> Tried:
         found, slopes, forces = [], [], []
         for deviation in self.deviations:
-            contact = solve_contact(self.known, self.apart + deviation + gap, self.loads)
+            whole = [self.apart_under(i) + deviation + gap for i in range(self.loads.size)]
+            alike = self.apart.ndim == 2
+            contact = solve_contact(self.known, whole[0] if alike else np.stack(whole, axis=2), self.loads)
             found.append(LoadedFlanks(self.pair, self.known, contact, self.loads, {}))
             slope = np.empty((len(forms), *contact.approach.shape))
             moved = np.empty((len(forms), *contact.force.shape))

@@ -80,6 +80,7 @@ class FlankDesignData:
 
     pair: GearPair
     design: FlankDesign
+    on_shafts: bool = False
 
 
 def _part(scene: Scene) -> FlankDesignPart:
@@ -167,7 +168,8 @@ def _compute(inputs: FlankDesignInputs, upstream: Upstream, work: Work) -> Flank
     task = _task(inputs.part, flanks.pair, found.nominal)
     solved = {member: solid_solution_of(upstream, inputs.gears[member]) for member in MEMBERS}
     coarse = {member: one.coarse or one.fine for member, one in solved.items()}
-    return FlankDesignData(flanks.pair, design_flanks(flanks, coarse, found.known, apart, task, work.progress))
+    design = design_flanks(flanks, coarse, found.known, apart, task, work.progress)
+    return FlankDesignData(flanks.pair, design, apart.shafts.given)
 
 
 def _present(data: FlankDesignData, inputs: FlankDesignInputs) -> Outcome:
@@ -197,6 +199,11 @@ def _remarks(data: FlankDesignData, inputs: FlankDesignInputs) -> tuple[str, ...
     for state in (design.best, *design.robust):
         keys = "; ".join(keys_of(design.found[state.label].relief, data.pair, inputs.gears))
         remarks.append(f"Pair {name}, {state.label}: as keys of the gears, {keys or 'nothing'}.")
+    if data.on_shafts:
+        remarks.append(
+            f"Pair {name}: designs hold the shafts as its present flanks tilt them under each load; with the keys of a "
+            "design in the case they are solved anew."
+        )
     unproven = [label for label, one in design.found.items() if not one.proven]
     if unproven:
         remarks.append(
