@@ -38,7 +38,7 @@ _ROWS = 8
 #: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
 _ABOUT = 200
 #: Pages outside docs/ that belong to the site, and where links to them are found.
-_OUTSIDE = {"readme.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"} | {
+_OUTSIDE = {"readme.md": ROOT / "README.md", "meshes.md": ROOT / "cases" / "meshes" / "README.md"} | {
     f"{name.lower()}.md": ROOT / f"{name}.md" for name in ("CONTRIBUTING", "SECURITY", "CHANGELOG")
 }
 
@@ -194,7 +194,7 @@ def on_page_markdown(markdown, page, **_others):
     if page.file.src_uri in _OUTSIDE and page.file.src_uri != "meshes.md":  # they stand at the top of the tree
         markdown = re.sub(r"\]\(([A-Z]+)\.md", lambda m: f"]({m[1].lower()}.md", markdown.replace("](docs/", "]("))
     top = "../" * page.file.src_uri.count("/")
-    markdown = re.sub(r"\]\((?:\.\./)+meshes/README\.md\)", f"]({top}meshes.md)", markdown)
+    markdown = re.sub(r"\]\((?:\.\./)+cases/meshes/README\.md\)", f"]({top}meshes.md)", markdown)
     return re.sub(r"\]\((?:\.\./)*cases/((?:sources/)?\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)
 
 

@@ -242,12 +242,10 @@ def _python(block: Block, names: dict[str, object], where: str) -> str:
 
 
 def prepare(folder: Path) -> dict[str, str]:
-    """Make `folder` look like a user's, with ``cases/`` and ``meshes/`` at hand; the environment to run a page in."""
+    """Make `folder` an empty one as a user's; the environment to run a page in."""
     shutil.rmtree(folder, ignore_errors=True)
     programs = folder / ".bin"
     programs.mkdir(parents=True)
-    for name in ("cases", "meshes"):
-        (folder / name).symlink_to(ROOT / name)
     for name, module in (("fegear", " -m fegear"), ("dask", " -m dask"), ("python", "")):
         script = programs / name
         script.write_text(f'#!/bin/sh\nexec "{sys.executable}"{module} "$@"\n')

@@ -27,6 +27,13 @@ def complete_kinds(incomplete: str) -> list[str]:
     return [name for name in KINDS if name.startswith(incomplete)]
 
 
+def complete_examples(incomplete: str) -> list[str]:
+    """What an example that is being typed may become."""
+    from fegear.case.examples import names
+
+    return [name for name in names() if name.startswith(incomplete)]
+
+
 def new(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Name of the case: NAME.toml is written.", show_default=False)
@@ -57,6 +64,10 @@ def new(
     lead_error: Annotated[
         str | None, typer.Option("--lead-error", metavar="LENGTH", help='Helical pairs: over the face, e.g. "10 um".')
     ] = None,
+    example: Annotated[
+        str | None,
+        typer.Option("--example", help="Copy a case that comes with fegear.", autocompletion=complete_examples),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
     no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors next to it.")] = False,
     quiet: Quiet = False,
@@ -86,6 +97,11 @@ def new(
         "lead_error": lead_error,
     }
     told = {key: text for key, text in given.items() if text}
+    if example is not None:
+        if told or kind:
+            raise InputError("--example", shown(example), "is a whole case", "give it alone, and change its keys after")
+        _copy_example(example, path, voice, force=force)
+        return
     if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
         answers = _asked()
     else:
@@ -97,6 +113,28 @@ def new(
         beside = path.with_name(SCHEMA_FILE)
         write_schema(beside, "schema", remedy="move it elsewhere, or write none with --no-schema")
         voice.say(f"Wrote {beside}, by which editors complete and check case files")
+    write_file(path, text.encode(), "NAME")
+    voice.say(f"Wrote {path}; next: fegear run {path}")
+
+
+def _copy_example(name: str, path: Path, voice: Voice, *, force: bool) -> None:
+    """Write an example, and below its folder the files that it names."""
+    from fegear.case.examples import example
+    from fegear.case.text_file import write_file
+
+    text, files = example(name)
+    for named, content in files.items():
+        beside = path.parent / named
+        if beside.exists() and beside.read_bytes() != content and not force:
+            raise InputError(
+                "NAME", shown(str(beside), PATH), "is there already, and is not the example's",
+                "move it away, or replace it with --force",
+            )  # fmt: skip
+    for named, content in files.items():
+        beside = path.parent / named
+        beside.parent.mkdir(parents=True, exist_ok=True)
+        write_file(beside, content, "NAME")
+        voice.say(f"Wrote {beside}, which the case reads")
     write_file(path, text.encode(), "NAME")
     voice.say(f"Wrote {path}; next: fegear run {path}")
 

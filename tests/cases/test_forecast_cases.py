@@ -27,7 +27,7 @@ def planned(name: str, *overrides: str):
 def test_every_task_of_every_case_is_predicted():
     silent = Stage(lambda _scene: (), *3 * (lambda *_: None,)).forecast
     assert not [stage.name for stage in STAGES if stage.forecast is silent]
-    for path in sorted(CASES.glob("*.toml")):
+    for path in sorted(set(CASES.glob("*.toml")) - {CASES / "own_mesh.toml"}):  # how long a mesh takes is its maker's
         scene, plan = planned(path.stem)
         seconds = forecast_seconds(scene, plan)
         assert all(found is not None and found > 0.0 for found in seconds), path.stem
@@ -63,7 +63,7 @@ def test_what_costs_more_is_predicted_to_cost_more(name, more, less):
 
 
 def test_the_plan_says_where_the_run_time_is_unknown():
-    mesh = next((ROOT / "meshes").glob("*.msh"))
+    mesh = next((ROOT / "cases" / "meshes").glob("*.msh"))
     lines = plan_lines(*planned("lin_table1", f"gear.a.tooth_mesh='{mesh}'"))
     assert any("without gear-solution of a, whose run time is unknown" in line for line in lines)
     assert any("run time unknown" in line for line in lines)

@@ -90,7 +90,11 @@ def test_version_and_name_are_the_same_everywhere():
 
 
 def test_every_link_leads_somewhere():
-    pages = [*sorted(ROOT.glob("*.md")), ROOT / "meshes" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    pages = [
+        *sorted(ROOT.glob("*.md")),
+        ROOT / "cases" / "meshes" / "README.md",
+        *sorted((ROOT / "docs").rglob("*.md")),
+    ]
     for page in pages:
         for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
             # What a page's own run makes is under results/, pictures that are taken for it under its name: the hooks of

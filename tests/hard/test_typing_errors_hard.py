@@ -180,8 +180,8 @@ def outcome(name: str, text: str, folder: Path) -> str:
     path = folder / f"{name}.toml"
     path.write_text(text, "utf-8")
     if not (folder / "data").exists():
-        (folder / "data").symlink_to(CASES / "data")
-        (folder.parent / "meshes").exists() or (folder.parent / "meshes").symlink_to(CASES.parent / "meshes")
+        for named in ("data", "meshes"):
+            (folder / named).symlink_to(CASES / named)
     try:
         scene = read_scene(path)
         make_plan(scene, STAGES)

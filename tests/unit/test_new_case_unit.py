@@ -13,6 +13,7 @@ import pytest
 
 import fegear.cli
 from fegear.base.errors import InputError
+from fegear.case import examples
 from fegear.case.drafts.answers import KINDS, Answers, questions
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
@@ -257,3 +258,29 @@ def test_a_schema_replaces_a_schema_and_nothing_else_unasked(say, tmp_path):
     for out in (".", "", "none/schema.json", "n" * 3000):
         code, _, complaint = say("schema", "--out", out)
         assert (code, complaint.count("\n")) == (2, 1)
+
+
+@pytest.mark.parametrize("name", examples.names())
+def test_every_example_can_be_copied_with_what_it_names_and_planned(name, tmp_path):
+    text, files = examples.example(name)
+    for named, content in files.items():
+        (tmp_path / named).parent.mkdir(exist_ok=True)
+        (tmp_path / named).write_bytes(content)
+    (tmp_path / "mine.toml").write_text(text)
+    assert make_plan(read_scene(tmp_path / "mine.toml"), STAGES).steps
+
+
+def test_an_example_comes_with_its_files_and_replaces_nobody_s(say, tmp_path):
+    assert say("new", "mine", "--example", "own_mesh")[0] == 0
+    assert (tmp_path / "meshes" / "four_square_test_gear.msh").stat().st_size > 100_000
+    assert say("run", "mine.toml", "--no-plots")[0] == 0
+    mesh = tmp_path / "meshes" / "four_square_test_gear.msh"
+    mesh.write_text("mine")
+    code, _, complaint = say("new", "other", "--example", "own_mesh")
+    assert (code, mesh.read_text()) == (2, "mine")
+    assert "is there already, and is not the example's; move it away" in complaint
+    assert not (tmp_path / "other.toml").exists()
+    code, _, complaint = say("new", "third", "--example", "own_mash")
+    assert code == 2
+    assert 'the nearest known name is "own_mesh"' in complaint
+    assert "is a whole case" in say("new", "third", "--example", "own_mesh", "--teeth", "20")[2]
