@@ -191,7 +191,8 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         conditions, pair, load, {key: value for key, value in given.items() if value is not None}, levels,
         (one, other), None if own is None else in_order((own[0], own[1]), first=first), life, part.width_in(pair),
         tuple(dict.fromkeys(said)), name, gears,
-        scene.case.effects.misalignment and not (part.misalignment is None and part.line_error is None),
+        scene.case.effects.misalignment
+        and not (part.misalignment is None and part.line_error is None and not on_shafts(scene, name)),
         set_that_shares(scene.case, name) or "",
     )  # fmt: skip
 
