@@ -24,7 +24,15 @@ fegear_apt_get() { # installs Debian packages, if this user may
     { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@"; } >&2
 }
 
-fegear_pip() { # runs pip: shows what is fetched and how much it has been; of what else pip says only the reason of a failure
+fegear_pip() { # runs uv where it is, which takes a fifth of pip's time
+    if command -v uv >/dev/null 2>&1; then
+        uv pip install --python "$venv/bin/python" "$@" >&2 || return 1
+    else
+        fegear_plain_pip "$@"
+    fi
+}
+
+fegear_plain_pip() { # runs pip: shows what is fetched and how much it has been; of what else pip says only the reason of a failure
     {
         PYTHONUNBUFFERED=1 "$venv/bin/python" -m pip install --disable-pip-version-check --progress-bar off --no-compile "$@" 2>&1
         echo $? >"$venv/pip.code"

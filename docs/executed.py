@@ -8,7 +8,6 @@ names the pages to run as it names the cases.
 from __future__ import annotations
 
 import logging
-import os
 import re
 from functools import partial
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
+from shortened import chosen
 from snippets import execute, runs
 
 from fegear.base.plain import code_version, content_key
@@ -31,9 +31,7 @@ _MADE_LINK = re.compile(r"\]\((results/[^)#]+)\)")
 
 def pages() -> list[Path]:
     """Pages with something to run."""
-    wanted = os.environ.get("FEGEAR_GALLERY")
-    found = [page for page in sorted(DOCS.rglob("*.md")) if runs(page)]
-    return [page for page in found if wanted is None or page.stem in wanted.split(",")]
+    return [page for page in sorted(DOCS.rglob("*.md")) if runs(page) and chosen(page.stem)]
 
 
 def _folder(page: Path) -> Path:

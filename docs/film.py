@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
+from shortened import chosen
 
 from fegear.base.plain import code_version, content_key
 
@@ -293,8 +294,7 @@ def take(path: Path) -> None:
 
 
 def _wanted() -> bool:
-    wanted = os.environ.get("FEGEAR_GALLERY")
-    return (wanted is None or "window" in wanted.split(",")) and not why_not()
+    return chosen("window") and not why_not()
 
 
 def make() -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import json
 import logging
-import os
 import re
 import shutil
 import tomllib
@@ -21,6 +20,7 @@ from case_run import run_case
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from pathspec.gitignore import GitIgnoreSpec
+from shortened import chosen
 
 from fegear.base.plain import code_version, content_key
 from fegear.engine.citation import bibliography
@@ -44,10 +44,12 @@ _OUTSIDE = {"readme.md": ROOT / "README.md", "meshes.md": ROOT / "cases" / "mesh
 
 
 def cases() -> list[Path]:
-    """Case files of the gallery."""
-    wanted = os.environ.get("FEGEAR_GALLERY")
-    found = [*sorted(CASES.glob("*.toml")), *sorted((CASES / "sources").glob("*.toml"))]
-    return [path for path in found if wanted is None or path.stem in wanted.split(",")]
+    """Case files of the gallery that are run for this site."""
+    return [path for path in _all() if chosen(path.stem)]
+
+
+def _all() -> list[Path]:
+    return [*sorted(CASES.glob("*.toml")), *sorted((CASES / "sources").glob("*.toml"))]
 
 
 def case_name(path: Path) -> str:
@@ -185,6 +187,9 @@ def on_files(files, config):
     if of_papers:
         listed = [f"- [{_title(path)}]({case_name(path)}.md)" for path in of_papers]
         index += ["## Figures of the papers", "\n".join(listed)]
+    for path in (one for one in _all() if not chosen(one.stem)):
+        left_out = f"# {_title(path)}\n\nThis case was not run for this shortened site.\n"
+        files.append(File.generated(config, f"gallery/{case_name(path)}.md", content=left_out))
     files.append(File.generated(config, "gallery/index.md", content="\n\n".join(index) + "\n"))
     return files
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import io
 import logging
-import os
 import re
 import time
 from base64 import b64decode
@@ -19,6 +18,7 @@ from pathlib import Path
 from film import MADE, Camera, named, opened, why_not
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
+from shortened import chosen
 
 from fegear.base.plain import code_version, content_key
 
@@ -193,8 +193,7 @@ def take_all() -> None:
 
 
 def _wanted() -> bool:
-    wanted = os.environ.get("FEGEAR_GALLERY")
-    return (wanted is None or PAGE.stem in wanted.split(",")) and not why_not()
+    return chosen(PAGE.stem) and not why_not()
 
 
 def make() -> None:

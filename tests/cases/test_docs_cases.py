@@ -291,6 +291,7 @@ def test_a_page_runs_in_the_folder_that_is_named_and_in_no_other(tmp_path):
 
 def test_without_a_browser_the_page_of_the_window_says_that_it_has_no_film(monkeypatch):
     pytest.importorskip("mkdocs")
+    monkeypatch.syspath_prepend(str(DOCS))
     spec = importlib.util.spec_from_file_location("docs_film", DOCS / "film.py")
     film = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(film)

@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.shafts import mesh_places
+from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, value_of
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import Curve
@@ -119,6 +120,7 @@ MISALIGNMENT = Stage(
     compute=_compute,
     present=_present,
     needs=lambda _scene, _name: (LOADED_SHAFTS_TASK,),
+    cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     check=_check,
     forecast=lambda _scene, _name: forecasts.constant(0.01),
     internal=True,
