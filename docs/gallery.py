@@ -38,9 +38,11 @@ _ROWS = 8
 #: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
 _ABOUT = 200
 #: Pages outside docs/ that belong to the site, and where links to them are found.
-_OUTSIDE = {"readme.md": ROOT / "README.md", "meshes.md": ROOT / "cases" / "meshes" / "README.md"} | {
-    f"{name.lower()}.md": ROOT / f"{name}.md" for name in ("CONTRIBUTING", "SECURITY", "CHANGELOG")
-}
+_OUTSIDE = {
+    "readme.md": ROOT / "README.md",
+    "meshes.md": ROOT / "cases" / "meshes" / "README.md",
+    "packaging.md": ROOT / "packaging" / "README.md",
+} | {f"{name.lower()}.md": ROOT / f"{name}.md" for name in ("CONTRIBUTING", "SECURITY", "CHANGELOG")}
 
 
 def cases() -> list[Path]:
@@ -199,7 +201,7 @@ def on_page_markdown(markdown, page, **_others):
     if page.file.src_uri in _OUTSIDE and page.file.src_uri != "meshes.md":  # they stand at the top of the tree
         markdown = re.sub(r"\]\(([A-Z]+)\.md", lambda m: f"]({m[1].lower()}.md", markdown.replace("](docs/", "]("))
     top = "../" * page.file.src_uri.count("/")
-    markdown = re.sub(r"\]\((?:\.\./)+cases/meshes/README\.md\)", f"]({top}meshes.md)", markdown)
+    markdown = re.sub(r"\]\((?:\.\./)*(?:cases/)?(meshes|packaging)/README\.md\)", rf"]({top}\1.md)", markdown)
     return re.sub(r"\]\((?:\.\./)*cases/((?:sources/)?\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)
 
 
