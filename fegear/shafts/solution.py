@@ -7,7 +7,8 @@ of the clamped shafts and H of the housing's seats, a ring moves in its seat by 
 
 Nothing is divided by a compliance: rigid shafts (A = 0), rigid seats (H = 0) and rigid bearings need no large numbers.
 Newton's method; where it fails, a stiffness added to every bearing at first, and taken away step by step, brings loose
-shafts into contact. Turning about the axis is free: torques must balance, and twist is measured from the left end.
+shafts into contact; 1e-10 of it stays where a shaft floats in its clearance. Turning about the axis is free: torques
+must balance, and twist is measured from the left end.
 """
 
 from __future__ import annotations
@@ -30,8 +31,10 @@ if TYPE_CHECKING:
     from fegear.shafts.bearing import Bearing
     from fegear.shafts.life import LifeRating
 
-#: Shares of the usual stiffness that are added at first; the last solution has none.
-_HELP = (1.0, 1e-2, 1e-4, 1e-6, 1e-8, 0.0)
+#: Shares of the usual stiffness that are added at first, and taken away.
+_HELP = (1.0, 1e-2, 1e-4, 1e-6, 1e-8)
+#: What is left of it where a shaft floats in its clearance without a force: it tells where, and carries nothing.
+_FLOATING = 1e-10
 _ITERATIONS, _HALVINGS = 60, 40
 #: Residual over the forces at which Newton's method has ended.
 _DONE = 1e-12
@@ -156,12 +159,15 @@ class Deflection:
         Displacement of each inner ring in its outer one [m, rad].
     left_end : ndarray, shape (6,)
         Motion of the left end.
+    floating : float
+        Share of the bearings' usual stiffness that holds shafts which nothing else does; zero where none floats.
     """
 
     loaded: LoadedShaft
     bearing_forces: Array
     rings: Array
     left_end: Array
+    floating: float = 0.0
 
     @cached_property
     def _all(self) -> tuple[Array, Array]:
@@ -356,22 +362,26 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
     refuse_torque(shafts)
     system = _system(shafts, housing)
     p, q = np.zeros(system.free.size), np.zeros(5 * len(shafts))
-    p, q, reached = _newton(system, p, q, 0.0)
+    helped = 0.0
+    p, q, reached = _newton(system, p, q, helped)
     if not reached:
         p, q = np.zeros(system.free.size), np.zeros(5 * len(shafts))
         for helped in _HELP:
-            p, q, reached = _newton(system, p, q, helped)
+            p, q, _ = _newton(system, p, q, helped)
+        for helped in (0.0, _FLOATING):
+            again = _newton(system, p, q, helped)
+            if reached := again[2]:
+                p, q, _ = again
+                break
     if not reached:
         names = ", ".join(one.name for one in shafts)
-        raise ConvergenceError(
-            f"The bearings of {names} find no equilibrium: reduce their clearance or give them preload"
-        )
+        raise ConvergenceError(f"The bearings of {names} find no equilibrium: reduce clearance or loads.")
     found, first = [], 0
     u = system.moved(p, q)
     for n, one in enumerate(shafts):
         last = first + 5 * len(one.seats)
         left = np.append(q[5 * n : 5 * n + 5], 0.0)
-        found.append(Deflection(one, p[first:last].reshape(-1, 5), u[first:last].reshape(-1, 5), left))
+        found.append(Deflection(one, p[first:last].reshape(-1, 5), u[first:last].reshape(-1, 5), left, helped))
         first = last
     return tuple(found)
 
@@ -401,7 +411,7 @@ def response(found: tuple[Deflection, ...], at: tuple[Array, ...], housing: Arra
     system = _system(tuple(one.loaded for one in found), housing)
     p = np.concatenate([one.bearing_forces.ravel() for one in found])
     q = np.concatenate([one.left_end[:5] for one in found])
-    _, derivative, by_rings = system.equations(p, q, 0.0)
+    _, derivative, by_rings = system.equations(p, q, found[0].floating)
     total, size = 6 * sum(z.size for z in at), p.size
     right, own, across = np.zeros((size + q.size, total)), np.zeros((total, total)), np.zeros((total, size + q.size))
     rings, places = 0, 0
@@ -421,4 +431,4 @@ def response(found: tuple[Deflection, ...], at: tuple[Array, ...], housing: Arra
         return np.asarray(own - across @ _solved(derivative, right))
     except np.linalg.LinAlgError:
         names = ", ".join(one.loaded.name for one in found)
-        raise ConvergenceError(f"The bearings of {names} leave a shaft loose: give them preload") from None
+        raise ConvergenceError(f"The bearings of {names} leave a shaft loose: give them preload.") from None

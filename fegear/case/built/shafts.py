@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6
+#: Keys of what rolls in a bearing.
+_ELEMENTS = {"element_diameter": "elements.diameter"} | {
+    key: f"elements.{key}" for key in ("count", "pitch_diameter", "contact_angle", "groove_ratio", "roller_length")
+}
 #: Shafts and bearings that are solved together at most.
 _SHAFTS, _BEARINGS = 100, 300
 
@@ -142,7 +146,7 @@ def gearbox_of(scene: Scene) -> Gearbox:
             try:
                 seats.append(Seat(data.build(mirrored=place.reversed), place.at, f"bearings.{n}"))
             except InputError as error:
-                raise at(f"bearing.{place.bearing}", error) from None
+                raise at(f"bearing.{place.bearing}", error, _ELEMENTS) from None
             across, along = (1.0 / k if k else 0.0 for k in (data.housing_radial, data.housing_axial))
             seat_compliance += [across, across, along, 0.0, 0.0]
         places = np.array([one.at for one in part.loads])

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Change of gaps over their largest at which the solution is found, and steps after which it is given up.
 TOLERANCE, _STEPS = 1e-9, 30
+#: Largest displacement of a shaft over its length for which all is linear in it.
+_LARGEST_SHIFT = 0.01
 #: Halvings of a step that does not help.
 _HALVINGS = 6
 
@@ -161,7 +163,13 @@ def load_gearbox(gearbox: Gearbox, meshes: Sequence[MeshForces], scales: Sequenc
 def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
     """Refuse shafts that lie so askew that gaps are no longer linear in their tilt."""
     for name, one, places in zip(gearbox.names, state.bent, gearbox.places, strict=True):
-        tilt = float(np.abs(one.at(places)[:, 3:5]).max(initial=0.0))
+        moved = np.abs(one.at(places)).max(axis=0, initial=0.0)
+        tilt, shift, length = float(moved[3:5].max()), float(moved[:3].max()), one.loaded.shaft.length
+        if shift > _LARGEST_SHIFT * length:
+            raise InputError(
+                f"shaft.{name}", f"moved by {shift * 1e3:.4g} mm", "is no small displacement",
+                f"keep it within {_LARGEST_SHIFT:.0%} of the shaft's length: less clearance, stiffer bearings",
+            )  # fmt: skip
         if tilt > LARGEST_TILT:
             raise InputError(
                 f"shaft.{name}", f"tilted by {math.degrees(tilt):.4g} deg under its gears", "is no small error",
@@ -210,7 +218,7 @@ def _state(gearbox: Gearbox, meshes: Sequence[MeshForces], scale: float, start: 
             share *= 0.5
         v, left = new, found
     names = ", ".join(mesh.pair for mesh in gearbox.meshes)
-    raise ConvergenceError(f"Shafts and flanks of {names} find no common state: check bearings with clearance")
+    raise ConvergenceError(f"Shafts and flanks of {names} find no common state: check bearings with clearance.")
 
 
 @dataclass(frozen=True)
