@@ -165,15 +165,15 @@ def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
     for name, one, places in zip(gearbox.names, state.bent, gearbox.places, strict=True):
         moved = np.abs(one.at(places)).max(axis=0, initial=0.0)
         tilt, shift, length = float(moved[3:5].max()), float(moved[:3].max()), one.loaded.shaft.length
-        if shift > _LARGEST_SHIFT * length:
-            raise InputError(
-                f"shaft.{name}", f"moved by {shift * 1e3:.4g} mm", "is no small displacement",
-                f"keep it within {_LARGEST_SHIFT:.0%} of the shaft's length: less clearance, stiffer bearings",
-            )  # fmt: skip
         if tilt > LARGEST_TILT:
             raise InputError(
                 f"shaft.{name}", f"tilted by {math.degrees(tilt):.4g} deg under its gears", "is no small error",
                 f"keep it within {math.degrees(LARGEST_TILT):g} deg: less clearance, stiffer bearings or sections",
+            )  # fmt: skip
+        if shift > _LARGEST_SHIFT * length:
+            raise InputError(
+                f"shaft.{name}", f"moved by {shift * 1e3:.4g} mm", "is no small displacement",
+                f"keep it within {_LARGEST_SHIFT:.0%} of the shaft's length: less clearance, stiffer bearings",
             )  # fmt: skip
 
 
