@@ -17,14 +17,14 @@ def export(
     formats: Annotated[
         str,
         typer.Option(
-            "--format", help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, separated by commas."
+            "--format", help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, separated by commas."
         ),
     ] = "dxf,msh,vtu,inp",
     out: Annotated[Path | None, out_option("Output folder; default results/<case>_export.")] = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
-    """Write drawings (DXF), solids (STEP), reliefs to grind (CSV), meshes of the whole gear (gmsh, VTU, CalculiX)."""
+    """Write drawings (DXF), solids (STEP), reliefs to grind (CSV), meshes of the whole gear, FMUs of its mesh."""
     from fegear.case.reading import read_scene
     from fegear.output.export import export_gears
     from fegear.output.folder import default_folder, whole_or_nothing

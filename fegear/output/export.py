@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fegear.geometry.relief import Relief
 
 
-FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
+FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu", "fmu")
 
 
 #: Those that hold the flanks with their relief, not a mesh.
@@ -106,10 +106,14 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         )
     written: list[Path] = []
     remarks = [f"Gear {name} is helical: no {plane} is written for it." for name in helical if plane]
-    for name in chosen:
+    for name in chosen if wanted != {"fmu"} else ():
         files, left_out = _export_gear(scene, folder, name, wanted)
         written += files
         remarks += left_out
+    if "fmu" in wanted:
+        files, said = _export_meshes_in_motion(scene, folder)
+        written += files
+        remarks += said
     if not written:
         raise InputError(
             f"gear.{chosen[0]}.relief", "(not given)", "leaves no relief to write: no gear has one of known amount",
@@ -149,6 +153,16 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
         remarks.append(f"Gear {name}, RELIEF: the case gives it none, so there is no table.")
     meshes, left_out = _export_meshes(scene, folder, name, wanted)
     return [*written, *meshes], [*remarks, *left_out, *_left_out(scene, name)]
+
+
+def _export_meshes_in_motion(scene: Scene, folder: Path) -> tuple[list[Path], list[str]]:
+    """Write the FMU of every loaded pair."""
+    from fegear.output.fmu import c_compiler, write_fmu
+    from fegear.output.mesh_model import mesh_models
+
+    c_compiler()  # before anything is solved
+    models = mesh_models(scene)
+    return [write_fmu(folder, model) for model, _ in models], [said for _, said in models]
 
 
 def _export_meshes(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tuple[list[Path], list[str]]:

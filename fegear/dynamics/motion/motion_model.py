@@ -306,7 +306,7 @@ class Packed:
         return bool(np.any(stiffness[:, 1:]) or np.ptp(stiffness[:, 0]) > 0.0)
 
 
-def _on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
+def on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
     """Coefficients of a periodic function on finer break points over a longer period, shape (pieces, degree + 1)."""
     rows = np.zeros((cuts.size - 1, degree + 1))
     middle = 0.5 * (cuts[:-1] + cuts[1:]) * pitches / part.pitches
@@ -342,7 +342,7 @@ def _spring_tables(
         cuts = np.unique(np.concatenate([part.breaks_over(pitches) for part in own])) / pitches
         cuts = cuts[np.append(True, np.diff(cuts) > 1e-11)]
         cuts[-1] = 1.0
-        table = np.stack([_on_breaks(part, cuts, pitches, degree) for part in own], axis=1)
+        table = np.stack([on_breaks(part, cuts, pitches, degree) for part in own], axis=1)
         table[:, 0] *= length / force
         table[:, 1] /= length
         found.append((m, side, cuts, table, pitches))
