@@ -114,4 +114,16 @@ def test_a_set_with_its_ring_as_a_gear_is_rated_at_the_sun():
     factor = dict(zip(table["symbol"], table["driver"], strict=True))["K_gamma"]
     assert factor == next(one.si for one in results.values if one.name == "P.K_gamma")
     assert factor > 1.02
-    assert "Pair P_ring is not rated: ISO 6336 of internal teeth is not computed." in results.remarks
+    assert "Pair P_ring is not rated: gear.r.strength is not given." in results.remarks
+    case["gear"]["r"]["strength"] = {"material": "through-hardened-alloy-steel"}
+    scene = build_scene(case, "case", None)
+    both = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+    assert of(both, "rating_P_sun")["driver"] == pytest.approx(table["driver"], nan_ok=True)
+    mesh = of(both, "rating_P_ring")
+    ring = dict(zip(mesh["symbol"], zip(mesh["driver"], mesh["driven"], strict=True), strict=True))
+    assert ring["K_gamma"][0] == factor
+    assert ring["u"][0] == pytest.approx(-83 / 29)
+    assert ring["Y_M"][0] < 0.75 < ring["Y_M"][1] == 1.0  # the planet's teeth are bent to either side
+    said = "\n".join(both.remarks)
+    assert "P_ring: AGMA 2101 is not evaluated" in said
+    assert "is not rated" not in said

@@ -60,6 +60,8 @@ class AgmaInputs:
 def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tuple[str, ...]]:
     """What AGMA 2101 is asked for a pair, or None; and sentences about what was assumed, or why there is nothing."""
     part, geometry, duty = scene.case.pair[asked.name], asked.conditions.geometry, asked.conditions.duty
+    if geometry.internal:
+        return None, (f"Pair {asked.name}: AGMA 2101 is not evaluated: its I and J are those of external gears.",)
     said: list[str] = []
     allowed = []
     for i, member in enumerate(geometry.members):

@@ -172,7 +172,11 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
 def _assumed_of_gear(scene: Scene, gear: str, said: list[str]) -> None:
     part, made = scene.case.gear[gear], scene.gears[gear]
     found = []
-    if part.rack.profile is None and None in (part.rack.addendum, part.rack.dedendum, part.rack.tip_radius):
+    if (
+        not part.internal
+        and part.rack.profile is None
+        and None in (part.rack.addendum, part.rack.dedendum, part.rack.tip_radius)
+    ):
         found.append(("the rack ISO 53 C for what is not given", "rack"))
     if "young_modulus" not in part.material.model_fields_set:
         found.append((f"E = {made.material.young_modulus * 1e-9:.4g} GPa", "material.young_modulus"))

@@ -56,6 +56,13 @@ USUAL_VISCOSITY = 220e-6
 _BENT = -1.2
 
 
+#: What ISO 6336 says of internal teeth alone.
+_RECALLED_OF_RINGS = (
+    "what ISO 6336 has for internal teeth alone (q' with 1/z_n2 = 0, Z_D = 1, the root section at the 60 degree "
+    "tangent, Y_B) is recalled: no printed example was at hand. Y_F and Y_S are those of the teeth's own outline"
+)
+
+
 @dataclass(frozen=True)
 class PairToRate:
     """A pair to be rated.
@@ -150,7 +157,10 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     part, pair = scene.case.pair[name], scene.pairs[name]
     said: list[str] = []
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
-    geometry = of_pair(pair, (gear_body(scene, gears[0], said), gear_body(scene, gears[1], said)))
+    driver, driven = (gear_body(scene, gear, said, fixed=_stands_still(scene, name, gear)) for gear in gears)
+    geometry = of_pair(pair, (driver, driven))
+    if geometry.internal:
+        said.append(f"Pair {name}: {_RECALLED_OF_RINGS}.")
     assumed_of_pair(scene, name, said)
     names = [gears[MEMBERS.index(member)] for member in geometry.members]
     strength = tuple(gear_strength(scene, gear, said) for gear in names)
@@ -197,6 +207,13 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     )  # fmt: skip
 
 
+def _stands_still(scene: Scene, name: str, gear: str) -> bool:
+    """Whether a gear of a pair is the ring of a planetary set that is held."""
+    found = set_of_pair(scene.case, name)
+    part = None if found is None else scene.case.planetary[found]
+    return part is not None and part.ring == gear and part.fixed == "ring"
+
+
 def _of_its_set(scene: Scene, name: str) -> list[str]:
     """What a rating takes over from the planetary set of a pair, in words."""
     found = set_of_pair(scene.case, name)
@@ -211,8 +228,8 @@ def _of_its_set(scene: Scene, name: str) -> list[str]:
     elif "mesh_load_factor" not in operation.model_fields_set and part.count > 1:
         told += f"; K_gamma counts as 1, for planetary.{found}.stiffness.ring_mesh is not given"
     said = [f"{told}."]
-    if part.ring is not None:
-        said.append(f"Pair {set_pair(found, 'ring')} is not rated: ISO 6336 of internal teeth is not computed.")
+    if part.ring is not None and not scene.pairs[name].internal and scene.case.gear[part.ring].strength is None:
+        said.append(f"Pair {set_pair(found, 'ring')} is not rated: gear.{part.ring}.strength is not given.")
     return said
 
 
@@ -281,8 +298,8 @@ def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixM
     return "end relief" if any(lead.end_relief for lead in leads) else "none"
 
 
-def gear_body(scene: Scene, gear: str, said: list[str]) -> Body:
-    """Rim and web of a gear; what of them the bore gives goes to `said`.
+def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) -> Body:
+    """Rim and web of a gear, whether it stands still; what of them the bore gives goes to `said`.
 
     Raises
     ------
@@ -290,8 +307,10 @@ def gear_body(scene: Scene, gear: str, said: list[str]) -> Body:
         If the bore leaves a rim so thin that ISO 6336-3 has no Y_B of it.
     """
     part, made = scene.case.gear[gear], scene.gears[gear]
+    if made.tooth.internal:
+        return Body(made.bore_radius - made.root_radius, part.web_thickness, fixed=fixed)
     rim, bored = part.rim(made.root_radius), part.bore_radius is not None
-    body = Body(rim, part.web_thickness, bored)
+    body = Body(rim, part.web_thickness, bored, fixed)
     if rim is None or part.rim_thickness is not None:
         return body
     backup = rim / (made.tip_radius - made.root_radius)

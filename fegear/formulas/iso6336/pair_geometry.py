@@ -1,6 +1,8 @@
 """Geometry of a pair as ISO 6336-1 uses it: diameters, angles, contact ratios, curvature at the pitch point.
 
 `PairGeometry` holds plain numbers, so that a published example can be typed in; `of_pair` takes them from two gears.
+As in the standard an internal gear has a negative number of teeth, and with it negative reference and base
+diameters and a negative gear ratio; tip, root and outside diameters and centre distance are written without the sign.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from fegear.base.errors import RangeError
 if TYPE_CHECKING:
     from fegear.formulas.iso6336.rated import Both
     from fegear.geometry.gear import Gear
+    from fegear.geometry.internal_tooth import InternalTooth
     from fegear.geometry.pair import GearPair, Member
 
 
@@ -24,6 +27,7 @@ class GearShape:
     Parameters
     ----------
     teeth : int
+        z; negative of an internal gear.
     profile_shift : float
         x, nominal.
     tip_diameter, root_diameter, face_width : float
@@ -32,7 +36,7 @@ class GearShape:
     residual_undercut : float
         s_pr, what protuberance leaves [modules].
     bore_diameter : float
-        d_i, inside diameter of the body (of the rim, where it has a web).
+        d_i, inside diameter of the body (of the rim, where it has a web); of an internal gear its outside diameter.
     generating_shift : float
         x_E, thinned for backlash, for the root; NaN: the nominal one.
     active_tip_diameter : float
@@ -41,6 +45,10 @@ class GearShape:
         s_R; b_s/b. None for a solid gear.
     young_modulus, poisson_ratio, density : float
         [Pa], 1, [kg/m^3].
+    outline : InternalTooth, optional
+        Teeth of an internal gear, for the root: no rack describes them.
+    fixed : bool
+        Whether the gear stands still with the casing, as the ring of most planetary sets: its mass counts as infinite.
     """
 
     teeth: int
@@ -59,36 +67,47 @@ class GearShape:
     young_modulus: float = 206e9
     poisson_ratio: float = 0.3
     density: float = 7830.0
+    outline: InternalTooth | None = None
+    fixed: bool = False
 
     def __post_init__(self) -> None:
-        """Fill in what follows from the rest; refuse what no external gear has."""
-        if not self.teeth > 0:
-            raise RangeError("teeth", self.teeth, "must be positive: internal gears are not rated")
+        """Fill in what follows from the rest; refuse what no gear has."""
+        if not self.teeth or self.internal != (self.outline is not None):
+            raise RangeError("teeth", self.teeth, "must be positive, or negative of an internal gear with its outline")
         for name in ("face_width", "root_diameter", "young_modulus", "density"):
             if not getattr(self, name) > 0.0:
                 raise RangeError(name, getattr(self, name), "must be positive")
-        if not self.tip_diameter > self.root_diameter > self.bore_diameter >= 0.0:
+        inward = (self.tip_diameter, self.root_diameter, self.bore_diameter)
+        if self.internal:
+            inward = inward[::-1]
+        if not inward[0] > inward[1] > inward[2] >= 0.0:
             diameters = f"{self.tip_diameter:.6g}, {self.root_diameter:.6g}, {self.bore_diameter:.6g} m"
-            raise RangeError("tip, root and bore diameter", diameters, "must fall in this order")
+            rule = f"must {'rise' if self.internal else 'fall'} in this order"
+            raise RangeError(f"tip, root and {'outside' if self.internal else 'bore'} diameter", diameters, rule)
         if math.isnan(self.generating_shift):
             object.__setattr__(self, "generating_shift", self.profile_shift)
         if math.isnan(self.active_tip_diameter):
             object.__setattr__(self, "active_tip_diameter", self.tip_diameter)
 
     @property
+    def internal(self) -> bool:
+        """Whether the teeth point inward."""
+        return self.teeth < 0
+
+    @property
     def depth(self) -> float:
         """h, tooth depth from tip to root [m]."""
-        return 0.5 * (self.tip_diameter - self.root_diameter)
+        return 0.5 * abs(self.tip_diameter - self.root_diameter)
 
 
 @dataclass(frozen=True, slots=True)
 class PairGeometry:
-    """Two external gears on parallel axes; lengths [m], angles [rad].
+    """Two gears on parallel axes, of which the wheel may be internal; lengths [m], angles [rad].
 
     Parameters
     ----------
     gears : (GearShape, GearShape)
-        Pinion (fewer teeth) and wheel.
+        Pinion (fewer teeth) and wheel; an internal gear is the wheel.
     module, pressure_angle, helix_angle : float
         m_n, alpha_n, beta.
     centre_distance : float
@@ -103,7 +122,7 @@ class PairGeometry:
     Raises
     ------
     RangeError
-        If the first gear has more teeth, or the gears do not meet.
+        If the first gear has more teeth or is internal, an internal pair is helical, or the gears do not meet.
     """
 
     gears: tuple[GearShape, GearShape]
@@ -117,7 +136,7 @@ class PairGeometry:
 
     def __post_init__(self) -> None:
         """Fill in face width and contact ratio; refuse what is no pair."""
-        if self.gears[0].teeth > self.gears[1].teeth:
+        if self.gears[0].internal or self.gears[0].teeth > abs(self.gears[1].teeth):
             given = f"{self.gears[0].teeth}, {self.gears[1].teeth}"
             raise RangeError(
                 "teeth of pinion and wheel", given, "must not fall", "name the gear with fewer teeth first"
@@ -126,21 +145,25 @@ class PairGeometry:
             raise RangeError("module", self.module, "must be positive")
         if not 0.0 <= self.helix_angle < math.pi / 2:
             raise RangeError("helix angle", self.helix_angle, "must lie between 0 and 90 deg, without the hand's sign")
+        if self.internal and self.helix_angle:
+            raise RangeError("helix angle", self.helix_angle, "must be 0: of internal pairs only spur ones are rated")
         if math.isnan(self.face_width):
             object.__setattr__(self, "face_width", min(g.face_width for g in self.gears))
-        if not self.centre_distance > 0.5 * sum(self.base_diameters):
+        if not self.centre_distance > 0.5 * abs(sum(self.base_diameters)):
             raise RangeError(
-                "centre distance", f"{self.centre_distance:.6g} m", "must exceed the sum of the base radii"
-            )
+                "centre distance", f"{self.centre_distance:.6g} m",
+                f"must exceed the {'difference' if self.internal else 'sum'} of the base radii",
+            )  # fmt: skip
         if math.isnan(self.contact_ratio):
             object.__setattr__(self, "contact_ratio", self._contact_ratio())
 
     def _contact_ratio(self) -> float:
         reach = sum(
-            0.5 * math.sqrt(max(g.active_tip_diameter**2 - d_b**2, 0.0))
+            math.copysign(0.5, d_b) * math.sqrt(max(g.active_tip_diameter**2 - d_b**2, 0.0))
             for g, d_b in zip(self.gears, self.base_diameters, strict=True)
         )
-        path = reach - self.centre_distance * math.sin(self.working_pressure_angle)
+        between = self.centre_distance * math.sin(self.working_pressure_angle)
+        path = reach + between if self.internal else reach - between
         if not path > 0.0:
             raise RangeError(
                 "centre distance", f"{self.centre_distance:.6g} m", "is so large that the teeth never meet"
@@ -148,8 +171,13 @@ class PairGeometry:
         return path / self.base_pitch
 
     @property
+    def internal(self) -> bool:
+        """Whether the wheel is an internal gear."""
+        return self.gears[1].internal
+
+    @property
     def ratio(self) -> float:
-        """Gear ratio u = z_2 / z_1, at least 1."""
+        """Gear ratio u = z_2 / z_1, at least 1; negative of an internal pair."""
         return self.gears[1].teeth / self.gears[0].teeth
 
     @property
@@ -164,7 +192,7 @@ class PairGeometry:
 
     @property
     def diameters(self) -> Both:
-        """d_1, d_2: reference diameters."""
+        """d_1, d_2: reference diameters; negative of an internal gear."""
         d_1, d_2 = (g.teeth * self.module / math.cos(self.helix_angle) for g in self.gears)
         return d_1, d_2
 
@@ -183,7 +211,7 @@ class PairGeometry:
     @property
     def working_pressure_angle(self) -> float:
         """alpha_wt."""
-        return math.acos(0.5 * sum(self.base_diameters) / self.centre_distance)
+        return math.acos(0.5 * abs(sum(self.base_diameters)) / self.centre_distance)
 
     @property
     def overlap_ratio(self) -> float:
@@ -223,11 +251,14 @@ class Body:
         b_s; None for a disc as wide as the face.
     bored : bool
         Whether the bore is that of the gear, and not one that finite elements assume.
+    fixed : bool
+        Whether the gear stands still with the casing.
     """
 
     rim_thickness: float | None = None
     web_thickness: float | None = None
     bored: bool = True
+    fixed: bool = False
 
     def web_ratio(self, face_width: float) -> float | None:
         """b_s/b."""
@@ -244,7 +275,31 @@ class Body:
 SOLID = Body()
 
 
+def _ring_shape(gear: Gear, tooth: InternalTooth, body: Body) -> GearShape:
+    return GearShape(
+        teeth=-gear.teeth,
+        profile_shift=tooth.profile_shift,
+        tip_diameter=2.0 * gear.tip_radius,
+        root_diameter=2.0 * gear.root_radius,
+        face_width=gear.face_width,
+        dedendum=gear.root_radius / gear.module - 0.5 * gear.teeth + tooth.profile_shift,
+        bore_diameter=2.0 * gear.bore_radius,
+        active_tip_diameter=2.0 * gear.involute_tip_radius,
+        rim_thickness=body.rim_thickness,
+        web_ratio=body.web_ratio(gear.face_width),
+        young_modulus=gear.material.young_modulus,
+        poisson_ratio=gear.material.poisson_ratio,
+        density=gear.material.density,
+        outline=tooth,
+        fixed=body.fixed,
+    )
+
+
 def _shape(gear: Gear, body: Body) -> GearShape:
+    from fegear.geometry.internal_tooth import InternalTooth
+
+    if isinstance(gear.tooth, InternalTooth):
+        return _ring_shape(gear, gear.tooth, body)
     tooth = gear.external_tooth
     return GearShape(
         teeth=gear.teeth,
@@ -263,6 +318,7 @@ def _shape(gear: Gear, body: Body) -> GearShape:
         young_modulus=gear.material.young_modulus,
         poisson_ratio=gear.material.poisson_ratio,
         density=gear.material.density,
+        fixed=body.fixed,
     )
 
 

@@ -104,7 +104,8 @@ def reduced_mass(pair: PairGeometry, meshes: tuple[int, int] = (1, 1)) -> float:
     """m_red of discs per face width [kg/m] (ISO 6336-1:2006, 6.4.8, Eqs. 30 to 32).
 
     The discs have the mean diameter d_m = (d_a + d_f)/2 and a bore of d_i; a web counts for nothing. Of a gear with
-    several mates, as a sun has planets, each mesh moves its part.
+    several mates, as a sun has planets, each mesh moves its part. The disc of an internal gear lies outside of
+    d_m, and a gear that stands still with the casing does not move at all (6.4.9).
 
     Parameters
     ----------
@@ -114,9 +115,14 @@ def reduced_mass(pair: PairGeometry, meshes: tuple[int, int] = (1, 1)) -> float:
     """
     masses = []
     for gear, d_b, mates in zip(pair.gears, pair.base_diameters, meshes, strict=True):
+        if gear.fixed:
+            masses.append(math.inf)
+            continue
         d_m = 0.5 * (gear.tip_diameter + gear.root_diameter)
-        hollow = 1.0 - (gear.bore_diameter / d_m) ** 4
+        hollow = abs(1.0 - (gear.bore_diameter / d_m) ** 4)
         masses.append(math.pi / 8.0 * gear.density * hollow * d_m**4 / d_b**2 / mates)
+    if math.inf in masses:
+        return min(masses)
     return masses[0] * masses[1] / (masses[0] + masses[1])
 
 

@@ -1,7 +1,7 @@
 """ISO 6336-1 method B: tooth stiffness c'_th, c', mesh stiffness c_gamma_alpha, c_gamma_beta.
 
-Source: ISO 6336-1:2006, Calculation of load capacity of spur and helical gears - Part 1, clause 9 (external gears,
-steel, basic rack 20 deg; theory of Weber and Banaschek for discs, C_M = 0.8 from measurements). All stiffnesses are per
+Source: ISO 6336-1:2006, Calculation of load capacity of spur and helical gears - Part 1, clause 9 (steel, basic
+rack 20 deg; theory of Weber and Banaschek for discs, C_M = 0.8 from measurements). All stiffnesses are per
 unit face width, N/(m m) = Pa; 1 N/(mm um) = 1e9 Pa.
 """
 
@@ -132,12 +132,12 @@ def stiffness(
     specific_load: float = math.inf,
     young_modulus: tuple[float, float] = (STEEL, STEEL),
 ) -> Stiffness:
-    """Stiffnesses of an external gear pair (ISO 6336-1:2006, 9.3, method B).
+    """Stiffnesses of a gear pair (ISO 6336-1:2006, 9.3, method B).
 
     Parameters
     ----------
     teeth : (int, int)
-        z_1, z_2.
+        z_1, z_2; an internal gear's is negative and counts as infinite in q', as the standard says of internal gears.
     contact_ratio : float
         Transverse contact ratio epsilon_alpha, at least 1 and below 2.5 for spur gears.
     helix_angle : float
@@ -168,7 +168,7 @@ def stiffness(
         )
     if not specific_load > 0.0:
         raise RangeError("specific load", specific_load, "must be positive")
-    z_n = [virtual_teeth(z, helix_angle, pressure_angle) for z in teeth]
+    z_n = [math.inf if z < 0 else virtual_teeth(z, helix_angle, pressure_angle) for z in teeth]
     theoretical = theoretical_stiffness(z_n[0], z_n[1], *profile_shift)
     c_b = 0.5 * (rack_factor(dedendum[0], pressure_angle) + rack_factor(dedendum[1], pressure_angle))
     e_1, e_2 = young_modulus

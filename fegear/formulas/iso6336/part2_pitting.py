@@ -100,6 +100,8 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
             )
         factors.append(math.tan(pair.working_pressure_angle) / math.sqrt(product))
     m = (factors[0], factors[1])
+    if pair.internal:  # Z_D of an internal wheel is 1 always (6.2)
+        return m, (max(m[0], 1.0), 1.0)
     if pair.helix_angle == 0.0:
         return m, (max(m[0], 1.0), max(m[1], 1.0))
     part, helical = min(pair.overlap_ratio, 1.0), math.sqrt(tip_relief)
@@ -260,7 +262,7 @@ def through_hardened_factor(ratio_of_hardness: float, ratio: float) -> float:
     if ratio_of_hardness < 1.2:
         return 1.0
     slope = 0.00698 if ratio_of_hardness > 1.7 else 0.00898 * ratio_of_hardness - 0.00829
-    return max(1.0 + slope * (min(ratio, _LARGEST_RATIO) - 1.0), 1.0)
+    return max(1.0 + slope * (min(abs(ratio), _LARGEST_RATIO) - 1.0), 1.0)
 
 
 def work_hardening(

@@ -71,3 +71,20 @@ def outline_root_form(tooth: InvoluteTooth, load_diameter: float) -> RootForm:
     chord = 2.0 * x
     y_f = 6.0 * h * math.cos(load_angle) / (chord**2 * math.cos(tooth.pressure_angle))
     return RootForm(chord, rho, h, load_angle, y_f, stress_correction_factor(chord, h, rho), at, y)
+
+
+def ring_load_diameter(tooth: InvoluteTooth, tip_diameter: float, contact_ratio: float) -> float:
+    """d_en of a spur internal gear [modules]: from its tip the path of contact runs toward the root.
+
+    Parameters
+    ----------
+    tooth : InvoluteTooth
+    tip_diameter : float
+        d_Na, where its involute ends [modules].
+    contact_ratio : float
+        epsilon_alpha.
+    """
+    cosine = math.cos(tooth.pressure_angle)
+    base, pitch = 0.5 * tooth.teeth * cosine, math.pi * cosine
+    reach = math.sqrt(max(0.25 * tip_diameter**2 - base**2, 0.0)) + pitch * (contact_ratio - 1.0)
+    return 2.0 * math.hypot(reach, base)

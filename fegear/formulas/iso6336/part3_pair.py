@@ -118,15 +118,27 @@ def rate(
     backup_ratio : float
         s_R / h_t, rim thickness over tooth height; inf for a solid gear.
     """
-    form = root.root_form(gear, load_diameter)
+    rim = 1.0 if math.isinf(backup_ratio) else root.rim_factor(backup_ratio, 1.0)
+    return rate_form(gear.teeth, root.root_form(gear, load_diameter), load_diameter, module, load, choice, rim)
+
+
+def rate_form(
+    teeth: float,
+    form: root.RootForm,
+    load_diameter: float,
+    module: float,
+    load: ToothLoad,
+    choice: RatingChoice,
+    rim: float = 1.0,
+) -> RootRating:
+    """Rate one gear, external or internal, of a known critical section; Y_B is `rim`, the rest is that of `rate`."""
     shared = root.load_distribution_factor(load.contact_ratio, load.overlap_ratio, choice.edition)
     helix = root.helix_factor(load.overlap_ratio, load.helix_angle, choice.edition)
-    rim = 1.0 if math.isinf(backup_ratio) else root.rim_factor(backup_ratio, 1.0)
     deep = root.deep_tooth_factor(load.contact_ratio) if choice.accuracy_grade <= 4 else 1.0
     stress = root.nominal_root_stress(
         form, load.tangential, 1.0, module, helix=helix, rim=rim, deep_tooth=deep, load_distribution=shared
     )
-    return RootRating(gear.teeth, load_diameter, form, shared, helix, rim, deep, stress)
+    return RootRating(teeth, load_diameter, form, shared, helix, rim, deep, stress)
 
 
 def rate_spur(

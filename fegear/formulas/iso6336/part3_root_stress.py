@@ -263,6 +263,28 @@ def rim_factor(rim_thickness: float, tooth_height: float) -> float:
     return 1.0 if backup >= SOLID_RIM else 1.6 * math.log(2.242 / backup)
 
 
+#: Rim thickness over module that Y_B of internal gears holds above, and from which a ring counts as solid.
+LEAST_RING, SOLID_RING = 1.75, 3.5
+
+
+def ring_rim_factor(rim_ratio: float) -> float:
+    """Y_B of internal gears: 1, or 1.15 ln(8.324 m_n / s_R) for s_R < 3.5 m_n (ISO 6336-3:2006, 9.2).
+
+    Parameters
+    ----------
+    rim_ratio : float
+        s_R / m_n.
+
+    Raises
+    ------
+    RangeError
+        For s_R / m_n <= 1.75, which the standard says to avoid.
+    """
+    if not rim_ratio > LEAST_RING:
+        raise RangeError("rim thickness / module", f"{rim_ratio:.4g}", "must exceed 1.75 (ISO 6336-3, 9.2)")
+    return 1.0 if rim_ratio >= SOLID_RING else 1.15 * math.log(8.324 / rim_ratio)
+
+
 def deep_tooth_factor(contact_ratio: float) -> float:
     """Y_DT for gears of ISO accuracy grade 4 or better (ISO 6336-3:2006, 9.3); 1 up to epsilon_alpha_n = 2.05."""
     if contact_ratio <= 2.05:

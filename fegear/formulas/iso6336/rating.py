@@ -20,8 +20,14 @@ from fegear.formulas.iso6336.conditions import COMPUTED
 from fegear.formulas.iso6336.part1_face_load import root_exponent
 from fegear.formulas.iso6336.part1_stiffness import blank_factor, pair_blank_factor, stiffness
 from fegear.formulas.iso6336.part2_pitting import contact_ratio_factor, flank_strength
-from fegear.formulas.iso6336.part3_pair import RatingChoice, RootRating, ToothLoad, rate
-from fegear.formulas.iso6336.part3_root_stress import RackTooth, outer_single_contact_diameter, virtual_teeth
+from fegear.formulas.iso6336.part3_internal import outline_root_form, ring_load_diameter
+from fegear.formulas.iso6336.part3_pair import RatingChoice, RootRating, ToothLoad, rate, rate_form
+from fegear.formulas.iso6336.part3_root_stress import (
+    RackTooth,
+    outer_single_contact_diameter,
+    ring_rim_factor,
+    virtual_teeth,
+)
 from fegear.formulas.iso6336.part3_strength import STANDARD_GEAR, root_strength
 
 if TYPE_CHECKING:
@@ -264,11 +270,6 @@ def _root_width(pair: PairGeometry, i: int) -> float:
 def _root_rating(conditions: Conditions, i: int) -> RootRating:
     """Nominal root stress of one gear under F_t, through its virtual tooth."""
     pair, gear = conditions.geometry, conditions.geometry.gears[i]
-    z_n = virtual_teeth(gear.teeth, pair.helix_angle, pair.pressure_angle)
-    tooth = RackTooth(
-        z_n, gear.generating_shift, gear.dedendum, gear.tip_radius, pair.pressure_angle, gear.residual_undercut
-    )
-    tip = z_n + (gear.active_tip_diameter - pair.diameters[i]) / pair.module
     load = ToothLoad(
         conditions.duty.tangential / _root_width(pair, i),
         pair.virtual_contact_ratio,
@@ -276,10 +277,19 @@ def _root_rating(conditions: Conditions, i: int) -> RootRating:
         pair.helix_angle,
         deep=True,
     )
+    choice = RatingChoice(conditions.edition, max(q.grade for q in conditions.quality))
+    if gear.outline is not None:
+        rim = 1.0 if gear.rim_thickness is None else ring_rim_factor(gear.rim_thickness / pair.module)
+        at = ring_load_diameter(gear.outline, gear.active_tip_diameter / pair.module, load.contact_ratio)
+        return rate_form(gear.teeth, outline_root_form(gear.outline, at), at, pair.module, load, choice, rim)
+    z_n = virtual_teeth(gear.teeth, pair.helix_angle, pair.pressure_angle)
+    tooth = RackTooth(
+        z_n, gear.generating_shift, gear.dedendum, gear.tip_radius, pair.pressure_angle, gear.residual_undercut
+    )
+    tip = z_n + (gear.active_tip_diameter - pair.diameters[i]) / pair.module
     at = outer_single_contact_diameter(tooth, tip, load.contact_ratio)
     backup = math.inf if gear.rim_thickness is None else gear.rim_thickness / gear.depth
-    grade = max(q.grade for q in conditions.quality)
-    return rate(tooth, at, pair.module, load, RatingChoice(conditions.edition, grade), backup)
+    return rate(tooth, at, pair.module, load, choice, backup)
 
 
 def root_stress(

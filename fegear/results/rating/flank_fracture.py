@@ -27,7 +27,7 @@ from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_F
 from fegear.formulas.iso6336.part5_case_depth import recommended
 from fegear.geometry.pair import MEMBERS
 from fegear.results.rating.rating import given, rated
-from fegear.results.rating.shared_load import needs_shares, rated_pairs, with_shares
+from fegear.results.rating.shared_load import external_rated_pairs, needs_shares, with_shares
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -392,7 +392,7 @@ def _figure(member: Member, data: FlankFractureData, inputs: FlankFractureInputs
 
 
 FLANK_FRACTURE = Stage(
-    subjects=rated_pairs,
+    subjects=external_rated_pairs,
     needs=needs_shares,
     inputs=_inputs,
     compute=_compute,

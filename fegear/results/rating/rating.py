@@ -485,6 +485,7 @@ def _shown(one: Factor, asked: PairToRate) -> bool:
 
 RATING = Stage(
     subjects=rated_pairs,
+    internal=True,
     inputs=_inputs,
     compute=_compute,
     present=_present,

@@ -17,10 +17,19 @@ if TYPE_CHECKING:
 
 
 def rated_pairs(scene: Scene) -> tuple[str, ...]:
-    """All pairs but those of planets and ring of a set, of which the mesh with the sun is rated and says so."""
-    return tuple(
-        name for name, pair in scene.pairs.items() if not (pair.internal and set_of_pair(scene.case, name) is not None)
-    )
+    """All pairs but that of planet and ring of a set whose ring has no strength, of which the sun's mesh remarks."""
+
+    def of_a_bare_ring(name: str) -> bool:
+        found = set_of_pair(scene.case, name) if scene.pairs[name].internal else None
+        ring = None if found is None else scene.case.planetary[found].ring
+        return ring is not None and scene.case.gear[ring].strength is None
+
+    return tuple(name for name in scene.pairs if not of_a_bare_ring(name))
+
+
+def external_rated_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs but those of planets and ring of a set: what is not for internal teeth is found at the sun alone."""
+    return tuple(name for name, pair in scene.pairs.items() if not (pair.internal and set_of_pair(scene.case, name)))
 
 
 def needs_shares(scene: Scene, name: str) -> tuple[Task, ...]:
