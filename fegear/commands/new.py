@@ -81,7 +81,7 @@ def new(
     from fegear.case.text_file import write_file
 
     voice = Voice(quiet)
-    path = _case_file(name, force=force)
+    path = case_file(name, force=force)
     given = {
         "teeth": " ".join(teeth or ()),
         "module": module,
@@ -139,7 +139,7 @@ def _copy_example(name: str, path: Path, voice: Voice, *, force: bool) -> None:
     voice.say(f"Wrote {path}; next: fegear run {path}")
 
 
-def _case_file(name: str, *, force: bool) -> Path:
+def case_file(name: str, *, force: bool) -> Path:
     """The file of a new case, below a folder that is there and in nobody's place."""
     from fegear.case.text_file import named_path
 

@@ -29,6 +29,7 @@ LAYERS = {
     "design": 4,
     "dynamics": 5,
     "case": 6,
+    "exchange": 6.5,
     "engine": 7,
     "results": 8,
     "studies": 9,

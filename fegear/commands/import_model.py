@@ -1,0 +1,38 @@
+"""``fegear import``: a case from another program's model of a gearbox."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fegear.commands.common import Quiet, Voice
+
+
+def import_(
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help="REXS 1.0 to 1.7, XML or JSON.", show_default=False)],
+    out: Annotated[
+        str | None, typer.Option("--out", metavar="CASE", help="Case file to write; default the model's name.")
+    ] = None,
+    load_case: Annotated[
+        int | None, typer.Option("--load-case", metavar="N", help="Number of the load case; default the first.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a commented case: gears, stages, shafts, bearings and loads of a gearbox, and what was assumed of each."""
+    from fegear.case.text_file import write_file
+    from fegear.commands.new import case_file
+    from fegear.exchange.rexs.gearbox import case_of
+    from fegear.exchange.rexs.reading import read_model
+
+    voice = Voice(quiet)
+    text = case_of(read_model(model), load_case, model.name)
+    path = case_file(out or model.stem.replace(".", "_"), force=force)
+    write_file(path, text.encode(), "--out")
+    notes = sum(line.startswith("# Note: ") for line in text.splitlines())
+    voice.say(f"Wrote {path}, with {notes} notes at its end; next: fegear run {path}")
+
+
+import_.__name__ = "import"  # the command's name, which is a word of Python

@@ -1,0 +1,1 @@
+"""Models of other programs: a gearbox made a commented case."""

@@ -1,0 +1,1 @@
+"""REXS, the open exchange format of drives: gearboxes read."""

@@ -1,0 +1,112 @@
+"""What a model says, asked attribute by attribute: values in SI, and what was asked for and found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError, shown
+from fegear.exchange.rexs.units import size_of, units_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.exchange.rexs.model import Attribute, Component, Model
+
+#: Largest number that stands for something: beyond it programs mean infinity.
+RIGID = 1e15
+
+
+@dataclass
+class Said:
+    """A model under one load case, and a record of what has been read of it.
+
+    Parameters
+    ----------
+    model : Model
+    loaded : mapping
+        Attributes under the load case, by the components' numbers; they come before those of the components.
+    used : set of (int, str)
+        Numbers of components and names of attributes that entered the case.
+    notes : list of str
+        What was assumed or not used, for the user.
+    """
+
+    model: Model
+    loaded: Mapping[int, Mapping[str, Attribute]] = field(default_factory=dict)
+    used: set[tuple[int, str]] = field(default_factory=set)
+    notes: list[str] = field(default_factory=list)
+
+    def found(self, component: Component, *names: str) -> Attribute | None:
+        """The first of some attributes that a component has, and a record that it was used."""
+        for name in names:
+            one = self.loaded.get(component.id, {}).get(name) or component.attributes.get(name)
+            if one is not None and one.value != "":
+                self.used.add((component.id, name))
+                return one
+        return None
+
+    def number(self, component: Component, quantity: str, *names: str) -> float | None:
+        """A number in SI, by the first of its names that is there; None without any.
+
+        Raises
+        ------
+        InputError
+            If it is no number, not finite, or has no unit of the quantity.
+        """
+        one = self.found(component, *names)
+        return None if one is None else _in_si(one, one.value, component, quantity)
+
+    def needed(self, component: Component, quantity: str, *names: str) -> float:
+        """The same of what no case can do without."""
+        value = self.number(component, quantity, *names)
+        if value is None:
+            rule = f"is missing in {component.said} {shown(component.name)}"
+            raise InputError(names[0], "(not given)", rule, "complete the model where it was made")
+        return value
+
+    def whole(self, component: Component, *names: str) -> int:
+        """A whole number, as numbers of teeth; a missing one is refused."""
+        value = self.needed(component, "number", *names)
+        if value != round(value):
+            raise InputError(names[0], f"{value:g}", f"is no whole number in {component.said}", "correct the model")
+        return round(value)
+
+    def vector(self, component: Component, name: str) -> tuple[float, float, float] | None:
+        """Three components along u, v and w in SI (mm); None without."""
+        one = self.found(component, name)
+        if one is None:
+            return None
+        if not isinstance(one.value, tuple) or len(one.value) != 3:
+            raise InputError(name, shown(one.value), f"has not three entries in {component.said}", "correct the model")
+        u, v, w = (_in_si(one, part, component, "length") for part in one.value)
+        return u, v, w
+
+    def word(self, component: Component, *names: str) -> str | None:
+        """A word or a name; None without."""
+        one = self.found(component, *names)
+        return None if one is None else str(one.value)
+
+    def yes(self, component: Component, name: str) -> bool | None:
+        """Whether something holds; None where nothing is said."""
+        one = self.found(component, name)
+        return None if one is None else str(one.value).lower() == "true"
+
+    def linked(self, component: Component, role: str, kind: str, other: str, *types: str) -> list[Component]:
+        """Components of these types that relations link to one; as `Model.linked`."""
+        return [one for one in self.model.linked(component, role, kind, other) if not types or one.type in types]
+
+
+def _in_si(one: Attribute, value: object, component: Component, quantity: str) -> float:
+    size = size_of(one.unit, quantity)
+    if size is None:
+        rule = f"has no unit of a {quantity} in {component.said}"
+        raise InputError(one.name, f"{value} {one.unit}".rstrip(), rule, f"those of REXS are {units_of(quantity)}")
+    try:
+        number = math.nan if isinstance(value, tuple | bool) else float(value)  # type: ignore[arg-type]
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(one.name, shown(value), f"is no finite number in {component.said}", "correct the model")
+    return number * size
