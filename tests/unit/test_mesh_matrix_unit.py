@@ -70,7 +70,7 @@ class Moved:
     def __init__(self, base, e=0.0, phi=0.0):
         self.base, self.e, self.phi = base, e, phi
 
-    def at(self, pair, lines):
+    def at(self, pair, lines, _loads=None):
         return self.base.at(pair, lines) - self.e - self.phi * tilt_lever(pair, lines)
 
 
