@@ -185,6 +185,74 @@ def test_a_shaft_without_bearings_is_imported_as_a_pair_alone():
     assert make_plan(build_scene(found, "case", Path()), STAGES).steps
 
 
+def planetary_set():
+    """18/24/66 teeth, three planets, the ring held by the casing; 90 N m and 1000 rpm on the sun."""
+    distance = 0.5 * 42 * 2.0
+    components = [
+        part(1, "gear_unit", "A set"), part(2, "gear_casing"), part(9, "planetary_stage"), part(10, "planet_carrier"),
+        shaft(3, 0.0, 0.0, rotational_speed=(1000.0, "1/min"), defines_speed="true"), shaft(4, 0.0, 0.0),
+        shaft(5, 0.0, 0.0), gear(11, 18, 0.0), part(7, "coupling", "held", is_engaged="true"),
+        {**gear(15, 66, 0.0), "type": "ring_gear"},
+        part(31, "external_load", torque_around_u_axis=(90.0, "N m"), u_coordinate_on_shaft=(0.0, "mm"),
+             defines_torque="true"),
+        part(32, "external_load", u_coordinate_on_shaft=(0.0, "mm"), transmits_torque="true"),
+    ]  # fmt: skip
+    pairs = [(9, 10), (3, 11), (4, 15), (3, 31), (5, 32), (10, 5)]
+    stages = []
+    for n in range(3):
+        components += [
+            gear(12 + n, 24, 0.0), shaft(41 + n, distance, 0.0), shaft(51 + n, distance, 0.0),
+            part(61 + n, "concept_bearing", f"pin {n}"),
+            part(21 + n, "cylindrical_stage", center_distance=(distance, "mm")),
+            part(24 + n, "cylindrical_stage", center_distance=(distance, "mm")),
+        ]  # fmt: skip
+        pairs += [(41 + n, 12 + n), (10, 51 + n), (9, 21 + n), (9, 24 + n)]
+        stages += [
+            link(200 + n, "stage", stage=21 + n, gear_1=11, gear_2=12 + n),
+            link(210 + n, "stage", stage=24 + n, gear_1=12 + n, gear_2=15),
+            link(220 + n, "side", assembly=61 + n, outer_part=41 + n, inner_part=51 + n),
+        ]  # fmt: skip
+    links = [link(300 + n, "assembly", assembly=one, part=other) for n, (one, other) in enumerate(pairs)]
+    held = link(230, "side", assembly=7, inner_part=4, outer_part=2)
+    return {"version": "1.4", "components": components, "relations": [*stages, *links, held]}
+
+
+def test_a_planetary_stage_becomes_a_set():
+    found = case(in_json(planetary_set()))
+    assert "pair" not in found
+    one = found["planetary"]["P"]
+    assert {key: one[key] for key in ("planets", "fixed", "input", "torque", "speed")} == {
+        "planets": 3, "fixed": "ring", "input": "sun", "torque": "90 N*m", "speed": "1000 rpm",
+    }  # fmt: skip
+    assert [found["gear"][one[role]]["teeth"] for role in ("sun", "planet", "ring")] == [18, 24, 66]
+    assert found["gear"][one["ring"]]["internal"] is True
+    stages = {step.stage.name for step in make_plan(build_scene(found, "case", Path()), STAGES).steps}
+    assert {"planet-set", "planet-load-sharing"} <= stages
+
+
+def test_sets_that_nothing_holds_or_that_have_no_ring_are_refused():
+    with pytest.raises(InputError, match="do not balance through the teeth"):
+        case(in_json(without(planetary_set(), 7)))
+    with pytest.raises(InputError, match="must have a cylindrical gear as gear_1"):
+        case(in_json(without(planetary_set(), 15)))
+    two_suns = in_json(planetary_set()).replace('{"role": "gear_1", "id": 11}', '{"role": "gear_1", "id": 15}', 1)
+    with pytest.raises(InputError, match="is no set of one sun, planets and one ring"):
+        case(two_suns.replace('{"role": "gear_1", "id": 11}', '{"role": "gear_1", "id": 15}'))
+
+
+def test_a_bearing_between_two_shafts_counts_as_held_by_the_casing():
+    tree = two_stages()
+    links = [
+        link(one["id"], "side", assembly=52, inner_part=3, outer_part=4)
+        if {"role": "assembly", "id": 52} in one["refs"] else one
+        for one in tree["relations"]
+    ]  # fmt: skip
+    text = case_of(model_of(in_json({**tree, "relations": links}), HERE))
+    assert "concept_bearing 52 holds shaft 3 in another shaft: it is taken as held by the casing" in text
+    assert text.count("[bearing.bearing_52]") == 1
+    assert make_plan(build_scene(tomllib.loads(text), "case", Path()), STAGES).steps
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

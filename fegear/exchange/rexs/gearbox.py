@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
@@ -11,14 +12,16 @@ from fegear.exchange.case_tables import Key, Table, case_text, inline, listed, n
 from fegear.exchange.rexs.drive import Mesh, Torque, driven
 from fegear.exchange.rexs.places import BEARINGS, bodies_of, direction, middle_on_shaft, places_of, shaft_of, stages_of
 from fegear.exchange.rexs.said import Said
+from fegear.exchange.rexs.sets import flow_through, planetary_of, set_table
 from fegear.exchange.rexs.shafts import OnShaft, bearing_table, bearings_of, diameter_below, sections_of, shaft_table
 from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift
 from fegear.geometry.involute import inv
 
 if TYPE_CHECKING:
-    from fegear.exchange.rexs.drive import Driven
+    from fegear.exchange.rexs.drive import Driven, PlanetSet
     from fegear.exchange.rexs.model import Component, LoadCase, Model
     from fegear.exchange.rexs.places import Place, Stage
+    from fegear.exchange.rexs.sets import Planetary
 
 _RESULTS = ("geometry", "misalignment", "shaft-deflection", "load-distribution", "transmission-error", "rating")
 #: What a pair gets where the model says nothing: torque per mm of face and module squared [Pa], speed, oil.
@@ -31,7 +34,7 @@ _SOLVED = 12
 _APART = 1e-9
 _OIL = 'viscosity_40 = "220 mm^2/s", viscosity_100 = "19 mm^2/s", density_15 = "890 kg/m^3"'
 #: Stages that are not cylindrical.
-_OTHER_STAGES = ("planetary_stage", "bevel_stage", "worm_stage", "planetary_group")
+_OTHER_STAGES = ("bevel_stage", "worm_stage")
 
 
 def case_of(model: Model, load_case: int | None = None, source: str = "") -> str:
@@ -55,23 +58,33 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
     stages = stages_of(said)
     for one in model.of(*_OTHER_STAGES):
         said.notes.append(f"{one.said} is not read.")
+    sets = planetary_of(said, stages)
+    inside = {number for one in sets for number in one.stages}
+    everything, stages = stages, [stage for stage in stages if stage.component.id not in inside]
     gears = {gear.id: gear for stage in stages for gear in stage.gears}
-    names = _names(gears.values(), "gear")
-    on = {n: shaft_of(said, gear) for n, gear in gears.items()}
-    if lost := next((gear for n, gear in gears.items() if on[n] is None), None):
+    of_sets = {gear.id: gear for one in sets for gear in one.gears if gear.id not in gears}
+    names = _names((*gears.values(), *of_sets.values()), "gear")
+    on = {n: shaft_of(said, gear) for n, gear in (gears | of_sets).items()}
+    if lost := next((gear for n, gear in (gears | of_sets).items() if on[n] is None), None):
         raise InputError(lost.said, "(on no shaft)", "is part of no shaft", "complete its relation of type assembly")
-    shafts = {shaft.id: shaft for shaft in on.values() if shaft is not None}
+    shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     middles = _middles(said, gears, on)
-    flow = _flow(said, stages, on)
-    bent = _held(said, shafts)
-    tables = [_head(stages, said, bent=bent)]
-    for n, gear in gears.items():
-        keys = gear_keys(said, gear, _rest_of_shift(said, gear, stages), _bore(said, gear, on[n], middles))
+    turning = _flow(said, stages, sets, on)
+    flow = turning[:2]
+    bent = bool(shafts) and _held(said, shafts)
+    tables = [_head(stages, sets, said, bent=bent)]
+    for n, gear in (gears | of_sets).items():
+        bore = _bore(said, gear, on[n], middles) if n in gears else None
+        keys = gear_keys(said, gear, _rest_of_shift(said, gear, everything), bore)
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
     places = places_of(said, stages, middles)
     heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
     tables += [_pair(said, stage, names, flow, n, heights if bent else {}) for n, stage in enumerate(stages)]
+    tables += [
+        set_table(said, one, names, whole, flow[0], n, turning[2])
+        for n, (one, whole) in enumerate(zip(sets, turning[3], strict=True))
+    ]
     tables += _shafts(said, shafts, places, gears, names, on, middles, flow) if bent else []
     tables.append(_effects(bent=bent, relieved=relieved))
     about = f"Imported from {source}" if source else "Imported"
@@ -112,9 +125,12 @@ def _middles(said: Said, gears: dict[int, Component], on: dict[int, Component | 
     return found
 
 
-def _flow(said: Said, stages: list[Stage], on: dict[int, Component | None]) -> tuple[Driven, dict[int, int]]:
-    """Torques and speeds, and the body of every shaft."""
-    bodies, held = bodies_of(said)
+def _flow(
+    said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int, Component | None]
+) -> tuple[Driven, dict[int, int], set[int], list[PlanetSet]]:
+    """Torques and speeds, the body of every shaft, bodies that are held, and the planetary sets by bodies."""
+    bodies, held = bodies_of(said, [pair for one in sets for pair in pairwise(one.carriers)])
+    whole = [flow_through(said, one, bodies) for one in sets]
     meshes = [
         Mesh(
             (bodies[on[one.id].id], bodies[on[two.id].id]),  # type: ignore[union-attr]
@@ -135,19 +151,20 @@ def _flow(said: Said, stages: list[Stage], on: dict[int, Component | None]) -> t
         speed = said.number(shaft, "speed", "rotational_speed")
         if speed and said.yes(shaft, "defines_speed") is not False:
             speeds[bodies[shaft.id]] = sign * speed
-    if torques and all(one.value is not None for one in torques) and len(torques) == 1:
+    if stages and len(torques) == 1 and torques[0].value is not None:
         # One torque alone: it leaves at the last wheel.
         last = stages[-1].gears[1]
         torques.append(Torque(bodies[on[last.id].id], None))  # type: ignore[union-attr]
         said.notes.append(f"The torque is assumed to leave at {last.said}: nothing else takes it.")
     count = max(bodies.values(), default=-1) + 1
-    return driven(count, meshes, (), torques, speeds, sorted(held)), bodies
+    return driven(count, meshes, whole, torques, speeds, sorted(held)), bodies, held, whole
 
 
-def _head(stages: list[Stage], said: Said, *, bent: bool) -> Table:
-    internal = any(stage.internal for stage in stages)
+def _head(stages: list[Stage], sets: list[Planetary], said: Said, *, bent: bool) -> Table:
+    internal = bool(sets) or any(stage.internal for stage in stages)
     left_out = [*(("rating", "load-distribution") * internal), *(("misalignment", "shaft-deflection") * (not bent))]
     results = [one for one in _RESULTS if one not in left_out]
+    results += ["planet-set", "planet-load-sharing", "root-stress-history"] if sets else []
     if internal:
         said.notes.append("load-distribution and rating are not asked for: a stage has a ring gear.")
     title = next((one.name for one in said.model.of("gear_unit") if one.name), "") or "An imported gearbox"
@@ -260,7 +277,8 @@ def _shafts(
     called = _names(shafts.values(), "shaft")
     held = _names(said.model.of(*BEARINGS), "bearing")
     origin = places[next(iter(shafts))]
-    made, seats = [], []
+    made: list[Table] = []
+    seats: list[Table] = []
     for n, shaft in shafts.items():
         mine = tuple((names[m], middles[m]) for m in gears if on[m] is shaft)
         ends = tuple(
@@ -270,7 +288,9 @@ def _shafts(
         )
         bearings = bearings_of(said, shaft, held)
         along = [one for one in bearings if _absorbs(said, one.component)] or bearings[:1]
-        seats += [bearing_table(said, one, fixed=one is along[0]) for one in bearings]
+        there = {seat.name for seat in seats}
+        made_of = [bearing_table(said, one, fixed=one is along[0]) for one in bearings]
+        seats += [table for table in made_of if table.name not in there]
         clockwise = found.speed[bodies[n]] < 0.0
         made.append(
             shaft_table(said, shaft, called[n], places[n], OnShaft(mine, ends), bearings, origin, clockwise=clockwise)

@@ -91,7 +91,9 @@ class Said:
     def yes(self, component: Component, name: str) -> bool | None:
         """Whether something holds; None where nothing is said."""
         one = self.found(component, name)
-        return None if one is None else str(one.value).lower() == "true"
+        # Of what differs between gears of a gearbox that shifts, the first counts.
+        value = one.value[0] if one is not None and isinstance(one.value, tuple) and one.value else one and one.value
+        return None if one is None else str(value).lower() == "true"
 
     def linked(self, component: Component, role: str, kind: str, other: str, *types: str) -> list[Component]:
         """Components of these types that relations link to one; as `Model.linked`."""

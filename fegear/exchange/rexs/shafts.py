@@ -100,14 +100,13 @@ def diameter_below(sections: Sequence[Section], at: float) -> float | None:
 
 
 def bearings_of(said: Said, shaft: Component, names: Mapping[int, str]) -> list[Held]:
-    """What holds a shaft in the casing; bearings between shafts are not among them."""
+    """What holds a shaft; bearings between shafts count as held by the casing."""
     found = []
     for side, other, at in (("inner_part", "outer_part", "inner"), ("outer_part", "inner_part", "outer")):
         for one in said.linked(shaft, side, "side", "assembly", *BEARINGS):
             mates = said.linked(one, "assembly", "side", other)
             if any(mate.type == "shaft" for mate in mates):
-                said.notes.append(f"{one.said} holds {shaft.said} in another shaft and is not read.")
-                continue
+                said.notes.append(f"{one.said} holds {shaft.said} in another shaft: it is taken as held by the casing.")
             place = said.needed(one, "length", f"u_coordinate_on_shaft_{at}_side", "u_coordinate_on_shaft_inner_side")
             found.append(Held(one, names[one.id], place))
     return sorted(found, key=lambda one: one.at)

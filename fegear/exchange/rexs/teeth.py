@@ -43,6 +43,10 @@ _BY_NAME = (
     (r"(34|36|41|42|50) ?Cr ?(Ni)? ?Mo|(30|34) ?Cr ?Ni ?Mo|4140|4340", "through-hardened-alloy-steel", ""),
     (r"\bC ?(35|40|45|50|60)E?\b", "through-hardened-carbon-steel", ""),
 )
+#: Rim of a ring gear of which nothing is said [modules].
+_RIM = 3.5
+#: Its addendum, likewise [modules].
+_RING_ADDENDUM = 0.85
 #: A surface harder than this is a hardened case [HV].
 _CASE = 550.0
 
@@ -223,6 +227,16 @@ def _sizes(said: Said, gear: Component, flank: Component | None, bore: float | N
         keys.append(Key("bore_radius", quantity(0.5 * inner, "mm"), "half inner_diameter"))
     elif not ring and bore:
         keys.append(Key("bore_radius", quantity(bore, "mm"), "assumed: radius of the shaft section below it"))
+    if ring and tip is None:
+        # Teeth as high as the rack's would often reach into the planet's fillet.
+        helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
+        assumed = pitch / math.cos(helix) - 2.0 * ((profile_shift(said, gear) or 0.0) + _RING_ADDENDUM) * module_of(
+            said, gear
+        )
+        keys.append(Key("tip_diameter", quantity(assumed, "mm"), f"assumed: addendum of {_RING_ADDENDUM:g} modules"))
+    if ring:
+        rim = quantity(_RIM * module_of(said, gear), "mm")
+        keys.append(Key("rim_thickness", rim, f"assumed: {_RIM:g} modules, held outside"))
     keys.append(Key("face_width", quantity(said.needed(gear, "length", "face_width"), "mm"), "face_width"))
     return keys
 
