@@ -2,7 +2,7 @@
 #   fegear_setup VENV EXTRA   makes the virtual environment VENV, installs fegear[EXTRA] into it (an empty EXTRA
 #                             means the program alone) and looks after the system libraries. Quick when all is there.
 #   fegear_extras VENV CASE   adds the libraries that only some results need, where this case asks for such
-# What only some tests need (CalculiX, Chromium) is installed where that is allowed; otherwise those tests are skipped.
+# What only some tests need (CalculiX, Chromium, a C compiler) is installed where that is allowed; otherwise those tests are skipped.
 
 fegear_libraries() { # prints the Debian packages whose libraries are missing
     libraries=$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null || true)
@@ -16,6 +16,7 @@ fegear_libraries() { # prints the Debian packages whose libraries are missing
 fegear_test_programs() { # prints the Debian packages of programs that only tests need
     command -v ccx >/dev/null 2>&1 || printf ' calculix-ccx'
     command -v chromium >/dev/null 2>&1 || command -v chromium-browser >/dev/null 2>&1 || printf ' chromium'
+    command -v cc >/dev/null 2>&1 || command -v gcc >/dev/null 2>&1 || printf ' gcc libc6-dev' # meshes as FMUs
 }
 
 fegear_apt_get() { # installs Debian packages, if this user may
