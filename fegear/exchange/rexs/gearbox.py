@@ -288,9 +288,9 @@ def _shafts(
         )
         bearings = bearings_of(said, shaft, held)
         along = [one for one in bearings if _absorbs(said, one.component)] or bearings[:1]
-        there = {seat.name for seat in seats}
-        made_of = [bearing_table(said, one, fixed=one is along[0]) for one in bearings]
-        seats += [table for table in made_of if table.name not in there]
+        for one in bearings:  # between two shafts it comes twice
+            if f"bearing.{one.name}" not in {seat.name for seat in seats}:
+                seats.append(bearing_table(said, one, fixed=one is along[0]))
         clockwise = found.speed[bodies[n]] < 0.0
         made.append(
             shaft_table(said, shaft, called[n], places[n], OnShaft(mine, ends), bearings, origin, clockwise=clockwise)
