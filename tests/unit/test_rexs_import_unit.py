@@ -8,7 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from rexs_models import in_json, link, part, planetary_set, two_stages
+from rexs_models import in_json, link, part, planetary_set, shaft, two_stages
 
 import fegear.cli
 from fegear.base.errors import InputError
@@ -153,6 +153,161 @@ def test_a_bearing_between_two_shafts_counts_as_held_by_the_casing():
     assert "concept_bearing 52 holds shaft 3 in another shaft: it is taken as held by the casing" in text
     assert text.count("[bearing.bearing_52]") == 1
     assert make_plan(build_scene(tomllib.loads(text), "case", Path()), STAGES).steps
+
+
+def values_of(tree, number, **changed):
+    """The model with attributes of a component changed or added."""
+    made = part(number, "", **changed)["attributes"]
+    others = without(tree, number, *changed)
+    parts = [
+        {**one, "attributes": [*one["attributes"], *made]} if one["id"] == number else one
+        for one in others["components"]
+    ]  # fmt: skip
+    return {**others, "components": parts}
+
+
+def fixed_ones(tree):
+    return [name for name, one in case(in_json(tree))["bearing"].items() if one.get("fixed") or "axial" in one]
+
+
+def test_the_bearing_that_takes_the_axial_force_holds_the_shaft():
+    """Gear 11 turns about +u and is braked by its mate: its teeth, wound right-handed, are pushed towards +u."""
+    tree = two_stages()
+    for first, second, holds in (
+        ("both_directions", "no_direction", "bearing_51"),
+        ("no_direction", "both_directions", "bearing_52"),
+        ("positive", "negative", "bearing_51"),
+        ("negative", "positive", "bearing_52"),
+        ("negative", "both_directions", "bearing_52"),
+        ("no_direction", "no_direction", "bearing_51"),
+    ):
+        said = values_of(tree, 51, axial_force_absorption=first)
+        said = values_of(said, 52, axial_force_absorption=second)
+        assert fixed_ones(said)[0] == holds, (first, second)
+    assert "no bearing holds it both ways" not in case_of(model_of(in_json(tree), HERE))
+    other = in_json(values_of(values_of(tree, 51, axial_force_absorption="negative"), 52, axial_force_absorption="x"))
+    assert "shaft 3: no bearing holds it both ways along its axis; concept_bearing 51 is taken to" in case_of(
+        model_of(other, HERE)
+    )
+
+
+def oiled(called="Oil", **about):
+    """Two stages in oil: name and attributes of the lubricant, and what stands elsewhere."""
+    tree = values_of(two_stages(), 2, temperature_lubricant=(55.0, "C"))
+    tree = values_of(tree, 1, operating_time=(5000.0, "h"))
+    tree = values_of(tree, 21, application_factor_iso_6336_2006=(1.25, "none"))
+    oil = part(60, "lubricant", called, **about)
+    links = [*tree["relations"], link(190, "reference", origin=2, referenced=60)]
+    return case(in_json({**tree, "components": [*tree["components"], oil], "relations": links}))["pair"]
+
+
+def test_oil_temperature_life_and_application_factor_are_those_of_the_model():
+    found = oiled(
+        viscosity_at_40_degree_celsius=(100.0, "mm^2 / s"), viscosity_at_100_degree_celsius=(11.0, "mm^2 / s"),
+        density_at_15_degree_celsius=(0.88, "kg / dm^3"), lubricant_type_iso_6336_2006="polyalfaolefin",
+    )  # fmt: skip
+    assert found["I"]["lubricant"] == {
+        "viscosity_40": "100 mm^2/s", "viscosity_100": "11 mm^2/s", "density_15": "880 kg/m^3",
+        "kind": "polyalphaolefin", "temperature": "55 degC",
+    }  # fmt: skip
+    assert found["I"]["operation"] == {"application_factor": 1.25, "life": "5000 h"}
+    assert found["II"]["operation"]["application_factor"] == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "grade"),
+    [("ISO-VG-100 [91]", "100"), ("CLP 220", "220"), ("Mobilgear 600 XP 320", "320"), ("VG 68 of 1999", "68"),
+     ("oil", "220")],
+)  # fmt: skip
+def test_an_oil_without_viscosity_has_the_grade_of_its_name(name, grade):
+    assert oiled(called=name)["I"]["lubricant"] == {"viscosity_40": f"{grade} mm^2/s", "temperature": "55 degC"}
+
+
+def planned(tree):
+    """Torques and speeds of the pairs of a model whose case can be planned."""
+    text = case_of(model_of(in_json(tree), HERE))
+    found = tomllib.loads(text)
+    assert make_plan(build_scene(found, "case", Path()), STAGES).steps
+    return [tuple(float(one[key].split()[0]) for key in ("torque", "speed")) for one in found["pair"].values()], text
+
+
+def test_one_assumed_torque_and_speed_are_carried_through_the_train():
+    tree = without(without(two_stages(), 31, "torque_around_u_axis"), 3, "rotational_speed")
+    (first, second), text = planned(tree)
+    assert second == pytest.approx((3.0 * first[0], first[1] / 3.0), rel=1e-12)
+    assert first[1] == 1500.0
+    assert "No torque is given for cylindrical_stage 21, cylindrical_stage 22: 2.8 N m are assumed" in text
+    assert text.count("# assumed, and carried through the gearbox") == 4
+    # Without a word on where torque enters or leaves it does so at the ends of the shafts.
+    bare, text = planned(without(without(tree, 31), 32))
+    assert bare == [first, second]
+    assert "shaft 3: nothing says where its torque enters or leaves: its end is assumed" in text
+    # A torque that is given alone leaves at the other end, whichever end it enters.
+    assert planned(without(two_stages(), 32))[0] == [(100.0, 1500.0), (300.0, 500.0)]
+    from_behind = values_of(without(two_stages(), 31), 32, torque_around_u_axis=(90.0, "N m"), transmits_torque="false")
+    assert planned(from_behind)[0][1] == (90.0, 166.666666667)
+
+
+def test_a_power_is_read_as_a_torque():
+    tree = values_of(without(two_stages(), 31, "torque_around_u_axis"), 31, power=(15.0, "kW"))
+    assert planned(tree)[0][0] == pytest.approx((15e3 / (50.0 * math.pi), 1500.0), rel=1e-11)
+
+
+def test_paths_beside_each_other_share_a_torque_that_is_not_determined():
+    """A second wheel like gear 12 on a shaft of its own, whose torque nothing gives."""
+    tree = two_stages()
+    more = [
+        shaft(6, -80.0 / math.cos(math.radians(10.0)), 0.0), {**part_of(tree, 12), "id": 15, "name": "gear 15"},
+        part(23, "cylindrical_stage", "three"),
+        part(33, "external_load", u_coordinate_on_shaft=(120.0, "mm"), transmits_torque="true"),
+        part(48, "shaft_section", length=(120.0, "mm"), outer_diameter_begin=(30.0, "mm")),
+        *(part(n, "concept_bearing", f"bearing {n}", u_coordinate_on_shaft_inner_side=(at, "mm"),
+               radial_stiffness=(4e5, "N/mm")) for n, at in ((71, 10.0), (72, 110.0))),
+    ]  # fmt: skip
+    links = [
+        link(180, "stage", stage=23, gear_1=11, gear_2=15), link(181, "assembly", assembly=6, part=15),
+        link(182, "assembly", assembly=6, part=33), link(183, "ordered_assembly", assembly=6, part=48),
+        *(link(184 + n, "side", assembly=71 + n, inner_part=6, outer_part=2) for n in range(2)),
+    ]  # fmt: skip
+    tree = {**tree, "components": [*tree["components"], *more], "relations": [*tree["relations"], *links]}
+    pairs, text = planned(tree)
+    assert pairs[0][0] + pairs[2][0] == pytest.approx(100.0, rel=1e-9)
+    assert pairs[1][0] == pytest.approx(3.0 * pairs[0][0], rel=1e-9)
+    assert "cylindrical_stage 21: the model does not determine its torque" in text
+
+
+def part_of(tree, number):
+    return next(one for one in tree["components"] if one["id"] == number)
+
+
+def test_helices_that_cannot_mesh_and_teeth_below_zero_are_refused_and_a_ring_may_have_either_sign():
+    with pytest.raises(InputError, match=r"10 deg and 10 deg.*cannot mesh in cylindrical_stage 21"):
+        case(in_json(values_of(two_stages(), 12, helix_angle_reference_diameter=(10.0, "deg"))))
+    with pytest.raises(InputError, match="cannot mesh"):
+        case(in_json(values_of(two_stages(), 12, helix_angle_reference_diameter=(-11.0, "deg"))))
+    with pytest.raises(InputError, match=r"number_of_teeth = -60: .*cylindrical_gear 12; .*ring gears alone"):
+        case(in_json(values_of(two_stages(), 12, number_of_teeth=(-60, "none"))))
+    negative = values_of(planetary_set(), 15, number_of_teeth=(-66, "none"))
+    assert case(in_json(negative)) == case(in_json(planetary_set()))
+    # A ring turns with its pinion, whatever the sign of its teeth.
+    for teeth in (63, -63):
+        tree = values_of(two_stages(), 14, number_of_teeth=(teeth, "none"), type="x")
+        part_of(tree, 14)["type"] = "ring_gear"
+        part_of(tree, 22)["attributes"][0]["float"] = 42.0
+        tree = without(tree, 5, "support_vector")
+        assert "clockwise" in case(in_json(tree))["shaft"]["shaft_5"], teeth
+        assert float(case(in_json(tree))["pair"]["II"]["torque"].split()[0]) == pytest.approx(300.0)
+
+
+def test_a_truth_value_is_no_name_of_a_material():
+    steel = part(61, "material", "steel", material_designation=True, elastic_modulus=(206e3, "N/mm^2"))
+    tree = two_stages()
+    links = [*tree["relations"], link(191, "reference", origin=11, referenced=61)]
+    with pytest.raises(InputError, match="material_designation = true: is a truth value"):
+        case(in_json({**tree, "components": [*tree["components"], steel], "relations": links}))
+    assert (
+        model_of(in_json({"version": "1.4", "components": [{**steel, "name": True}]}), HERE).components[61].name == ""
+    )
 
 
 @pytest.mark.parametrize(

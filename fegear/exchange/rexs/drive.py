@@ -1,7 +1,7 @@
 """How torque and speed go through a gearbox: from what is given on some shafts to all meshes.
 
 Shafts that couplings join turn as one body. Torques in balance on every body, tooth forces equal on both gears of
-a stage, and Willis's equation of every planetary set are linear; what they do not determine stays unknown, what
+a stage, and Willis's equation of every planetary set are linear; speeds that they do not determine stay unknown, what
 contradicts them is refused.
 """
 
@@ -18,7 +18,7 @@ from fegear.base.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
 
 #: Data may contradict each other by so much of the largest: they are often given with four digits.
 _MISS = 1e-3
@@ -60,7 +60,7 @@ class Torque:
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """What flows through a gearbox; NaN where it is not determined.
+    """What flows through a gearbox; speeds are NaN where they are not determined.
 
     Parameters
     ----------
@@ -72,12 +72,15 @@ class Driven:
         Torques from outside, in their order [N m].
     speed : tuple of float
         Of every body [rad/s].
+    shared : frozenset of int
+        Meshes whose torque balance does not determine: paths beside each other share it as evenly as it allows.
     """
 
     mesh_torque: tuple[float, ...]
     set_torque: tuple[float, ...]
     outside: tuple[float, ...]
     speed: tuple[float, ...]
+    shared: frozenset[int] = frozenset()
 
 
 def driven(
@@ -122,13 +125,14 @@ def driven(
         balance[body, column] += 1.0
     for torque in torques:
         given[torque.body] -= torque.value or 0.0
-    solved = _solved(balance, given, "torque_around_u_axis", "torques that do not balance through the teeth")
+    solved, free = _solved(balance, given, "torque_around_u_axis", "torques that do not balance through the teeth")
     outside = [one.value for one in torques]
     for column, n in enumerate(unknown, first_unknown):
         outside[n] = solved[column]
     return Driven(
         tuple(solved[:first_set]), tuple(solved[first_set:first_unknown]),
         tuple(math.nan if one is None else one for one in outside), _speeds(bodies, meshes, sets, speeds, held),
+        frozenset(n for n in range(first_set) if free[n] and math.isfinite(solved[n])),
     )  # fmt: skip
 
 
@@ -147,13 +151,14 @@ def _speeds(
             row[body] += share / (sun + ring)
     for n, (body, speed) in enumerate(known.items(), len(meshes) + len(sets)):
         rolling[n, body], values[n] = 1.0, speed
-    return tuple(_solved(rolling, values, "rotational_speed", "speeds that the teeth do not allow"))
+    solved, free = _solved(rolling, values, "rotational_speed", "speeds that the teeth do not allow")
+    return tuple(np.where(free, math.nan, solved))
 
 
-def _solved(matrix: Array, right: Array, key: str, rule: str) -> Array:
-    """Solve what is determined; NaN for what is not, or where nothing is given."""
+def _solved(matrix: Array, right: Array, key: str, rule: str) -> tuple[Array, Mask]:
+    """The smallest solution, NaN where nothing is given, and what of it is not determined."""
     if not matrix.size or not right.any():
-        return np.full(matrix.shape[1], math.nan)
+        return np.full(matrix.shape[1], math.nan), np.ones(matrix.shape[1], dtype=bool)
     scale = np.maximum(np.abs(matrix).max(axis=0), 1e-300)
     left, sizes, directions = np.linalg.svd(matrix / scale)
     rank = int((sizes > 1e-10 * sizes[0]).sum())
@@ -162,4 +167,4 @@ def _solved(matrix: Array, right: Array, key: str, rule: str) -> Array:
     if missed > _MISS * np.abs(right).max():
         raise InputError(key, f"{missed:.4g} (SI) too much", f"belongs to {rule}", "correct the loads of the model")
     free = np.abs(directions[rank:]).max(axis=0, initial=0.0) > 1e-9
-    return np.where(free, math.nan, found / scale)
+    return found / scale, free

@@ -4,35 +4,40 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
-from fegear.exchange.case_tables import Key, Table, case_text, inline, listed, number, plain_name, quantity, text
-from fegear.exchange.rexs.drive import Mesh, Torque, driven
-from fegear.exchange.rexs.places import BEARINGS, bodies_of, direction, middle_on_shaft, places_of, shaft_of, stages_of
+from fegear.exchange.case_tables import Key, Table, case_text, listed, plain_name, quantity, text
+from fegear.exchange.rexs.loads import chosen_load_case, flow_of
+from fegear.exchange.rexs.operation import lubricant_key, operation_key
+from fegear.exchange.rexs.places import BEARINGS, middle_on_shaft, places_of, shaft_of, stages_of
 from fegear.exchange.rexs.said import Said
-from fegear.exchange.rexs.sets import flow_through, planetary_of, set_table
-from fegear.exchange.rexs.shafts import OnShaft, bearing_table, bearings_of, diameter_below, sections_of, shaft_table
-from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift
+from fegear.exchange.rexs.sets import planetary_of, set_table
+from fegear.exchange.rexs.shafts import (
+    OnShaft,
+    bearing_table,
+    bearings_of,
+    diameter_below,
+    fixed_bearing,
+    sections_of,
+    shaft_table,
+)
+from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift, refuse_equal_hands, teeth_of
 from fegear.geometry.involute import inv
 
 if TYPE_CHECKING:
-    from fegear.exchange.rexs.drive import Driven, PlanetSet
-    from fegear.exchange.rexs.model import Component, LoadCase, Model
+    from fegear.exchange.rexs.loads import Flow
+    from fegear.exchange.rexs.model import Component, Model
     from fegear.exchange.rexs.places import Place, Stage
     from fegear.exchange.rexs.sets import Planetary
 
 _RESULTS = ("geometry", "misalignment", "shaft-deflection", "load-distribution", "transmission-error", "rating")
-#: What a pair gets where the model says nothing: torque per mm of face and module squared [Pa], speed, oil.
-_ASSUMED_LOAD = 10e6
 #: Rim below which a gear is no body of its own on its shaft [modules].
 _LEAST_RIM = 2.7
 #: Digits of what was solved: those behind them mean nothing.
 _SOLVED = 12
 #: Faces may stand beside each other by so much without being told [m].
 _APART = 1e-9
-_OIL = 'viscosity_40 = "220 mm^2/s", viscosity_100 = "19 mm^2/s", density_15 = "890 kg/m^3"'
 #: Stages that are not cylindrical.
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
 
@@ -53,9 +58,10 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
     InputError
         If what a case needs is missing or contradicts itself.
     """
-    chosen = _load_case(model, load_case)
+    chosen = chosen_load_case(model, load_case)
     said = Said(model, chosen.attributes if chosen else {})
     stages = stages_of(said)
+    refuse_equal_hands(said, stages)
     for one in model.of(*_OTHER_STAGES):
         said.notes.append(f"{one.said} is not read.")
     sets = planetary_of(said, stages)
@@ -69,8 +75,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
         raise InputError(lost.said, "(on no shaft)", "is part of no shaft", "complete its relation of type assembly")
     shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     middles = _middles(said, gears, on)
-    turning = _flow(said, stages, sets, on)
-    flow = turning[:2]
+    flow = flow_of(said, stages, sets, on)
     bent = bool(shafts) and _held(said, shafts)
     tables = [_head(stages, sets, said, bent=bent)]
     for n, gear in (gears | of_sets).items():
@@ -82,10 +87,10 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
     heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
     tables += [_pair(said, stage, names, flow, n, heights if bent else {}) for n, stage in enumerate(stages)]
     tables += [
-        set_table(said, one, names, whole, flow[0], n, turning[2])
-        for n, (one, whole) in enumerate(zip(sets, turning[3], strict=True))
+        set_table(said, one, names, whole, flow.driven, n, flow.held)
+        for n, (one, whole) in enumerate(zip(sets, flow.sets, strict=True))
     ]
-    tables += _shafts(said, shafts, places, gears, names, on, middles, flow) if bent else []
+    tables += _shafts(said, shafts, places, stages, names, on, middles, flow) if bent else []
     tables.append(_effects(bent=bent, relieved=relieved))
     about = f"Imported from {source}" if source else "Imported"
     head = (
@@ -93,15 +98,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
         + (f", load case {chosen.id}" if chosen else "") + ".",
         "Behind each key stands the attribute that it comes from, or what was assumed.",
     )  # fmt: skip
-    return case_text(head, tables, (*(f"Note: {note}" for note in said.notes), *_unread(said)))
-
-
-def _load_case(model: Model, asked: int | None) -> LoadCase | None:
-    known = {one.id: one for one in model.load_cases}
-    if asked is not None and asked not in known:
-        listed_ones = ", ".join(map(str, known)) or "none"
-        raise InputError("--load-case", asked, "is none of the model", f"it has {listed_ones}")
-    return known[asked] if asked is not None else next(iter(known.values()), None)
+    return case_text(head, tables, (*(f"Note: {note}" for note in dict.fromkeys(said.notes)), *_unread(said)))
 
 
 def _names(components: object, other: str) -> dict[int, str]:
@@ -125,41 +122,6 @@ def _middles(said: Said, gears: dict[int, Component], on: dict[int, Component | 
     return found
 
 
-def _flow(
-    said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int, Component | None]
-) -> tuple[Driven, dict[int, int], set[int], list[PlanetSet]]:
-    """Torques and speeds, the body of every shaft, bodies that are held, and the planetary sets by bodies."""
-    bodies, held = bodies_of(said, [pair for one in sets for pair in pairwise(one.carriers)])
-    whole = [flow_through(said, one, bodies) for one in sets]
-    meshes = [
-        Mesh(
-            (bodies[on[one.id].id], bodies[on[two.id].id]),  # type: ignore[union-attr]
-            tuple(said.whole(gear, "number_of_teeth") for gear in (one, two)),  # type: ignore[arg-type]
-        )
-        for one, two in (stage.gears for stage in stages)
-    ]
-    torques, speeds = [], {}
-    for shaft in said.model.of("shaft"):
-        sign = -1.0 if direction(said, shaft) else 1.0
-        for load in said.linked(shaft, "assembly", "assembly", "part", "external_load"):
-            value = said.number(load, "torque", "torque_around_u_axis")
-            through = said.yes(load, "transmits_torque")
-            if said.yes(load, "defines_torque") is False or (value is None and through):
-                torques.append(Torque(bodies[shaft.id], None))
-            elif value:
-                torques.append(Torque(bodies[shaft.id], sign * value))
-        speed = said.number(shaft, "speed", "rotational_speed")
-        if speed and said.yes(shaft, "defines_speed") is not False:
-            speeds[bodies[shaft.id]] = sign * speed
-    if stages and len(torques) == 1 and torques[0].value is not None:
-        # One torque alone: it leaves at the last wheel.
-        last = stages[-1].gears[1]
-        torques.append(Torque(bodies[on[last.id].id], None))  # type: ignore[union-attr]
-        said.notes.append(f"The torque is assumed to leave at {last.said}: nothing else takes it.")
-    count = max(bodies.values(), default=-1) + 1
-    return driven(count, meshes, whole, torques, speeds, sorted(held)), bodies, held, whole
-
-
 def _head(stages: list[Stage], sets: list[Planetary], said: Said, *, bent: bool) -> Table:
     internal = bool(sets) or any(stage.internal for stage in stages)
     left_out = [*(("rating", "load-distribution") * internal), *(("misalignment", "shaft-deflection") * (not bent))]
@@ -180,7 +142,7 @@ def _rest_of_shift(said: Said, gear: Component, stages: list[Stage]) -> float | 
     mate = next(one for one in stage.gears if one.id != gear.id)
     if distance is None or stage.internal:
         return 0.0
-    teeth = sum(abs(said.whole(one, "number_of_teeth")) for one in stage.gears)
+    teeth = sum(abs(teeth_of(said, one)) for one in stage.gears)
     helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
     flank = flank_of(said, gear)
     normal = (said.number(flank, "angle", "normal_pressure_angle") if flank else None) or math.radians(20.0)
@@ -202,7 +164,7 @@ def _bore(said: Said, gear: Component, shaft: Component | None, middles: dict[in
     if below is None:
         return None
     module, helix = module_of(said, gear), said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
-    teeth = abs(said.whole(gear, "number_of_teeth"))
+    teeth = abs(teeth_of(said, gear))
     root = module * (0.5 * teeth / math.cos(helix) - 1.25 + (profile_shift(said, gear) or 0.0))
     if root - 0.5 * below < _LEAST_RIM * module:
         said.notes.append(f"{gear.said} is taken as cut into its shaft, whose radius is {0.5e3 * below:.4g} mm.")
@@ -216,47 +178,29 @@ def _height(place: Place, middle: float) -> float:
 
 
 def _pair(
-    said: Said, stage: Stage, names: dict[int, str], flow: tuple[Driven, dict[int, int]], n: int,
-    heights: dict[int, float],
+    said: Said, stage: Stage, names: dict[int, str], flow: Flow, n: int, heights: dict[int, float]
 ) -> Table:  # fmt: skip
     """``[pair.NAME]``: who drives, distance, torque and speed."""
-    found, bodies = flow
     first, second = stage.gears
-    torque = found.mesh_torque[n] if n < len(found.mesh_torque) else math.nan
-    speeds = [found.speed[bodies[shaft_of(said, gear).id]] for gear in stage.gears]  # type: ignore[union-attr]
-    drives = not torque * speeds[0] > 0.0  # the mate takes power from a gear that drives
+    drives, on_driver, speed = flow.into(n)
     driver, wheel = (first, second) if drives else (second, first)
-    teeth = [abs(said.whole(gear, "number_of_teeth")) for gear in (first, second)]
-    on_driver = abs(torque) if drives else abs(torque) * teeth[1] / teeth[0]
-    speed = abs(speeds[0] if drives else speeds[1])
     distance = said.number(stage.component, "length", "center_distance")
     keys = [Key("driver", text(names[driver.id])), Key("driven", text(names[wheel.id]))]
     if distance is not None:
         keys.append(Key("centre_distance", quantity(abs(distance), "mm"), "center_distance"))
     # End I is that from which the driver turns counter-clockwise: the end of +u where it turns about +u.
     higher = heights.get(wheel.id, 0.0) - heights.get(driver.id, 0.0)
-    higher *= -1.0 if (speeds[0] if drives else speeds[1]) < 0.0 else 1.0
+    higher *= -1.0 if speed < 0.0 else 1.0
     if abs(higher) > _APART:
         keys.append(Key("axial_offset", quantity(higher, "mm"), "from the places of both shafts"))
-    if math.isfinite(on_driver) and on_driver > 0.0:
-        keys.append(
-            Key("torque", quantity(on_driver, "N*m", _SOLVED), "through the gearbox from the torque of external_load")
-        )
-    else:
-        width, module = said.needed(driver, "length", "face_width"), module_of(said, driver)
-        pinion = teeth[0] if drives else teeth[1]
-        load = _ASSUMED_LOAD * width * module * 0.5 * module * pinion
-        keys.append(Key("torque", quantity(float(f"{load:.3g}"), "N*m"), "assumed: no torque reaches this mesh"))
-    if math.isfinite(speed) and speed > 0.0:
-        keys.append(Key("speed", quantity(speed, "rpm", _SOLVED), "through the gearbox from rotational_speed"))
-    else:
-        keys.append(Key("speed", quantity(1500.0 * 2.0 * math.pi / 60.0, "rpm"), "assumed: no speed reaches this mesh"))
+    assumed = "assumed, and carried through the gearbox"
+    where = assumed if n in flow.assumed_torque else "through the gearbox from the torque of external_load"
+    keys.append(Key("torque", quantity(on_driver, "N*m", _SOLVED), where))
+    where = assumed if n in flow.assumed_speed else "through the gearbox from rotational_speed"
+    keys.append(Key("speed", quantity(abs(speed), "rpm", _SOLVED), where))
     if not stage.internal:
         keys.append(Key("width", text("slices"), "cheaper than solid gears"))
-        keys.append(Key("lubricant", f'{{ {_OIL}, temperature = "70 degC" }}', "assumed: mineral oil ISO VG 220"))
-        factor = said.number(stage.component, "number", "application_factor")
-        life = inline(application_factor=number(factor or 1.0), life='"20000 h"')
-        keys.append(Key("operation", life, "application_factor" if factor else "assumed"))
+        keys += [lubricant_key(said, stage.component), operation_key(said, stage.component)]
     return Table(f"pair.{_roman(n + 1)}", tuple(keys), f"{stage.component.said} {stage.component.name}".strip())
 
 
@@ -268,30 +212,34 @@ def _roman(n: int) -> str:
 
 
 def _shafts(
-    said: Said, shafts: dict[int, Component], places: dict[int, Place], gears: dict[int, Component],
-    names: dict[int, str], on: dict[int, Component | None], middles: dict[int, float],
-    flow: tuple[Driven, dict[int, int]],
+    said: Said, shafts: dict[int, Component], places: dict[int, Place], stages: list[Stage],
+    names: dict[int, str], on: dict[int, Component | None], middles: dict[int, float], flow: Flow,
 ) -> list[Table]:  # fmt: skip
     """All shafts with gears, the first as the origin, and their bearings."""
-    found, bodies = flow
+    every = {gear.id: gear for stage in stages for gear in stage.gears}
     called = _names(shafts.values(), "shaft")
     held = _names(said.model.of(*BEARINGS), "bearing")
     origin = places[next(iter(shafts))]
     made: list[Table] = []
     seats: list[Table] = []
     for n, shaft in shafts.items():
-        mine = tuple((names[m], middles[m]) for m in gears if on[m] is shaft)
+        gears = [one for one in every.values() if on[one.id] is shaft]
+        mine = tuple((names[one.id], middles[one.id]) for one in gears)
         ends = tuple(
             said.needed(one, "length", "u_coordinate_on_shaft")
             for one in said.linked(shaft, "assembly", "assembly", "part", "external_load")
             if said.yes(one, "transmits_torque") or said.number(one, "torque", "torque_around_u_axis")
         )
+        if not ends and flow.left_by(stages, gears):
+            ends = (sections_of(said, shaft)[-1].end,)
+            said.notes.append(f"{shaft.said}: nothing says where its torque enters or leaves: its end is assumed.")
         bearings = bearings_of(said, shaft, held)
-        along = [one for one in bearings if _absorbs(said, one.component)] or bearings[:1]
+        sense = -1.0 if places[n].reversed else 1.0
+        along = fixed_bearing(said, shaft, bearings, sense * flow.push(said, stages, gears))
         for one in bearings:  # between two shafts it comes twice
             if f"bearing.{one.name}" not in {seat.name for seat in seats}:
-                seats.append(bearing_table(said, one, fixed=one is along[0]))
-        clockwise = found.speed[bodies[n]] < 0.0
+                seats.append(bearing_table(said, one, fixed=one is along))
+        clockwise = flow.driven.speed[flow.bodies[n]] < 0.0
         made.append(
             shaft_table(said, shaft, called[n], places[n], OnShaft(mine, ends), bearings, origin, clockwise=clockwise)
         )
@@ -320,12 +268,6 @@ def _effects(*, bent: bool, relieved: bool) -> Table:
     keys += [Key("relief", "true", "relief and lead of the gears")] if relieved else []
     keys += [Key("misalignment", "true", "the shafts tilt the flanks")] if bent else []
     return Table("effects", tuple(keys))
-
-
-def _absorbs(said: Said, bearing: Component) -> bool:
-    """Whether a bearing holds its shaft along the axis."""
-    word = said.word(bearing, "axial_force_absorption")
-    return word is not None and word.lower() not in ("none", "false", "no", "not_absorbed", "")
 
 
 def _unread(said: Said) -> list[str]:

@@ -237,7 +237,8 @@ def _component(given: Mapping[str, Any], path: Path, known: Mapping[int, Compone
             rule = f"gives {made.name} of component {number} twice with other values"
             raise _refusal(path, rule, "keep the one that holds")
         attributes[made.name] = made
-    return Component(number, str(given.get("type", "")), str(given.get("name") or ""), attributes)
+    name = given.get("name")
+    return Component(number, str(given.get("type", "")), name if isinstance(name, str) else "", attributes)
 
 
 def _attribute(given: Mapping[str, Any], number: int, path: Path) -> Attribute:

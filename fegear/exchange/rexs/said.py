@@ -38,10 +38,15 @@ class Said:
     used: set[tuple[int, str]] = field(default_factory=set)
     notes: list[str] = field(default_factory=list)
 
+    def attributes_of(self, component: Component) -> Mapping[str, Attribute]:
+        """All that a component says under the load case, by names."""
+        return {**component.attributes, **self.loaded.get(component.id, {})}
+
     def found(self, component: Component, *names: str) -> Attribute | None:
         """The first of some attributes that a component has, and a record that it was used."""
+        given = self.attributes_of(component)
         for name in names:
-            one = self.loaded.get(component.id, {}).get(name) or component.attributes.get(name)
+            one = given.get(name)
             if one is not None and one.value != "":
                 self.used.add((component.id, name))
                 return one
@@ -84,8 +89,17 @@ class Said:
         return u, v, w
 
     def word(self, component: Component, *names: str) -> str | None:
-        """A word or a name; None without."""
+        """A word or a name; None without.
+
+        Raises
+        ------
+        InputError
+            If it is a truth value.
+        """
         one = self.found(component, *names)
+        if one is not None and isinstance(one.value, bool):
+            rule = f"is a truth value, where {component.said} needs a word"
+            raise InputError(one.name, str(one.value).lower(), rule, "correct the model")
         return None if one is None else str(one.value)
 
     def yes(self, component: Component, name: str) -> bool | None:

@@ -10,6 +10,7 @@ from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, quantity, text
 from fegear.exchange.rexs.drive import PlanetSet
 from fegear.exchange.rexs.places import shaft_of
+from fegear.exchange.rexs.teeth import teeth_of
 
 if TYPE_CHECKING:
     from fegear.exchange.rexs.drive import Driven
@@ -98,7 +99,7 @@ def flow_through(said: Said, one: Planetary, bodies: dict[int, int]) -> PlanetSe
     if lost:
         raise InputError(one.component.said, f"no shaft of its {lost[0]}", "is incomplete", "complete its relations")
     numbers = {name: bodies[shaft.id] for name, shaft in shafts.items() if shaft is not None}
-    teeth = said.whole(one.sun, "number_of_teeth"), abs(said.whole(one.ring, "number_of_teeth"))
+    teeth = teeth_of(said, one.sun), abs(teeth_of(said, one.ring))
     return PlanetSet(numbers["sun"], numbers["ring"], numbers["carrier"], teeth)
 
 

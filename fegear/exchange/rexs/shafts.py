@@ -112,6 +112,34 @@ def bearings_of(said: Said, shaft: Component, names: Mapping[int, str]) -> list[
     return sorted(found, key=lambda one: one.at)
 
 
+def fixed_bearing(said: Said, shaft: Component, bearings: Sequence[Held], push: float) -> Held:
+    """The bearing that holds a shaft along its axis; a note where the model does not say one that does.
+
+    Parameters
+    ----------
+    said : Said
+    shaft : Component
+    bearings : sequence of Held
+    push : float
+        Force of its meshes along the shaft's own u [N]: of bearings that hold one way, that which takes it is chosen.
+    """
+    ways = [(said.word(one.component, "axial_force_absorption") or "").lower() for one in bearings]
+    for kind in ("both_directions", *(("negative", "positive") if push < 0.0 else ("positive", "negative"))):
+        if kind not in ways:
+            continue
+        found = bearings[ways.index(kind)]
+        if kind != "both_directions":
+            said.notes.append(
+                f"{shaft.said}: no bearing holds it both ways along its axis; {found.component.said} is taken to."
+            )
+        return found
+    if any(ways):
+        said.notes.append(
+            f"{shaft.said}: no bearing holds it along its axis; {bearings[0].component.said} is taken to."
+        )
+    return bearings[0]
+
+
 def bearing_table(said: Said, held: Held, *, fixed: bool) -> Table:
     """``[bearing.NAME]``: what rolls in it, else its stiffness, else rigid.
 

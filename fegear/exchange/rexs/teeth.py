@@ -15,6 +15,7 @@ from fegear.exchange.rexs.modifications import modification_keys
 
 if TYPE_CHECKING:
     from fegear.exchange.rexs.model import Component
+    from fegear.exchange.rexs.places import Stage
     from fegear.exchange.rexs.said import Said
 
 #: Types of flanks in REXS 1.0 to 1.1 and later.
@@ -47,6 +48,8 @@ _BY_NAME = (
 _RIM = 3.5
 #: Its addendum, likewise [modules].
 _RING_ADDENDUM = 0.85
+#: Helix angles of two gears in mesh are equal to so much [rad].
+_ONE_ANGLE = 1e-6
 #: A surface harder than this is a hardened case [HV].
 _CASE = 550.0
 
@@ -69,7 +72,7 @@ def gear_keys(said: Said, gear: Component, shift: float | None, bore: float | No
         If a size is missing, or what is said of both flanks differs.
     """
     ring = gear.type == "ring_gear"
-    teeth = abs(said.whole(gear, "number_of_teeth"))
+    teeth = abs(teeth_of(said, gear))
     helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
     module = module_of(said, gear)
     flank = flank_of(said, gear)
@@ -97,6 +100,25 @@ def gear_keys(said: Said, gear: Component, shift: float | None, bore: float | No
     return (*keys, *_quality(said, gear), *material_keys(said, gear))
 
 
+def teeth_of(said: Said, gear: Component) -> int:
+    """Number of teeth, below zero for every ring gear: programs write it with either sign.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number, zero, or below zero on a gear that is no ring.
+    """
+    teeth = said.whole(gear, "number_of_teeth")
+    if gear.type == "ring_gear" and teeth:
+        return -abs(teeth)
+    if teeth <= 0:
+        raise InputError(
+            "number_of_teeth", teeth, f"is no number of teeth of {gear.said}",
+            "correct it: ring gears alone may have it below zero",
+        )  # fmt: skip
+    return teeth
+
+
 def module_of(said: Said, gear: Component) -> float:
     """Normal module [m], from the transverse one where that is given alone."""
     normal = said.number(gear, "length", "normal_module")
@@ -105,6 +127,18 @@ def module_of(said: Said, gear: Component) -> float:
     helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
     transverse = said.number(gear, "length", "transverse_module")
     return said.needed(gear, "length", "normal_module") if transverse is None else transverse * math.cos(helix)
+
+
+def refuse_equal_hands(said: Said, stages: list[Stage]) -> None:
+    """Refuse stages whose helices cannot mesh: those of an external pair are of opposite hands and of one angle."""
+    for stage in stages:
+        one, two = (said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0 for gear in stage.gears)
+        if not stage.internal and abs(one + two) > _ONE_ANGLE:
+            raise InputError(
+                "helix_angle_reference_diameter", " and ".join(f"{math.degrees(b):.9g} deg" for b in (one, two)),
+                f"cannot mesh in {stage.component.said}: one helix must be right-handed, the other as much left-handed",
+                "correct a sign or an angle",
+            )  # fmt: skip
 
 
 def flank_of(said: Said, gear: Component) -> Component | None:
@@ -213,7 +247,7 @@ def _sizes(said: Said, gear: Component, flank: Component | None, bore: float | N
     """Tip, chamfer, bore and face width."""
     keys = []
     tip = said.number(gear, "length", "tip_diameter")
-    pitch = module_of(said, gear) * abs(said.whole(gear, "number_of_teeth"))
+    pitch = module_of(said, gear) * abs(teeth_of(said, gear))
     if tip is not None and abs(tip) > 0.5 * pitch:
         keys.append(Key("tip_diameter", quantity(abs(tip), "mm"), "tip_diameter"))
     elif tip is not None:

@@ -1,0 +1,246 @@
+"""Loads of a REXS model: which load case, what flows through the gearbox, and the bins of its load spectrum.
+
+What a model leaves open is assumed once, at one end of a train of gears, and carried through it by the teeth.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.exchange.rexs.drive import Mesh, Torque, driven
+from fegear.exchange.rexs.places import bodies_of, direction
+from fegear.exchange.rexs.sets import flow_through
+from fegear.exchange.rexs.teeth import module_of, teeth_of
+
+if TYPE_CHECKING:
+    from fegear.exchange.rexs.drive import Driven, PlanetSet
+    from fegear.exchange.rexs.model import Component, LoadCase, Model
+    from fegear.exchange.rexs.places import Stage
+    from fegear.exchange.rexs.said import Said
+    from fegear.exchange.rexs.sets import Planetary
+
+#: What a mesh gets where the model says nothing: torque per mm of face and module squared [Pa], and speed [rad/s].
+_ASSUMED_LOAD, _ASSUMED_SPEED = 10e6, 1500.0 * 2.0 * math.pi / 60.0
+
+
+@dataclass(frozen=True)
+class Flow:
+    """What flows through a gearbox.
+
+    Parameters
+    ----------
+    driven : Driven
+    bodies : dict
+        The body of every shaft.
+    held : set of int
+        Bodies that the casing holds.
+    sets : tuple of PlanetSet
+    meshes : tuple of Mesh
+    assumed_torque, assumed_speed : frozenset of int
+        Meshes whose torque or speed comes from an assumption.
+    """
+
+    driven: Driven
+    bodies: dict[int, int]
+    held: set[int]
+    sets: tuple[PlanetSet, ...]
+    meshes: tuple[Mesh, ...]
+    assumed_torque: frozenset[int] = frozenset()
+    assumed_speed: frozenset[int] = frozenset()
+
+    def into(self, n: int) -> tuple[bool, float, float]:
+        """Whether the first gear of a mesh drives, torque on the gear that does [N m] and its speed [rad/s]."""
+        mesh, torque = self.meshes[n], self.driven.mesh_torque[n]
+        speeds = [self.driven.speed[body] for body in mesh.bodies]
+        drives = not torque * speeds[0] > 0.0  # the mate takes power from a gear that drives
+        on_driver = abs(torque) * (1.0 if drives else abs(mesh.teeth[1] / mesh.teeth[0]))
+        return drives, on_driver, speeds[0] if drives else speeds[1]
+
+    def on_gear(self, stages: list[Stage], gear: Component) -> list[float]:
+        """Torques on a gear by its mates about +u [N m]."""
+        return [
+            torque * (teeth / mesh.teeth[0])
+            for stage, mesh, torque in zip(stages, self.meshes, self.driven.mesh_torque, strict=True)
+            for one, teeth in zip(stage.gears, mesh.teeth, strict=True)
+            if one.id == gear.id
+        ]
+
+    def left_by(self, stages: list[Stage], gears: list[Component]) -> bool:
+        """Whether some gears, those on one shaft, leave a torque about its axis."""
+        parts = [torque for gear in gears for torque in self.on_gear(stages, gear)]
+        return abs(sum(parts)) > 1e-9 * max(map(abs, parts), default=0.0)
+
+    def push(self, said: Said, stages: list[Stage], gears: list[Component]) -> float:
+        """Force of the meshes of some gears along +u [N]: normal to teeth that wind right-handed about it."""
+        force = 0.0
+        for gear in gears:
+            helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
+            # tan of the helix over the reference radius
+            lead = 2.0 * math.sin(helix) / (module_of(said, gear) * abs(teeth_of(said, gear)))
+            force -= sum(self.on_gear(stages, gear)) * lead
+        return force
+
+
+def chosen_load_case(model: Model, asked: int | None) -> LoadCase | None:
+    """The load case of a number, by default the first.
+
+    Raises
+    ------
+    InputError
+        If the model has none of that number.
+    """
+    known = {one.id: one for one in model.load_cases}
+    if asked is not None and asked not in known:
+        listed_ones = ", ".join(map(str, known)) or "none"
+        raise InputError("--load-case", asked, "is none of the model", f"it has {listed_ones}")
+    return known[asked] if asked is not None else next(iter(known.values()), None)
+
+
+def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int, Component | None]) -> Flow:
+    """Torques and speeds of every mesh, those that are given and those that are assumed.
+
+    Parameters
+    ----------
+    said : Said
+    stages : list of Stage
+        Those that are no part of a set.
+    sets : list of Planetary
+    on : dict
+        The shaft of every gear.
+
+    Raises
+    ------
+    InputError
+        If what is given contradicts the teeth.
+    """
+    bodies, held = bodies_of(said, [pair for one in sets for pair in pairwise(one.carriers)])
+    whole = tuple(flow_through(said, one, bodies) for one in sets)
+    meshes = tuple(
+        Mesh(
+            tuple(bodies[on[gear.id].id] for gear in stage.gears),  # type: ignore[union-attr, arg-type]
+            tuple(teeth_of(said, gear) for gear in stage.gears),  # type: ignore[arg-type]
+        )
+        for stage in stages
+    )
+    count = max(bodies.values(), default=-1) + 1
+    speeds = _speeds(said, bodies)
+
+    def solved(torques: list[Torque]) -> Driven:
+        return driven(count, meshes, whole, torques, speeds, sorted(held))
+
+    found = solved([])
+    slow = [n for n, mesh in enumerate(meshes) if not math.isfinite(found.speed[mesh.bodies[0]])]
+    assumed_speed = frozenset(slow)
+    while slow:
+        mesh = meshes[slow[0]]
+        ends = _ends(meshes, [n for n in slow if n in _train(meshes, slow[0])])
+        speeds[ends[0] if ends else mesh.bodies[0]] = _ASSUMED_SPEED
+        found = solved([])
+        left = [n for n in slow if not math.isfinite(found.speed[meshes[n].bodies[0]])]
+        slow = left if len(left) < len(slow) else []
+    torques = _torques(said, bodies, found.speed)
+    trains: list[list[int]] = []
+    for n in range(len(meshes)):
+        if not any(n in one for one in trains):
+            trains.append(_train(meshes, n))
+    in_sets = {body for one in whole for body in (one.sun, one.ring, one.carrier)} | held
+    assumed: set[int] = set()
+    for train in trains:
+        among = {body for n in train for body in meshes[n].bodies}
+        here = [one for one in torques if one.body in among]
+        given = [one for one in here if one.value]
+        if not given and not among & in_sets:
+            torques = [one for one in torques if one.body not in among]
+            torques += _assumed_train(said, stages, meshes, train, found.speed, here)
+            assumed.update(train)
+        elif len(here) == 1 and not among & in_sets:
+            (one,) = here
+            outlets = [body for body in _ends(meshes, train) if body != one.body]
+            outlets = outlets[-1:] or [max(among - {one.body})]
+            torques += [Torque(body, None) for body in outlets]
+            last = next(gear for n in train for gear in stages[n].gears if bodies[on[gear.id].id] == outlets[0])  # type: ignore[union-attr]
+            said.notes.append(f"The torque is assumed to leave at {last.said}: nothing else takes it.")
+    found = solved(torques)
+    for n in sorted(found.shared):
+        said.notes.append(
+            f"{stages[n].component.said}: the model does not determine its torque; paths share it as evenly as balance "
+            "allows."
+        )
+    return Flow(found, bodies, held, whole, meshes, frozenset(assumed), assumed_speed)
+
+
+def _speeds(said: Said, bodies: dict[int, int]) -> dict[int, float]:
+    found = {}
+    for shaft in said.model.of("shaft"):
+        speed = said.number(shaft, "speed", "rotational_speed")
+        if speed and said.yes(shaft, "defines_speed") is not False:
+            found[bodies[shaft.id]] = -speed if direction(said, shaft) else speed
+    return found
+
+
+def _torques(said: Said, bodies: dict[int, int], speeds: tuple[float, ...]) -> list[Torque]:
+    """Those from outside, from a power where that is given alone."""
+    found = []
+    for shaft in said.model.of("shaft"):
+        body, sign = bodies[shaft.id], -1.0 if direction(said, shaft) else 1.0
+        for load in said.linked(shaft, "assembly", "assembly", "part", "external_load"):
+            value = said.number(load, "torque", "torque_around_u_axis")
+            through = said.yes(load, "transmits_torque")
+            if value is None and math.isfinite(speeds[body]) and speeds[body]:
+                power = said.number(load, "power", "power")
+                if power:
+                    value = sign * power / speeds[body]
+                    said.notes.append(f"{load.said}: its torque is that of its power, positive where it drives.")
+            if said.yes(load, "defines_torque") is False or (value is None and through):
+                found.append(Torque(body, None))
+            elif value:
+                found.append(Torque(body, sign * value))
+    return found
+
+
+def _train(meshes: tuple[Mesh, ...], first: int) -> list[int]:
+    """Meshes that are joined to one by the bodies that they have in common."""
+    among, size = set(meshes[first].bodies), 0
+    while size < len(among):
+        size = len(among)
+        for mesh in meshes:
+            if among & set(mesh.bodies):
+                among.update(mesh.bodies)
+    return [n for n, mesh in enumerate(meshes) if among & set(mesh.bodies)]
+
+
+def _ends(meshes: tuple[Mesh, ...], train: list[int]) -> list[int]:
+    """Bodies with one mesh alone, in the order of the stages."""
+    times = Counter(body for n in train for body in meshes[n].bodies)
+    return [body for body, count in times.items() if count == 1]
+
+
+def _assumed_train(
+    said: Said, stages: list[Stage], meshes: tuple[Mesh, ...], train: list[int], speeds: tuple[float, ...],
+    here: list[Torque],
+) -> list[Torque]:  # fmt: skip
+    """One torque at an end of a train, so large that no mesh gets more than is usual, and where it leaves."""
+    ends = _ends(meshes, train)
+    first = ends[0] if ends else meshes[train[0]].bodies[0]
+    leaving = [one.body for one in here if one.body != first] or [body for body in ends if body != first]
+    leaving = leaving or [body for body in meshes[train[-1]].bodies if body != first][-1:]
+    unit = [Torque(first, math.copysign(1.0, speeds[first])), *(Torque(body, None) for body in leaving)]
+    flow = driven(len(speeds), meshes, (), unit, {})
+    sizes = []
+    for n in train:
+        gear = stages[n].gears[0]
+        module = module_of(said, gear)
+        usual = _ASSUMED_LOAD * said.needed(gear, "length", "face_width") * 0.5 * module**2 * abs(meshes[n].teeth[0])
+        if abs(flow.mesh_torque[n]) > 1e-9:
+            sizes.append(abs(usual / flow.mesh_torque[n]))
+    size = float(f"{min(sizes, default=1.0):.3g}")
+    said.notes.append(
+        f"No torque is given for {', '.join(stages[n].component.said for n in train)}: {size:g} N m are assumed where "
+        "the train begins, and carried through it."
+    )
+    return [replace(unit[0], value=math.copysign(size, speeds[first])), *unit[1:]]
