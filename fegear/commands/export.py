@@ -17,24 +17,37 @@ def export(
     formats: Annotated[
         str,
         typer.Option(
-            "--format", help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, separated by commas."
+            "--format",
+            help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, rexs, separated by commas.",
         ),
     ] = "dxf,msh,vtu,inp",
     out: Annotated[Path | None, out_option("Output folder; default results/<case>_export.")] = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
-    """Write drawings (DXF), solids (STEP), reliefs to grind (CSV), meshes of the whole gear, FMUs of its mesh."""
-    from fegear.case.reading import read_scene
+    """Write drawings (DXF), solids (STEP), reliefs to grind (CSV), meshes, FMUs of the mesh, a REXS model.
+
+    In the place of the case may stand the folder of a run, whose results go into the REXS model.
+    """
+    from fegear.base.errors import InputError
+    from fegear.case.reading import build_scene, read_scene
+    from fegear.output.comparison import read_side
     from fegear.output.export import export_gears
     from fegear.output.folder import default_folder, whole_or_nothing
 
     voice = Voice(quiet, as_json)
+    results = read_side(case) if case.is_dir() else None
+    if results is not None and formats != "rexs":
+        rule = "is the folder of a run, which is written to REXS alone"
+        raise InputError("CASE", str(case), rule, "write --format rexs, or give the case file")
     try:
-        scene = read_scene(case, overrides or ())
+        if results is None:
+            scene = read_scene(case, overrides or ())
+        else:
+            scene = build_scene(dict(results.document), case.resolve().name, case)
         target = out or default_folder(scene.name, "_export")
         with whole_or_nothing(target) as scratch:
-            written = export_gears(scene, scratch, gear or (), formats)
+            written = export_gears(scene, scratch, gear or (), formats, results)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
     for name in written.files:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 #: Widest line of a remark, and the column where remarks stand behind keys.
 _WIDE, _REMARKS = 118, 44
 
+#: Names that are taken as they are.
+_PLAIN = re.compile(r"[a-z][a-z0-9_]{0,79}")
 #: Units in which a case is written, with their sizes in SI.
 _UNITS = {
     "mm": 1e-3,
@@ -100,7 +102,7 @@ def plain_name(said: str, other: str, taken: Collection[str]) -> str:
     taken : collection of str
     """
     latin = unicodedata.normalize("NFKD", re.sub(r"\s*\[\d+\]\s*$", "", said)).encode("ascii", "ignore").decode()
-    name = re.sub(r"[^A-Za-z0-9]+", "_", latin).strip("_").lower()[:40]
+    name = latin if _PLAIN.fullmatch(latin) else re.sub(r"[^A-Za-z0-9]+", "_", latin).strip("_").lower()[:40]
     if name and name not in taken:
         return name
     return f"{name}_{other}" if name else other

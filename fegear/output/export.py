@@ -6,6 +6,7 @@ The relief of a gear for who grinds it: a fine table over the profile, and the p
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,9 +31,10 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.geometry.relief import Relief
+    from fegear.studies.comparison.compare import Side
 
 
-FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu", "fmu")
+FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu", "fmu", "rexs")
 
 
 #: Those that hold the flanks with their relief, not a mesh.
@@ -41,6 +43,10 @@ _EXACT = frozenset({"dxf", "step", "relief"})
 
 #: Those that hold a mesh of the solid gear.
 _SOLID = frozenset({"solid-inp", "solid-vtu"})
+
+
+#: Those that hold no single gear.
+_WHOLE = frozenset({"fmu", "rexs"})
 
 
 #: Those that hold the plane mesh of a spur gear.
@@ -63,7 +69,9 @@ class Exported:
     remarks: tuple[str, ...]
 
 
-def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str) -> Exported:
+def export_gears(
+    scene: Scene, folder: Path, names: Sequence[str], formats: str, results: Side | None = None
+) -> Exported:
     """Write every format of every named gear.
 
     Drawings and solid models hold the flanks with the relief that the case gives them, ``relief`` holds it as tables,
@@ -79,6 +87,8 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         Gears of the scene; none for all of them.
     formats : str
         Formats separated by commas.
+    results : Side, optional
+        Of a run of the case, which go into a REXS model.
 
     Raises
     ------
@@ -106,7 +116,7 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         )
     written: list[Path] = []
     remarks = [f"Gear {name} is helical: no {plane} is written for it." for name in helical if plane]
-    for name in chosen if wanted != {"fmu"} else ():
+    for name in chosen if wanted - _WHOLE else ():
         files, left_out = _export_gear(scene, folder, name, wanted)
         written += files
         remarks += left_out
@@ -114,6 +124,18 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         files, said = _export_meshes_in_motion(scene, folder)
         written += files
         remarks += said
+    if "rexs" in wanted:
+        from fegear.exchange.rexs.written import Found
+        from fegear.exchange.rexs.written_gearbox import model_text
+
+        found = Found()
+        if results is not None:
+            tables = {name: {one.name: one.si for one in table.columns} for name, table in results.tables.items()}
+            found = Found({name: value.si for name, value in results.values.items()}, tables)
+        text, left = model_text(scene, datetime.now(UTC).isoformat(timespec="seconds"), found)
+        written.append(folder / f"{file_name(scene.name)}.rexs")
+        written[-1].write_text(text, "utf-8")
+        remarks += left
     if not written:
         raise InputError(
             f"gear.{chosen[0]}.relief", "(not given)", "leaves no relief to write: no gear has one of known amount",

@@ -207,7 +207,7 @@ class Results(Found):
         ----------
         folder : path
         formats : str
-            Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, separated by commas.
+            Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, rexs, separated by commas.
         gears : tuple of str
             Names of gears; all of them by default.
 

@@ -18,7 +18,7 @@ _GRADE, _TEMPERATURE, _LIFE = 220.0, 70.0, 20_000.0 * 3600.0
 #: Viscosity grades of ISO 3448 [mm^2/s at 40 degC] that a name may say.
 _GRADES = (10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500)
 #: What ``lubricant_type_iso_6336`` says, in the words of a case.
-_OILS = {
+OILS = {
     "mineral_oil": "mineral",
     "polyalfaolefin": "polyalphaolefin",
     "non_water_soluble_polyglycol": "polyglycol",
@@ -41,7 +41,7 @@ def lubricant_key(said: Said, stage: Component) -> Key:
         named = said.word(oil, "name") or oil.name
         thick, thin = (said.number(oil, "viscosity", f"viscosity_at_{at}_degree_celsius") for at in (40, 100))
         grade = _grade(named) if not thick else None
-        kind = _OILS.get(said.word(oil, "lubricant_type_iso_6336_2019", "lubricant_type_iso_6336_2006") or "")
+        kind = OILS.get(said.word(oil, "lubricant_type_iso_6336_2019", "lubricant_type_iso_6336_2006") or "")
         density = said.number(oil, "density", "density_at_15_degree_celsius")
         where = f"{oil.said} {named}".strip()
         where += "" if thick else f"; ISO VG {grade:g} by its name" if grade else f"; ISO VG {_GRADE:g} assumed"

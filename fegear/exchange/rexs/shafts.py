@@ -25,12 +25,17 @@ _GAP = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """From where to where on a shaft [m], with its outer and inner diameters at both ends [m]."""
+    """From where on a shaft and how long [m], with its outer and inner diameters at both ends [m]."""
 
     begin: float
-    end: float
+    length: float
     outer: tuple[float, float]
     inner: tuple[float, float]
+
+    @property
+    def end(self) -> float:
+        """Where it ends [m]."""
+        return self.begin + self.length
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +83,7 @@ def sections_of(said: Said, shaft: Component) -> tuple[Section, ...]:
         inner_end = said.number(part, "length", "inner_diameter_end")
         at = begin + length
         ends = outer if outer_end is None else outer_end, inner if inner_end is None else inner_end
-        found.append(Section(begin, at, (outer, ends[0]), (inner, ends[1])))
+        found.append(Section(begin, length, (outer, ends[0]), (inner, ends[1])))
     found.sort(key=lambda one: one.begin)
     for one, two in pairwise(found):
         if abs(two.begin - one.end) > _GAP:
@@ -94,7 +99,7 @@ def diameter_below(sections: Sequence[Section], at: float) -> float | None:
     """Outer diameter of a shaft at a place [m]; None off its ends."""
     for one in sections:
         if one.begin <= at <= one.end:
-            part = (at - one.begin) / (one.end - one.begin) if one.end > one.begin else 0.0
+            part = (at - one.begin) / one.length if one.length > 0.0 else 0.0
             return one.outer[0] + part * (one.outer[1] - one.outer[0])
     return None
 
@@ -305,7 +310,7 @@ def _on(shaft: Component, what: str, at: float, begin: float, end: float) -> Non
 def _section(one: Section, *, flipped: bool) -> str:
     outer, inner = (ends[::-1] if flipped else ends for ends in (one.outer, one.inner))
     return inline(
-        length=quantity(one.end - one.begin, "mm"),
+        length=quantity(one.length, "mm"),
         outer=quantity(outer[0], "mm"),
         outer_end=quantity(outer[1], "mm") if outer[1] != outer[0] else None,
         inner=quantity(inner[0], "mm") if any(inner) else None,

@@ -23,7 +23,7 @@ FLANKS = ("flank_geometry", "cylindrical_gear_flank")
 _TOOLS = ("rack_shaped_tool", "cutter_wheel_tool")
 
 #: What ``heat_treated_material_type_iso_6336`` says, in the words of a case (ISO 6336-5).
-_MATERIALS = {
+MATERIALS = {
     "black_malleable_cast_iron": "malleable-iron",
     "case_hardened_wrought_steel": "case-hardened-steel",
     "flame_or_induction_hardened_steel": "induction-hardened-steel",
@@ -362,8 +362,8 @@ def _kind(said: Said, one: Component, designation: str, hardness: tuple[float, s
     """Kind of material of ISO 6336-5, and why."""
     names = ("heat_treated_material_type_iso_6336_2019", "heat_treated_material_type_iso_6336_2006")
     told = said.word(one, *names)
-    if told in _MATERIALS:
-        return _MATERIALS[told], "heat_treated_material_type_iso_6336"
+    if told in MATERIALS:
+        return MATERIALS[told], "heat_treated_material_type_iso_6336"
     for pattern, kind, begins in _BY_NAME:
         match = re.search(pattern, designation, re.IGNORECASE)
         if match and re.match(begins or ".", match[0]):

@@ -1,0 +1,290 @@
+"""A case as a REXS model: gears, stages, planetary stages, shafts, bearings, loads, and what was computed of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.case.planetary import set_pair, set_teeth
+from fegear.exchange.rexs.operation import OILS
+from fegear.exchange.rexs.written import Found, Written
+from fegear.exchange.rexs.written_gears import left_out, write_gear
+from fegear.exchange.rexs.written_shafts import place, write_shaft, write_shaft_results
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.pair import PairPart
+    from fegear.case.planetary import PlanetaryPart
+    from fegear.case.reading import Scene
+    from fegear.exchange.rexs.written import Part
+
+#: Keys of tables that are written, or say how fegear computes.
+_PAIR = frozenset(
+    {
+        "driver", "driven", "centre_distance", "load", "torque", "speed", "width", "lubricant", "operation",
+        "iso_6336", "compliance", "root_stress", "friction",
+    }
+)  # fmt: skip
+_OIL = frozenset({"viscosity_40", "viscosity_100", "density_15", "temperature", "kind"})
+_OPERATION = frozenset({"application_factor", "life"})
+_SET = frozenset(
+    {"sun", "planet", "ring", "planets", "fixed", "input", "torque", "speed", "centre_distance", "clockwise"}
+)
+#: Attributes of a stage by the values of a pair; those of editions of ISO 6336 end with its year.
+_OF_STAGE = {
+    "contact_ratio": "radial_contact_ratio",
+    "overlap_ratio": "overlap_contact_ratio",
+    "total_contact_ratio": "total_contact_ratio",
+    "K_Hbeta": "face_load_factor_flank",
+    "K_v_rated": "dynamic_factor_iso_6336_{}",
+    "K_Hbeta_rated": "face_load_factor_contact_stress_iso_6336_{}",
+    "K_Halpha_rated": "transverse_load_factor_contact_stress_iso_6336_{}",
+}
+#: Attributes of a gear in a stage.
+_OF_GEAR = {
+    "S_H": ("number", "safety_factor_pitting_iso_6336_{}"),
+    "S_F": ("number", "safety_factor_tooth_root_iso_6336_{}"),
+    "sigma_H": ("stress", "contact_stress_iso_6336_{}"),
+    "sigma_F": ("stress", "tooth_root_stress_iso_6336_{}"),
+}
+#: What marks the second gear of a pair that names one twice.
+_LIKE = ", its like"
+_NOTHING = Found()
+#: A torque below so much of the largest on its shaft balances.
+_BALANCED = 1e-9
+
+
+@dataclass
+class _Bodies:
+    """Shafts while torques and speeds are carried through them: sense and speed [rad/s], torque from outside [N m]."""
+
+    shaft: dict[str, Part] = field(default_factory=dict)
+    speed: dict[int, float] = field(default_factory=dict)
+    sense: dict[int, float] = field(default_factory=dict)
+    torques: dict[int, list[float]] = field(default_factory=dict)
+    train: dict[int, int] = field(default_factory=dict)
+
+    def join(self, *shafts: int) -> None:
+        """Shafts that turn each other."""
+        old = {self.train.setdefault(one, one) for one in shafts}
+        self.train = {one: min(old) if train in old else train for one, train in self.train.items()}
+
+
+def model_text(scene: Scene, date: str, results: Found = _NOTHING) -> tuple[str, tuple[str, ...]]:
+    """The REXS file of a case, and remarks on what it leaves out.
+
+    Parameters
+    ----------
+    scene : Scene
+    date : str
+        By ISO 8601.
+    results : Found, optional
+        By a run of this case.
+
+    Raises
+    ------
+    InputError
+        If the case has neither pairs nor planetary sets.
+    """
+    written = Written()
+    unit, casing = written.part("gear_unit", scene.case.title or scene.name), written.part("gear_casing")
+    written.relate("assembly", assembly=unit, part=casing)
+    in_sets = {set_pair(name, mesh) for name in scene.case.planetary for mesh in ("sun", "ring")}
+    pairs = {name: part for name, part in scene.case.pair.items() if name not in in_sets}
+    sets = {name: part for name, part in scene.case.planetary.items() if part.ring is not None}
+    if not pairs and not sets:
+        raise InputError("pair", "(not given)", "is missing: a REXS model holds gears in mesh", "add [pair.NAME]")
+    written.remarks += [
+        f"Set {name}: its ring is no gear of the case and is not written to REXS."
+        for name in scene.case.planetary if name not in sets
+    ]  # fmt: skip
+    used = dict.fromkeys(gear for part in pairs.values() for gear in (part.driver, _mate(part)))
+    used |= dict.fromkeys(gear for part in sets.values() for gear in (part.sun, part.planet, part.ring) if gear)
+    gears = {name: write_gear(written, scene, name.removesuffix(_LIKE)) for name in used}
+    bodies = _Bodies()
+    for name in scene.case.shaft:
+        made = write_shaft(written, scene, name, casing, gears)
+        bodies.shaft |= {there.gear: made for there in scene.case.shaft[name].gears}
+        written.relate("assembly", assembly=unit, part=made)
+    planets = {part.planet for part in sets.values()}
+    for name, gear in gears.items():
+        if name not in bodies.shaft and name not in planets:
+            bodies.shaft[name] = made = written.part("shaft", f"shaft of {name}")
+            written.relate("assembly", assembly=made, part=gear)
+            written.relate("assembly", assembly=unit, part=made)
+    _flow(scene, pairs, bodies)
+    for name, part in pairs.items():
+        _stage(written, scene, name, part, gears, bodies, unit, results)
+    for name, one in sets.items():
+        _set(written, scene, name, one, gears, bodies, (unit, casing))
+    _lives(unit, pairs)
+    _drives(written, scene, bodies)
+    shafts = {one.name: one for one in written.parts if one.type == "shaft"}
+    write_shaft_results(written, shafts, results.tables)
+    return written.text(date), tuple(dict.fromkeys(written.remarks))
+
+
+def _mate(part: PairPart) -> str:
+    """The driven gear; one of its own where the driver drives its like."""
+    return part.driven if part.driven != part.driver else part.driven + _LIKE
+
+
+def _flow(scene: Scene, pairs: Mapping[str, PairPart], bodies: _Bodies) -> None:
+    """Speeds of all shafts and the torques that their gears leave."""
+    clockwise = {
+        bodies.shaft[there.gear].id: part.clockwise for part in scene.case.shaft.values() for there in part.gears
+    }
+    driven = {bodies.shaft[_mate(part)].id for part in pairs.values()}
+    for one in bodies.shaft.values():
+        if one.id not in driven:
+            bodies.sense[one.id] = -1.0 if clockwise.get(one.id) else 1.0
+    left = dict(pairs)
+    while left:
+        ready = [name for name, part in left.items() if bodies.shaft[part.driver].id in bodies.sense]
+        for name in ready or list(left)[:1]:
+            part, pair = left.pop(name), scene.pairs[name]
+            first, second = (bodies.shaft[gear].id for gear in (part.driver, _mate(part)))
+            bodies.join(first, second)
+            sense = bodies.sense.setdefault(first, 1.0)
+            ratio = pair.driver.tooth.teeth / pair.driven.tooth.teeth
+            bodies.sense.setdefault(second, -pair.side * sense)
+            if part.speed is not None:
+                bodies.speed[first] = sense * part.speed
+                bodies.speed.setdefault(second, -pair.side * sense * part.speed * ratio)
+            load = part.normal_load(pair)
+            if load is not None:
+                torque = sense * load * pair.driver.base_radius
+                bodies.torques.setdefault(first, []).append(torque)
+                bodies.torques.setdefault(second, []).append(pair.side * torque / ratio)
+
+
+def _stage(
+    written: Written, scene: Scene, name: str, part: PairPart, gears: Mapping[str, Part], bodies: _Bodies, unit: Part,
+    results: Found,
+) -> None:  # fmt: skip
+    """A pair: its stage with oil, K_A, and the data of both gears in it."""
+    standing = {there.gear for one in scene.case.shaft.values() for there in one.gears}
+    placed = part.driver in standing and part.driven in standing
+    left_out(written, f"Pair {name}", part, _PAIR | ({"axial_offset"} if placed else set()))
+    left_out(written, f"Pair {name}, operation", part.operation, _OPERATION)
+    pair = scene.pairs[name]
+    stage = written.part("cylindrical_stage", name).say("length", center_distance=pair.centre_distance)
+    written.relate("assembly", assembly=unit, part=stage)
+    written.relate("stage", stage=stage, gear_1=gears[part.driver], gear_2=gears[_mate(part)])
+    year = part.iso_6336.edition or 2019
+    if "application_factor" in part.operation.model_fields_set:
+        stage.say("number", **{f"application_factor_iso_6336_{year}": part.operation.application_factor})
+    if (oil := part.lubricant) is not None:
+        left_out(written, f"Pair {name}, lubricant", oil, _OIL)
+        made = written.part("lubricant", f"{name}, lubricant").word(kind="oil")
+        made.word(lubricant_type_iso_6336_2019=next(rexs for rexs, case in OILS.items() if case == oil.kind))
+        made.say(
+            "viscosity", viscosity_at_40_degree_celsius=oil.viscosity_40,
+            viscosity_at_100_degree_celsius=oil.viscosity_100,
+        )  # fmt: skip
+        made.say(
+            "density", density_at_15_degree_celsius=oil.density_15 if "density_15" in oil.model_fields_set else None
+        )
+        written.relate("reference", origin=stage, referenced=made)
+        stage.say("temperature", temperature_lubricant=oil.temperature)
+    found = results.values
+    for key, attribute in _OF_STAGE.items():
+        if (value := found.get(f"{name}.{key}")) is not None:
+            stage.say("number", **{attribute.format(year): value})
+    load = part.normal_load(pair)
+    for role, gear in (("driver", part.driver), ("driven", _mate(part))):
+        data = written.part("cylindrical_stage_gear_data", f"{name}, {gear}").word(is_driving_gear=role == "driver")
+        written.relate("stage_gear_data", stage=stage, gear=gears[gear], stage_gear_data=data)
+        if load is not None:
+            data.say("torque", torque=load * getattr(pair, role).base_radius)
+        for key, (quantity, attribute) in _OF_GEAR.items():
+            if (value := found.get(f"{name}.{role}.{key}")) is not None:
+                data.say(quantity, **{attribute.format(year): value})
+    if (over := results.tables.get(f"load_over_face_{name}")) is not None:
+        # Faces are counted from end I, that of +u where the driver turns about it.
+        along = -bodies.sense[bodies.shaft[part.driver].id]
+        rows = sorted((along * float(z), float(q)) for z, q in zip(over["z"], over["mean_line_load"], strict=True))
+        width = min(pair.driver.face_width, pair.driven.face_width)
+        stage.say("length", load_distribution_node_positions=[z + 0.5 * width for z, _ in rows])
+        stage.say("line load", load_distribution_along_face_width=[q for _, q in rows])
+
+
+def _set(
+    written: Written, scene: Scene, name: str, part: PlanetaryPart, gears: Mapping[str, Part], bodies: _Bodies,
+    around: tuple[Part, Part],
+) -> None:  # fmt: skip
+    """A planetary stage: its meshes, carrier, pins, and the coupling that holds a member."""
+    left_out(written, f"Set {name}", part, _SET)
+    unit, casing = around
+    sun, ring = gears[part.sun], gears[str(part.ring)]
+    distance = scene.pairs[set_pair(name, "sun")].centre_distance
+    whole, carrier = written.part("planetary_stage", name), written.part("planet_carrier")
+    turning = place(written.part("shaft", f"{name}, carrier"))
+    written.relate("assembly", assembly=unit, part=whole)
+    written.relate("assembly", assembly=whole, part=carrier)
+    written.relate("assembly", assembly=carrier, part=turning)
+    if part.angles is not None:
+        written.remarks.append(f"Set {name}: angles not written to REXS.")
+    for n in range(part.count):
+        planet = gears[part.planet] if n == 0 else write_gear(written, scene, part.planet)
+        own, pin = (place(written.part("shaft", f"{name}, {what} {n + 1}"), (0.0, distance, 0.0))
+                    for what in ("planet", "pin"))  # fmt: skip
+        bearing = written.part("concept_bearing", f"{name}, pin {n + 1}")
+        written.relate("assembly", assembly=own, part=planet)
+        written.relate("assembly", assembly=carrier, part=pin)
+        written.relate("side", assembly=bearing, outer_part=own, inner_part=pin)
+        for first, second in ((sun, planet), (planet, ring)):
+            stage = written.part("cylindrical_stage").say("length", center_distance=distance)
+            written.relate("assembly", assembly=whole, part=stage)
+            written.relate("stage", stage=stage, gear_1=first, gear_2=second)
+    bodies.join(bodies.shaft[part.sun].id, bodies.shaft[str(part.ring)].id, turning.id)
+    members = {"sun": bodies.shaft[part.sun], "ring": bodies.shaft[str(part.ring)], "carrier": turning}
+    held = written.part("coupling", f"{name}, {part.fixed} held")
+    written.relate("side", assembly=held, inner_part=members[part.fixed], outer_part=casing)
+    teeth = set_teeth(scene.case, part)
+    share = {"sun": teeth.sun, "ring": teeth.ring, "carrier": -teeth.sun - teeth.ring}
+    sense = -1.0 if part.clockwise else 1.0
+    driving = members[part.input]
+    if part.speed is not None:
+        bodies.speed[driving.id] = sense * part.speed
+    for role, member in members.items():
+        if role != part.fixed:
+            torque = sense * part.torque * share[role] / share[part.input]
+            bodies.torques.setdefault(member.id, []).append(torque)
+
+
+def _lives(unit: Part, pairs: Mapping[str, PairPart]) -> None:
+    """The operating time, where all pairs have one."""
+    lives = {part.operation.life for part in pairs.values()}
+    if len(lives) == 1 and (life := lives.pop()) is not None:
+        unit.say("time", operating_time=life)
+
+
+def _drives(written: Written, scene: Scene, bodies: _Bodies) -> None:
+    """Loads where torque enters and leaves, and the speeds of shafts; what balance tells is not given twice."""
+    ends = {one.name: scene.case.shaft[one.name] for one in bodies.shaft.values() if one.name in scene.case.shaft}
+    shafts = [one for one in written.parts if one.type == "shaft"]
+    net = {}
+    for shaft in shafts:
+        parts = bodies.torques.get(shaft.id, [])
+        if abs(sum(parts)) > _BALANCED * max(map(abs, parts), default=0.0):
+            net[shaft.id] = sum(parts)
+    driving = {n for n, torque in net.items() if torque * bodies.speed.get(n, bodies.sense.get(n, 1.0)) > 0.0}
+    # One torque of every train follows from the others: the last that leaves it.
+    told = {bodies.train.get(n, n): n for n in net if n not in driving}
+    given = driving | (net.keys() - told.values())
+    for shaft in shafts:
+        if shaft.id in bodies.speed:
+            shaft.say("speed", rotational_speed=bodies.speed[shaft.id])
+            shaft.word(defines_speed=shaft.id in driving or not driving)
+        end = ends.get(shaft.name)
+        if shaft.id not in net and (end is None or end.coupling is None):
+            continue
+        at = 0.0 if end is None or end.coupling is None else end.coupling
+        load = written.part("external_load", f"{shaft.name}, torque").say("length", u_coordinate_on_shaft=at)
+        load.word(transmits_torque=True, defines_torque=shaft.id in given)
+        if shaft.id in given:
+            load.say("torque", torque_around_u_axis=net[shaft.id])
+        written.relate("assembly", assembly=shaft, part=load)

@@ -1,0 +1,148 @@
+"""Shafts and bearings of a case as components of REXS, counted from the left end of each shaft."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.exchange.rexs.written_gears import left_out, write_elasticity
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.case.shaft import BearingPart, BearingPlacePart, ShaftInSpacePart
+    from fegear.exchange.rexs.written import Columns, Part, Written
+
+#: Keys that are written.
+_BEARING = frozenset({"radial", "axial", "tilting", "fixed", "radial_clearance", "elements", "life"})
+#: Stiffness of a body that does not bend [Pa]: the import takes it for rigid.
+_RIGID = 1e16
+#: Every shaft lies along u; where v begins does not matter.
+_ALONG = (1e-3, 0.0, 0.0)
+
+
+def write_shaft(written: Written, scene: Scene, name: str, casing: Part, gears: Mapping[str, Part]) -> Part:
+    """A shaft of a case with its sections, gears, bearings and forces.
+
+    Parameters
+    ----------
+    written : Written
+    scene : Scene
+    name : str
+    casing : Part
+        That holds the bearings.
+    gears : mapping
+        Components of the gears by name.
+    """
+    part = scene.case.shaft[name]
+    made = place(written.part("shaft", name), (part.start, part.axis[0], part.axis[1]))
+    begin = 0.0
+    for one in part.sections:
+        section = written.part("shaft_section").say(
+            "length", length=one.length, outer_diameter_begin=one.outer, inner_diameter_begin=one.inner or None,
+            outer_diameter_end=one.outer_end, inner_diameter_end=one.inner_end, u_coordinate_on_shaft=begin,
+        )  # fmt: skip
+        begin += one.length
+        written.relate("assembly", assembly=made, part=section)
+    material = written.part("material", f"{name}, material")
+    if part.rigid:
+        material.say("stress", elastic_modulus=_RIGID)
+    else:
+        write_elasticity(material, part.material)
+    if part.rigid or part.material.model_fields_set:
+        written.relate("reference", origin=made, referenced=material)
+    else:
+        written.parts.remove(material)
+    for there in part.gears:
+        gears[there.gear].say("length", u_coordinate_on_shaft=there.at)
+        written.relate("assembly", assembly=made, part=gears[there.gear])
+    for seat in part.bearings:
+        _bearing(written, scene.case.bearing[seat.bearing], seat, made, casing)
+    _loads(written, name, part, made)
+    return made
+
+
+def place(made: Part, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Part:
+    """Say where a shaft stands: u, v and w [m]."""
+    return made.say("length", support_vector=at, u_axis_vector=_ALONG, w_axis_vector=(0.0, 0.0, 1e-3))
+
+
+def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft: Part, casing: Part) -> None:
+    """A bearing on its seat: what rolls in it, or its stiffness."""
+    left_out(written, f"Bearing {seat.bearing}", part, _BEARING)
+    elements, life = part.elements, part.life
+    detailed = "rolling_bearing_with_detailed_geometry"
+    rolling = detailed if elements else "rolling_bearing_with_catalog_geometry"
+    plain = elements is None and life is None and not part.radial_clearance
+    made = written.part("concept_bearing" if plain else rolling, seat.bearing)
+    made.say("length", u_coordinate_on_shaft_inner_side=seat.at, u_coordinate_on_shaft_outer_side=seat.at)
+    along = part.fixed or bool(part.axial) or (elements is not None and elements.kind == "ball")
+    made.word(axial_force_absorption="both_directions" if along else "no_direction", radial_force_absorption=True)
+    made.say("stiffness", radial_stiffness=part.radial, axial_stiffness=part.axial)
+    made.say("tilting stiffness", bending_stiffness=part.tilting if "tilting" in part.model_fields_set else None)
+    if part.radial_clearance:
+        made.say("small length", operating_radial_bearing_clearance=2.0 * part.radial_clearance)
+    kind = (elements or life).kind if elements or life else None  # type: ignore[union-attr]
+    made.word(bearing_type={"ball": "radial_grooved_ball_bearing", "roller": "radial_roller_bearing", None: None}[kind])
+    if life is not None:
+        made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
+        given = life.axial_factor or life.limit
+        made.say(
+            "number", radial_factor_x_2=life.radial_factor if given else None,
+            axial_factor_y_2=life.axial_factor if given else None, catalogue_value_e=life.limit if given else None,
+        )  # fmt: skip
+    if elements is not None:
+        made.say("small length", operating_radial_bearing_clearance=elements.clearance or None)
+        row, roller = written.part("rolling_bearing_row"), written.part("rolling_element")
+        angle = -elements.contact_angle if seat.reversed else elements.contact_angle
+        ball = elements.kind == "ball"
+        inner, outer = (ratio * elements.diameter for ratio in elements.groove_ratio)
+        row.say("number", number_of_rolling_elements=float(elements.count))
+        row.say("angle", pressure_angle=angle)
+        row.say(
+            "length", reference_diameter=elements.pitch_diameter, raceway_radius_of_inner_ring=inner if ball else None,
+            raceway_radius_of_outer_ring=outer if ball else None,
+        )  # fmt: skip
+        roller.say(
+            "length", diameter_of_rolling_element=elements.diameter, length_of_rolling_element=elements.roller_length
+        )
+        written.relate("ordered_assembly", 1, assembly=made, part=row)
+        written.relate("ordered_assembly", 1, assembly=row, part=roller)
+    written.relate("side", assembly=made, inner_part=shaft, outer_part=casing)
+
+
+def _loads(written: Written, name: str, part: ShaftInSpacePart, shaft: Part) -> None:
+    for n, one in enumerate(part.loads):
+        force, moment = one.force or [0.0] * 3, one.moment or [0.0] * 3
+        if moment[2]:
+            written.remarks.append(f"Shaft {name}, loads.{n}: the moment about the axis is not written to REXS.")
+        made = written.part("external_load", f"{name}, load {n + 1}").say("length", u_coordinate_on_shaft=one.at)
+        made.say("force", force_u_direction=force[2], force_v_direction=force[0], force_w_direction=force[1])
+        made.say("torque", torque_around_v_axis=moment[0], torque_around_w_axis=moment[1])
+        written.relate("assembly", assembly=shaft, part=made)
+
+
+def write_shaft_results(written: Written, shafts: Mapping[str, Part], tables: Mapping[str, Columns]) -> None:
+    """Bent shafts and the forces in their bearings, of the tables of a run."""
+    for name, shaft in shafts.items():
+        if (columns := tables.get(f"shaft_deflection_{name}")) is not None:
+            shaft.say("length", u_coordinates_of_beam_nodes=list(columns["z"]))
+            shaft.say(
+                "small length", displacement_u_of_nodes=list(columns["along"]),
+                displacement_v_of_nodes=list(columns["x"]), displacement_w_of_nodes=list(columns["y"]),
+            )  # fmt: skip
+            shaft.say("angle", torsion_u=list(columns["twist"]))
+    if (columns := tables.get("bearing_forces")) is None:
+        return
+    seats = {
+        (dict(roles)["inner_part"].name, dict(roles)["assembly"].name): dict(roles)["assembly"]
+        for kind, _, roles in written.relations
+        if kind == "side" and "inner_part" in dict(roles)
+    }
+    rows = zip(*(columns[key] for key in ("shaft", "bearing", "force_axial", "force_x", "force_y")), strict=True)
+    for shaft_name, bearing, along, x, y in rows:
+        if (seat := seats.get((str(shaft_name), str(bearing)))) is not None:
+            seat.say(
+                "force", force_acting_on_inner_component_u=float(along), force_acting_on_inner_component_v=float(x),
+                force_acting_on_inner_component_w=float(y),
+            )  # fmt: skip

@@ -1,0 +1,187 @@
+"""Cases written to REXS come back as the same cases; what the standard has no attribute for is said."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import tomllib
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rexs_models import in_json, planetary_set, two_stages
+
+import fegear.cli
+from fegear.base.errors import InputError
+from fegear.case.built.shafts import gearbox_of
+from fegear.case.reading import build_scene, read_scene
+from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.reading import model_of
+from fegear.exchange.rexs.written_gearbox import model_text
+
+CASES = Path(__file__).parents[2] / "cases"
+HERE = Path("model.rexs")
+
+
+def there_and_back(scene):
+    """A scene written and read again, and what was left out."""
+    text, remarks = model_text(scene, "2026-01-01T00:00:00")
+    return build_scene(tomllib.loads(case_of(model_of(text, HERE))), scene.name, Path()), remarks
+
+
+def imported(tree):
+    return build_scene(tomllib.loads(case_of(model_of(in_json(tree), HERE))), "case", Path())
+
+
+def with_all_of_a_flank():
+    """Two stages whose first gear has a tool with protuberance, reliefs, a crown, a material, oil and K_A."""
+    document = tomllib.loads(case_of(model_of(in_json(two_stages()), HERE)))
+    document["gear"]["gear_11"] |= {
+        "rack": {"dedendum": 1.4, "tip_radius": 0.3, "protuberance": 0.05, "grinding_allowance": 0.03},
+        "relief": {"tip": [{"amount": "8 um", "start_radius": "20.7 mm"}, {"amount": "2 um", "length": "0.8 mm",
+                   "shape": "parabolic"}], "crowning": [{"amount": "3 um"}]},
+        "lead": {"crowning": "4 um", "slope": "-6 um"}, "tip_diameter": "44.4 mm", "tip_chamfer": "0.1 mm",
+        "strength": {"material": "nitrided-nitriding-steel", "hardness": "700 HV", "contact": "1250 MPa"},
+        "roughness": {"flank": "0.4 um", "root_rz": "9 um"}, "tolerance_class": 4, "bore_radius": "12 mm",
+    }  # fmt: skip
+    document["pair"]["I"] |= {
+        "operation": {"application_factor": 1.35, "life": "8000 h"},
+        "lubricant": {"viscosity_40": "150 mm^2/s", "kind": "polyglycol", "temperature": "80 degC"},
+    }  # fmt: skip
+    document["pair"]["II"]["operation"]["life"] = "8000 h"
+    document["bearing"]["bearing_52"] = {
+        "elements": {"kind": "ball", "count": 9, "diameter": "8 mm", "pitch_diameter": "39 mm", "clearance": "12 um"},
+        "life": {"dynamic_rating": "14 kN", "axial_factor": 1.6, "limit": 0.27, "radial_factor": 0.56},
+    }  # fmt: skip
+    document["bearing"]["bearing_54"] = {"radial": "300 N/um", "radial_clearance": "10 um"}
+    document["shaft"]["shaft_5"] |= {
+        "sections": [{"length": "70 mm", "outer": "40 mm", "inner": "10 mm"},
+                     {"length": "50 mm", "outer": "44 mm", "outer_end": "36 mm"}],
+        "loads": [{"at": "118 mm", "force": ["100 N", "-800 N", "25 N"], "moment": ["3 N*m", "0 N*m", "0 N*m"]}],
+        "material": {"young_modulus": "190 GPa"},
+    }  # fmt: skip
+    document["shaft"]["shaft_4"]["rigid"] = True
+    return build_scene(document, "case", Path())
+
+
+@pytest.mark.parametrize("made", [lambda: imported(two_stages()), with_all_of_a_flank], ids=["plain", "everything"])
+def test_a_gearbox_comes_back_as_it_was(made):
+    scene = made()
+    again, remarks = there_and_back(scene)
+    assert remarks == ()
+    assert again.gears.keys() == scene.gears.keys()
+    for name, gear in scene.gears.items():
+        assert same(again.gears[name], gear), name
+        one, other = (found.case.gear[name] for found in (again, scene))
+        for key in ("strength", "roughness", "tolerance_class", "relief", "lead"):
+            assert same(getattr(one, key), getattr(other, key)), (name, key)
+    for name, pair in scene.pairs.items():
+        assert same(again.pairs[name].centre_distance, pair.centre_distance)
+        one, other = (found.case.pair[name] for found in (again, scene))
+        for key in ("torque", "speed", "axial_offset", "lubricant", "operation", "driver", "driven"):
+            assert same(getattr(one, key), getattr(other, key)), (name, key)
+    first, second = gearbox_of(again), gearbox_of(scene)
+    assert first.names == second.names
+    for one, other in zip(first.shafts, second.shafts, strict=True):
+        assert same(one.shaft, other.shaft)
+        assert same(one.loads, other.loads)
+        assert [same(a.at, b.at) and same(a.bearing, b.bearing) for a, b in zip(one.seats, other.seats, strict=True)]
+    assert same(first.couplings, second.couplings)
+    assert model_text(there_and_back(again)[0], "")[0] == model_text(again, "")[0]
+
+
+def same(one, other):
+    """Equal to rounding of what is written with 15 digits, down to what dataclasses and case tables hold."""
+    if hasattr(one, "model_dump"):
+        return same(one.model_dump(), other.model_dump())
+    if hasattr(one, "__dataclass_fields__"):
+        return type(one) is type(other) and all(
+            same(getattr(one, key), getattr(other, key)) for key in one.__dataclass_fields__
+        )
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, list | tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, float | np.ndarray):
+        return other is not None and np.allclose(one, other, rtol=1e-11, atol=1e-15, equal_nan=True)
+    return one == other
+
+
+def test_a_planetary_set_comes_back_as_it_was():
+    scene = imported(planetary_set())
+    again, remarks = there_and_back(scene)
+    assert remarks == ()
+    assert same(again.case.planetary["P"], scene.case.planetary["P"])
+    assert all(same(again.gears[name], gear) for name, gear in scene.gears.items())
+
+
+@pytest.mark.parametrize("name", ["two_stage_shafts", "rating_helical", "helical_stage_train", "pinion_and_wheel"])
+def test_cases_that_come_with_fegear_keep_their_pairs(name):
+    scene = read_scene(CASES / f"{name}.toml", ())
+    again, _ = there_and_back(scene)
+    for one, other in zip(scene.pairs.values(), again.pairs.values(), strict=True):
+        for role in ("driver", "driven"):
+            first, second = getattr(one, role), getattr(other, role)
+            for key in ("module", "root_radius", "tip_radius", "base_radius", "face_width", "helix_angle"):
+                assert getattr(second, key) == pytest.approx(getattr(first, key), rel=1e-12)
+        assert other.centre_distance == pytest.approx(one.centre_distance, rel=1e-12)
+    loads = [
+        [part.normal_load(found.pairs[name]) for name, part in found.case.pair.items()] for found in (scene, again)
+    ]
+    assert loads[1] == pytest.approx(loads[0], rel=1e-10)
+
+
+def test_what_has_no_attribute_is_said_and_a_case_without_pairs_refused():
+    document = tomllib.loads(case_of(model_of(in_json(two_stages()), HERE)))
+    document["gear"]["gear_11"] |= {"thickness_allowance": "50 um", "relief": {"table": [
+        {"radii": ["19 mm", "21 mm"], "removals": ["0 um", "5 um"]}]}}  # fmt: skip
+    document["pair"]["I"]["operation"]["mesh_load_factor"] = 1.2
+    _, remarks = there_and_back(build_scene(document, "case", Path()))
+    assert remarks == (
+        "Gear gear_11: thickness_allowance not written to REXS.",
+        "Gear gear_11, relief: table not written to REXS.",
+        "Pair I, operation: mesh_load_factor not written to REXS.",
+    )
+    alone = build_scene({"gear": {"a": document["gear"]["gear_13"]}, "results": ["geometry"]}, "case", Path())
+    with pytest.raises(InputError, match="a REXS model holds gears in mesh"):
+        model_text(alone, "")
+
+
+def test_a_gear_that_drives_its_like_becomes_two():
+    document = {
+        "gear": {"a": {"teeth": 30, "module": "3 mm", "face_width": "20 mm"}},
+        "pair": {"I": {"driver": "a", "driven": "a", "torque": "50 N*m", "speed": "900 rpm"}},
+    }
+    again, _ = there_and_back(build_scene({**document, "results": ["geometry"]}, "case", Path()))
+    assert len(again.gears) == 2
+    assert (again.case.pair["I"].torque, again.case.pair["I"].speed) == pytest.approx((50.0, 30.0 * np.pi))
+
+
+def test_the_command_writes_results_of_a_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("box.toml").write_text(case_of(model_of(in_json(two_stages()), HERE)), "utf-8")
+
+    def say(*arguments):
+        monkeypatch.setattr(sys, "argv", ["fegear", *arguments])
+        with pytest.raises(SystemExit) as end:
+            fegear.cli.main()
+        return int(end.value.code or 0), "".join(capsys.readouterr())
+
+    assert say("run", "box.toml", "--no-plots", "--results", "geometry,rating,shaft-deflection")[0] == 0
+    assert say("export", "results/box", "--format", "rexs", "--out", "out")[0] == 0
+    model = ET.parse("out/box.rexs").getroot()  # noqa: S314
+    assert model.get("version") == "1.7"
+    found = json.loads(Path("results/box/summary.json").read_text("utf-8"))["results"]
+    text = Path("out/box.rexs").read_text("utf-8")
+    for key, attribute in (("I.driver.S_H", "safety_factor_pitting_iso_6336_2019"),
+                           ("I.contact_ratio", "radial_contact_ratio")):  # fmt: skip
+        value = float(re.search(rf'id="{attribute}"[^>]*>([^<]*)<', text)[1])
+        assert value == pytest.approx(found[key]["value"], rel=1e-12)
+    bent = model.findall(".//attribute[@id='displacement_v_of_nodes']/array")
+    assert len(bent) == 3
+    assert len(model.findall(".//attribute[@id='force_acting_on_inner_component_w']")) == 6
+    # What is read again is the case, not its results.
+    assert tomllib.loads(case_of(model_of(text, HERE)))["pair"]["I"]["torque"] == "100 N*m"
+    assert "which is written to REXS alone" in say("export", "results/box", "--format", "dxf")[1]
