@@ -22,7 +22,7 @@ from fegear.case.part import (
     refuse,
     spelt_also,
 )
-from fegear.case.relief import BiasPart, LeadPart, ReliefPart, SpacingErrorsPart, TopographyPart
+from fegear.case.relief import BiasPart, LeadPart, MeasuredPart, ReliefPart, SpacingErrorsPart, TopographyPart
 from fegear.case.strength import DeviationsPart, StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
@@ -260,6 +260,11 @@ class GearPart(Part):
         default=None,
         description="Modification of every flank by a table over roll angle and face; it needs the effect `relief`.",
     )
+    measured: MeasuredPart | None = Field(
+        default=None,
+        description="Measured profiles, helices or flanks in the place of those that are drawn; they need the effect "
+        "`relief`.",
+    )
     spacing_errors: SpacingErrorsPart | None = Field(
         default=None,
         description="One accumulated error for each tooth in the order of meshing, positive where the flank lies "
@@ -304,7 +309,14 @@ class GearPart(Part):
     @property
     def over_face(self) -> tuple[str, ...]:
         """Keys that say what is ground off over the face, of those that are given."""
-        return tuple(key for key in ("lead", "bias", "topography") if getattr(self, key) is not None)
+        given = tuple(key for key in ("lead", "bias", "topography") if getattr(self, key) is not None)
+        wide = self.measured is not None and (self.measured.lead or self.measured.topography)
+        return (*given, "measured") if wide else given
+
+    @property
+    def relieved(self) -> bool:
+        """Whether its profile is drawn, or measured, to differ from an involute."""
+        return self.relief is not None or (self.measured is not None and self.measured.profile is not None)
 
     @property
     def is_helical(self) -> bool:

@@ -265,3 +265,53 @@ class TopographyPart(Part):
         description="CSV file with `roll_angle [deg]` or `radius [mm]`, `z [mm]` and `removal [um]`, every roll "
         "angle at every height once; bilinear between them, held beyond them."
     )
+
+
+class MeasuredPart(Part):
+    """``measured = { profile, lead }`` or ``{ topography }``: flanks as measured, in the place of the drawn ones.
+
+    What is drawn (`relief`, `lead`) remains the design that the deviations are counted from.
+    """
+
+    profile: str | None = Field(
+        default=None,
+        description="CSV file of profile traces: `radius [mm]`, `roll_angle [deg]` or `roll_length [mm]`, "
+        "`deviation [um]`, positive for more material than the involute, and `tooth` where there are several.",
+    )
+    lead: str | None = Field(
+        default=None,
+        description="CSV file of helix traces: `z [mm]` from the middle of the face, toward end II, `deviation [um]`, "
+        "and `tooth`.",
+    )
+    topography: str | None = Field(
+        default=None,
+        description="CSV file of whole flanks: a profile's column, `z [mm]`, `deviation [um]`, and `tooth`, on a full "
+        "grid; it stands for profile and lead.",
+    )
+    filter: bool = Field(
+        default=True,
+        description="Whether the Gaussian filter of ISO 1328-1 takes out what is shorter than a thirtieth of the "
+        "evaluation length.",
+    )
+    profile_range: Annotated[list[PositiveLength], Field(min_length=2, max_length=2)] | None = Field(
+        default=None,
+        description="Radii between which profiles are evaluated; without it 95 % of the way from where contact starts "
+        "to where the involute ends.",
+    )
+    lead_range: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = Field(
+        default=None,
+        description="Heights between which helices are evaluated; without it the face without 5 %, at most a module, "
+        "at either end.",
+    )
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if self.topography is not None and (self.profile or self.lead):
+            raise refuse("contradicts profile and lead", "give the whole flank or traces", key="topography")
+        if not (self.topography or self.profile or self.lead):
+            raise refuse("names no file", 'write measured = { profile = "profile.csv" }', value="{}")
+        for key in ("profile_range", "lead_range"):
+            ends = getattr(self, key)
+            if ends is not None and not ends[0] < ends[1]:
+                raise refuse("must rise from its first to its last place", key=key, value="(a list)")
+        return self

@@ -21,6 +21,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("tooth-geometry-check", "gear.tooth_geometry_check.TOOTH_GEOMETRY_CHECK",
               "Drawing against rules of thumb", ("tooth-geometry-check",),
               "tip thickness, rim, undercut, contact ratio and clearances against rules of thumb"),
+        Entry("measured-flanks", "gear.measured_flanks.MEASURED_FLANKS", "Measured flanks", ("measured-flanks",),
+              "slope, form and total deviation of measured profiles and helices, and the tolerance class they keep"),
         Entry("gear-solution", "gear.stiffness.GEAR_SOLUTION", "Influence functions of a gear"),
         Entry("stiffness", "gear.stiffness.STIFFNESS", "Compliance and root stress, whole gear", ("stiffness",),
               "compliance of a loaded tooth and its neighbours, and its root stress, over load positions"),

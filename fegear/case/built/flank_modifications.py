@@ -13,6 +13,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import build_relief
+from fegear.case.built.measured_flanks import measured_gear
 from fegear.case.built.pair_inputs import gear_flanks, gear_name
 from fegear.case.part import at
 from fegear.case.text_file import read_columns
@@ -95,8 +96,16 @@ class FaceModifications:
         return found
 
 
-def gear_face(scene: Scene, name: str) -> FaceModifications:
+def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> FaceModifications:
     """Read what a case gives a gear over its face.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the gear.
+    drawn : bool
+        Whether that is wanted which is drawn, where another one is measured.
 
     Raises
     ------
@@ -105,7 +114,13 @@ def gear_face(scene: Scene, name: str) -> FaceModifications:
     """
     part, gear = scene.case.gear[name], scene.gears[name]
     found: list[FlankModification] = []
-    if part.lead is not None:
+    if part.measured is not None and not drawn:
+        measured = measured_gear(scene, name)
+        if measured.topography is not None:
+            return FaceModifications((measured.topography,), None, name)
+        if measured.lead is not None:
+            found.append(measured.lead)
+    if part.lead is not None and not found:
         found += _lead(scene, name, part.lead, gear.face_width)
     if part.topography is not None:
         found.append(_topography(scene, name, part.topography))
@@ -193,7 +208,7 @@ def described_relief(scene: Scene, gear: str) -> DescribedRelief:
     """
     if scene.case.gear[gear].relief is None:
         return DescribedRelief()
-    flanks = gear_flanks(scene, gear)
+    flanks = gear_flanks(scene, gear, drawn=True)
     if "relief" in flanks.wrong:
         raise flanks.wrong["relief"]
     if flanks.wants_delta:

@@ -201,7 +201,7 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
         _check_misalignment(scene, name)
     asked = flanks_to_load(scene, name)
     gears = scene.case.gear.values()
-    if effects.relief and not (asked.cutter or any(gear.relief or gear.over_face for gear in gears)):
+    if effects.relief and not (asked.cutter or any(gear.relieved or gear.over_face for gear in gears)):
         raise InputError(
             "effects.relief", "true", "finds no gear with relief, lead, bias or topography in this case",
             f"give gear.{part.driver}.relief or lead, or leave the effect out",

@@ -282,7 +282,7 @@ def _check_flanks(scene: Scene, name: str) -> None:
 def check_relief(scene: Scene, name: str) -> None:
     """Refuse the effect relief where no gear of the case has any: other pairs may do without."""
     part = scene.case.pair[name]
-    if scene.case.effects.relief and all(gear.relief is None for gear in scene.case.gear.values()):
+    if scene.case.effects.relief and not any(gear.relieved for gear in scene.case.gear.values()):
         raise InputError(
             "effects.relief", "true", "finds no gear with a relief in this case",
             f"give gear.{part.driver}.relief, or leave the effect out",

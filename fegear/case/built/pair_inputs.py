@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.case.built.measured_flanks import measured_gear
 from fegear.case.built.rated_duty import bore_remarks, width_remarks
 from fegear.case.effects import EffectsPart
 from fegear.case.part import at
+from fegear.case.relief import ReliefPart
 from fegear.case.text_file import read_columns
 from fegear.geometry.interference import interference
 from fegear.geometry.pair import MEMBERS
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.pair import CompliancePart
     from fegear.case.reading import Scene
-    from fegear.case.relief import ReliefPart, ReliefTablePart
+    from fegear.case.relief import ReliefTablePart
     from fegear.contact.plane.closed_form_compliance import FormulaRootStress
     from fegear.contact.plane.compliance import RootStressInfluence
     from fegear.fem.plane.gear import GearInfluence
@@ -151,15 +153,29 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     )  # fmt: skip
 
 
-def gear_flanks(scene: Scene, gear: str) -> Flanks:
-    """What a case says of the flanks of a gear; data of effects that are off may be wrong."""
+def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> Flanks:
+    """What a case says of the flanks of a gear; data of effects that are off may be wrong.
+
+    Parameters
+    ----------
+    scene : Scene
+    gear : str
+    drawn : bool
+        Whether the relief is wanted that is drawn, where another one is measured.
+    """
     part, effects = scene.case.gear[gear], scene.case.effects
     tables: tuple[TabulatedRelief, ...] = ()
+    relief = part.relief
     spacing, wrong = np.empty(0), {}
     try:
-        tables = tuple(
+        if part.measured is not None and not drawn:
+            measured = measured_gear(scene, gear)
+            tables = () if measured.relief is None or measured.topography is not None else (measured.relief,)
+            if tables or measured.topography is not None:
+                relief = ReliefPart.model_construct() if tables else None
+        tables = tables or tuple(
             _table_relief(scene, scene.gears[gear], table, f"gear.{gear}.relief.table[{i}]")
-            for i, table in enumerate(part.relief.table if part.relief else ())
+            for i, table in enumerate(relief.table if relief else ())
         )
     except InputError as error:
         if effects.relief:
@@ -171,7 +187,7 @@ def gear_flanks(scene: Scene, gear: str) -> Flanks:
         if effects.spacing_errors:
             raise
         wrong["spacing_errors"] = error
-    return Flanks(part.relief, tables, spacing, gear, wrong)
+    return Flanks(relief, tables, spacing, gear, wrong)
 
 
 def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
@@ -179,7 +195,7 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     remarks, effects = [], scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]
-        if part.relief is not None and not effects.relief:
+        if part.relieved and not effects.relief:
             remarks.append(
                 f"Gear {gear} has a relief, but effects.relief is off: its flanks are assumed to be involutes."
             )

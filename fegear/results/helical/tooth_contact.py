@@ -322,7 +322,7 @@ def _inputs(scene: Scene, name: str) -> ToothContactInputs:
         if "crosscheck" not in scene.case.results and not loaded else "",
         part.misalignment.lead if part.misalignment is not None else None,
         tuple(gear for gear in dict.fromkeys((part.driver, part.driven))
-              if scene.case.gear[gear].relief is not None or scene.case.gear[gear].over_face),
+              if scene.case.gear[gear].relieved or scene.case.gear[gear].over_face),
         loaded,
     )  # fmt: skip
 

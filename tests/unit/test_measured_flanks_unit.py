@@ -1,0 +1,209 @@
+"""Measured flanks: traces of known slope, form and crown are found again, and pairs feel what was measured."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case.built.flank_modifications import gear_face
+from fegear.case.built.loaded_pair import build_relief
+from fegear.case.built.measured_flanks import measured_gear
+from fegear.case.built.pair_inputs import gear_flanks
+from fegear.case.reading import build_scene, read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.formulas.iso1328 import tolerances_of
+from fegear.formulas.iso1328_traces import cutoff, evaluate, filtered, helix_range, tightest_class
+from fegear.results.catalogue import STAGES
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def scene_of(folder, measured, **more):
+    """A spur pair whose pinion is measured."""
+    pinion = {"teeth": 21, "module": "3 mm", "face_width": "12 mm", "tolerance_class": 5, "measured": measured, **more}
+    return build_scene(
+        {
+            "results": ["measured-flanks"], "effects": {"relief": True, "neighbour_coupling": True},
+            "gear": {"a": pinion, "b": {"teeth": 32, "module": "3 mm", "face_width": "12 mm"}},
+            "pair": {"I": {"driver": "a", "driven": "b", "load": "1 kN", "width": "slices"}},
+        },
+        "case", folder,
+    )  # fmt: skip
+
+
+def write(path, heads, *columns):
+    lines = [",".join(heads), *(",".join(f"{one:.12g}" for one in row) for row in zip(*columns, strict=True))]
+    path.write_text("\n".join(lines) + "\n", "utf-8")
+
+
+def flank(scene):
+    """Roll angles of the involute of the pinion, and where it is evaluated [rad]."""
+    gear, pair = scene.gears["a"], scene.pairs["I"]
+    start = min(float(pair.roll_angle(x, "driver")) for x in (pair.x_start, pair.x_end))
+    end = gear.tooth.involute.end
+    return np.linspace(start - 0.01, end, 400), start, start + 0.95 * (end - start)
+
+
+@pytest.mark.parametrize("waves", [30.0, 10.0, 60.0])
+def test_the_filter_lets_half_of_its_cut_off_through_and_leaves_lines_alone(waves):
+    """2 to the power -(cut-off over wavelength) squared of a wave, by ISO 16610-21."""
+    length = 10e-3
+    x = np.linspace(0.0, 12e-3, 2401)
+    wavelength = length / waves
+    y = np.cos(2.0 * math.pi * (x - 6e-3) / wavelength)
+    kept = filtered(x, y, cutoff(length))[1200]
+    assert kept == pytest.approx(2.0 ** -((cutoff(length) / wavelength) ** 2), abs=2e-4)
+    line = 3e-6 - 2e-3 * x
+    assert np.abs(filtered(x, line, cutoff(length)) - line).max() < 1e-18
+
+
+def test_the_cut_off_is_a_thirtieth_of_the_range_and_at_least_25_um():
+    assert cutoff(9e-3) == pytest.approx(0.3e-3)
+    assert cutoff(0.3e-3) == 25e-6
+    assert helix_range(20e-3, 2e-3) == pytest.approx((-9e-3, 9e-3))
+    assert helix_range(100e-3, 2e-3) == pytest.approx((-48e-3, 48e-3))
+
+
+@pytest.mark.parametrize(("slope", "crown", "form"), [(8e-6, 0.0, 0.0), (-5e-6, 3e-6, 0.0), (4e-6, -2e-6, 1.5e-6)])
+def test_slope_crown_form_and_total_of_a_known_trace(slope, crown, form):
+    """A line, a parabola, and a wave of whole periods and of both their symmetries, which neither fit sees."""
+    x = np.linspace(0.0, 12e-3, 4001)
+    s = (x - 6e-3) / 5e-3
+    wave = np.cos(2.0 * math.pi * 20.0 * s)
+    found = evaluate(x, 0.5 * slope * s - crown * s**2 + 0.5 * form * wave, 1e-3, 11e-3)
+    assert found.slope == pytest.approx(slope, abs=1e-10)
+    assert found.crown == pytest.approx(crown, abs=3e-9)
+    assert found.form == pytest.approx(abs(crown) + form, rel=0.05, abs=1e-12)
+    straight = 0.5 * slope * s - crown * s**2
+    inside = np.abs(s) <= 1.0
+    assert found.total == pytest.approx(np.ptp(straight[inside]) + form, rel=0.1)
+
+
+def test_the_class_is_the_tightest_that_holds_slope_form_and_total():
+    gear = read_scene(CASES / "measured_flanks.toml", ()).gears["pinion"]
+    x = np.linspace(-6e-3, 6e-3, 501)
+    allowed = tolerances_of(gear, 5).rounded.helix_slope
+    for part, kept in ((0.99, 5), (1.01, 6)):
+        found = evaluate(x, part * allowed * x / 10.8e-3, -5.4e-3, 5.4e-3)
+        assert tightest_class(found, gear, "helix") == kept
+    assert tightest_class(evaluate(x, x * 0.1, -5.4e-3, 5.4e-3), gear, "helix") is None
+
+
+def test_traces_of_a_drawn_relief_and_lead_load_the_pair_as_they_do(tmp_path):
+    relief = {"tip": {"amount": "10 um", "length": "2 mm"}}
+    drawn = scene_of(tmp_path, None, relief=relief, lead={"crowning": "4 um", "slope": "6 um"})
+    pair = drawn.pairs["I"]
+    roll, *_ = flank(drawn)
+    want = build_relief(pair, "driver", gear_flanks(drawn, "a"), math.nan).removal(roll)
+    z = np.linspace(-6e-3, 6e-3, 97)
+    over = sum(part.removal(0.3, z) for part in gear_face(drawn, "a").parts)
+    write(tmp_path / "p.csv", ["roll_angle [deg]", "deviation [um]"], np.degrees(roll), -want * 1e6 + 3.0)
+    write(tmp_path / "l.csv", ["z [mm]", "deviation [um]"], z * 1e3, -over * 1e6 - 7.0)
+    scene = scene_of(tmp_path, {"profile": "p.csv", "lead": "l.csv", "filter": False})
+    found = build_relief(pair, "driver", gear_flanks(scene, "a"), math.nan).removal(roll)
+    assert np.abs(found - want).max() < 0.2e-6  # its kink lies between places
+    (table,) = gear_face(scene, "a").parts
+    assert np.abs(table.removal(0.3, z) - (over - over.min())).max() < 0.05e-6
+    # With the drawn flank as the design nothing deviates from it.
+    both = scene_of(tmp_path, {"profile": "p.csv", "lead": "l.csv"}, relief=relief,
+                    lead={"crowning": "4 um", "slope": "6 um"})  # fmt: skip
+    values = run_plan(both, make_plan(both, STAGES)).values
+    for kind in ("profile", "helix"):
+        for key in ("slope", "form", "total"):
+            assert abs(values[f"a.{kind}_{key}"].si) < 0.3e-6, (kind, key)
+
+
+def test_radius_roll_angle_and_length_of_roll_say_the_same(tmp_path):
+    plain = scene_of(tmp_path, None)
+    gear = plain.gears["a"]
+    roll, start, end = flank(plain)
+    y = 3.0 * (roll - start) / (end - start)
+    places = {
+        "roll_angle [deg]": np.degrees(roll), "roll_length [mm]": roll * gear.base_radius * 1e3,
+        "radius [mm]": gear.tooth.radius_of_roll(roll) * gear.module * 1e3,
+    }  # fmt: skip
+    slopes = []
+    for n, (head, x) in enumerate(places.items()):
+        write(tmp_path / f"{n}.csv", [head, "deviation [um]"], x, y)
+        found = measured_gear(scene_of(tmp_path, {"profile": f"{n}.csv"}), "a").profile
+        slopes.append(found.deviations(np.zeros(found.x.size))[0].slope)
+    assert slopes == pytest.approx([3e-6] * 3, rel=1e-6)
+
+
+def test_every_tooth_is_evaluated_and_the_mean_is_what_pairs_take(tmp_path):
+    roll, start, end = flank(scene_of(tmp_path, None))
+    s = (2.0 * roll - start - end) / (end - start)
+    teeth = {1: 2.0, 8: 6.0, 15: -5.0}
+    write(
+        tmp_path / "p.csv", ["tooth", "roll_angle [deg]", "deviation [um]"],
+        np.repeat(list(teeth), roll.size), np.tile(np.degrees(roll), 3),
+        np.concatenate([0.5 * k * s for k in teeth.values()]),
+    )  # fmt: skip
+    scene = scene_of(tmp_path, {"profile": "p.csv"})
+    results = run_plan(scene, make_plan(scene, STAGES))
+    table = results.tables["measured_deviations_a"]
+    rows = {column.name: column.values for column in table.columns}
+    assert list(rows["tooth"]) == ["1", "8", "15", "mean"]
+    assert rows["slope_deviation"] == pytest.approx([2.0, 6.0, -5.0, 1.0], abs=1e-6)
+    assert results.values["a.profile_slope"].value == pytest.approx(6.0, abs=1e-6)
+    allowed = tolerances_of(scene.gears["a"], 5).rounded
+    assert results.values["a.profile_slope_tolerance"].si == pytest.approx(allowed.profile_slope)
+    removal = measured_gear(scene, "a").relief.removal(np.array([start, end]))
+    assert removal == pytest.approx([1e-6, 0.0], abs=1e-10)
+
+
+def test_a_topography_holds_its_own_traces(tmp_path):
+    roll, *_ = flank(scene_of(tmp_path, None))
+    roll = roll[::8]
+    z = np.linspace(-6.0, 6.0, 25)
+    t, h = np.meshgrid(roll, z, indexing="ij")
+    u = (t - roll[0]) / np.ptp(roll)
+    y = 4.0 * u + 2.0 * h / 12.0 + 3.0 * u * h / 12.0
+    write(tmp_path / "t.csv", ["roll_angle [deg]", "z [mm]", "deviation [um]"],
+          np.degrees(t).ravel(), h.ravel(), y.ravel())  # fmt: skip
+    scene = scene_of(tmp_path, {"topography": "t.csv"}, lead={"crowning": "9 um"})
+    found = measured_gear(scene, "a")
+    (part,) = gear_face(scene, "a").parts
+    assert part.removal(roll[5], 2e-3) == pytest.approx((y.max() - np.interp(2.0, z, y[5])) * 1e-6, rel=1e-9)
+    share = (found.helix.ends[1] - found.helix.ends[0]) / 12e-3
+    middle = 0.5 * sum(found.profile.ends) / scene.gears["a"].base_radius
+    u = (middle - roll[0]) / np.ptp(roll)
+    assert found.helix.deviations(np.zeros(found.helix.x.size))[0].slope == pytest.approx(
+        share * (2.0 + 3.0 * u) * 1e-6, rel=1e-6
+    )
+    assert gear_flanks(scene, "a").relief is None
+
+
+@pytest.mark.parametrize(
+    ("measured", "words"),
+    [
+        ({}, "names no file"),
+        ({"profile": "none.csv"}, "none.csv"),
+        ({"profile": "l.csv"}, "needs the columns one of radius"),
+        ({"lead": "p.csv"}, r"needs the columns z \[mm\]"),
+        ({"lead": "short.csv"}, r"lead_range = -5.4 to 5.4 mm: is not covered by a trace from -3 to 3 mm"),
+        ({"lead": "twice.csv"}, "tooth 0: has fewer than five places, or one place twice"),
+        ({"lead": "l.csv", "lead_range": ["3 mm", "-3 mm"]}, "must rise"),
+        ({"topography": "p.csv", "lead": "l.csv"}, "contradicts profile and lead"),
+        ({"topography": "p.csv"}, r"needs the column z \[mm\]"),
+    ],
+)
+def test_what_is_no_measurement_is_refused_in_words(tmp_path, measured, words):
+    z = np.linspace(-6.0, 6.0, 25)
+    write(tmp_path / "l.csv", ["z [mm]", "deviation [um]"], z, 0.0 * z)
+    write(tmp_path / "short.csv", ["z [mm]", "deviation [um]"], 0.5 * z, 0.0 * z)
+    write(tmp_path / "twice.csv", ["z [mm]", "deviation [um]"], np.floor(z), 0.0 * z)
+    write(tmp_path / "p.csv", ["roll_angle [deg]", "deviation [um]"], z + 20.0, 0.0 * z)
+    with pytest.raises(InputError, match=words):
+        measured_gear(scene_of(tmp_path, measured), "a")
+
+
+def test_the_case_with_synthetic_traces_says_that_they_are():
+    for name in ("profile", "lead"):
+        head = (CASES / "data" / f"measured_pinion_{name}.csv").read_text("utf-8").splitlines()[0]
+        assert head.startswith("# Synthetic")
