@@ -18,6 +18,9 @@ def import_(
     load_case: Annotated[
         int | None, typer.Option("--load-case", metavar="N", help="Number of the load case; default the first.")
     ] = None,
+    spectrum: Annotated[
+        bool, typer.Option("--spectrum", help="Take all load cases as the load spectrum of the ratings.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
     quiet: Quiet = False,
 ) -> None:
@@ -28,7 +31,7 @@ def import_(
     from fegear.exchange.rexs.reading import read_model
 
     voice = Voice(quiet)
-    text = case_of(read_model(model), load_case, model.name)
+    text = case_of(read_model(model), load_case, model.name, spectrum=spectrum)
     path = case_file(out or model.stem.replace(".", "_"), force=force)
     write_file(path, text.encode(), "--out")
     notes = sum(line.startswith("# Note: ") for line in text.splitlines())

@@ -276,6 +276,58 @@ def test_paths_beside_each_other_share_a_torque_that_is_not_determined():
     assert "cylindrical_stage 21: the model does not determine its torque" in text
 
 
+def with_load_cases(*cases):
+    """Two stages under loads: torque [N m] and speed [1/min] of the first shaft, and how long."""
+    made = [
+        {"id": n, "components": [
+            part(3, "shaft", rotational_speed=(speed, "1/min")),
+            part(31, "external_load", torque_around_u_axis=(torque, "N m")),
+            part(1, "gear_unit", **time),
+        ]}
+        for n, (torque, speed, time) in enumerate(cases, 1)
+    ]  # fmt: skip
+    tree = without(without(two_stages(), 31, "torque_around_u_axis"), 3, "rotational_speed")
+    return model_of(in_json({**tree, "load_spectrum": [{"id": 1, "load_cases": made}]}), HERE)
+
+
+def test_load_cases_become_the_spectrum_of_every_pair():
+    shares = [{"load_duration_fraction": (p, "%")} for p in (20.0, 80.0)]
+    model = with_load_cases((100.0, 1500.0, shares[0]), (40.0, 3000.0, shares[1]))
+    found = tomllib.loads(case_of(model, spectrum=True))
+    assert found["pair"]["I"]["operation"]["spectrum"] == [
+        {"torque": "100 N*m", "speed": "1500 rpm", "share": 0.2},
+        {"torque": "40 N*m", "speed": "3000 rpm", "share": 0.8},
+    ]  # fmt: skip
+    assert found["pair"]["II"]["operation"]["spectrum"][1] == {"torque": "120 N*m", "speed": "1000 rpm", "share": 0.8}
+    assert build_scene(found, "case", Path()).case.pair["I"].operation.spectrum
+    assert "spectrum" not in tomllib.loads(case_of(model, 2))["pair"]["I"]["operation"]
+    hours = [{"operating_time": (h, "h")} for h in (1000.0, 3000.0)]
+    model = with_load_cases((100.0, 1500.0, hours[0]), (40.0, 3000.0, hours[1]))
+    timed = tomllib.loads(case_of(model, spectrum=True))["pair"]["I"]["operation"]
+    assert (timed["life"], [one["share"] for one in timed["spectrum"]]) == ("4000 h", [0.25, 0.75])
+
+
+def test_power_that_turns_round_is_counted_on_the_driver_of_the_first_load_case():
+    half = {"load_duration_fraction": (50.0, "%")}
+    text = case_of(with_load_cases((100.0, 1500.0, half), (-30.0, 1500.0, half)), spectrum=True)
+    bins = tomllib.loads(text)["pair"]["I"]["operation"]["spectrum"]
+    assert [(one["torque"], one["speed"]) for one in bins] == [("100 N*m", "1500 rpm"), ("30 N*m", "1500 rpm")]
+    assert "cylindrical_stage 21: power turns round in its spectrum" in text
+
+
+@pytest.mark.parametrize(
+    ("cases", "words"),
+    [
+        ([], "0 load cases: do not all say alike how long they last"),
+        ([(100.0, 1500.0, {}), (40.0, 1500.0, {"load_duration_fraction": (50.0, "%")})], "do not all say alike"),
+        ([(0.0, 1500.0, {"load_duration_fraction": (50.0, "%")})], "has a load case without torque or speed"),
+    ],
+)
+def test_load_cases_that_make_no_spectrum_are_refused(cases, words):
+    with pytest.raises(InputError, match=words):
+        case_of(with_load_cases(*cases), spectrum=True)
+
+
 def part_of(tree, number):
     return next(one for one in tree["components"] if one["id"] == number)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, case_text, listed, plain_name, quantity, text
-from fegear.exchange.rexs.loads import chosen_load_case, flow_of
+from fegear.exchange.rexs.loads import Spectrum, chosen_load_case, flow_of, spectrum_of
 from fegear.exchange.rexs.operation import lubricant_key, operation_key
 from fegear.exchange.rexs.places import BEARINGS, middle_on_shaft, places_of, shaft_of, stages_of
 from fegear.exchange.rexs.said import Said
@@ -42,7 +42,7 @@ _APART = 1e-9
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
 
 
-def case_of(model: Model, load_case: int | None = None, source: str = "") -> str:
+def case_of(model: Model, load_case: int | None = None, source: str = "", *, spectrum: bool = False) -> str:
     """The text of a case file.
 
     Parameters
@@ -52,6 +52,8 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
         Number of the load case whose torques and speeds are taken; the first by default.
     source : str
         Name of the file, for the first line.
+    spectrum : bool
+        Whether all load cases together are the load spectrum of every pair's rating.
 
     Raises
     ------
@@ -76,6 +78,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
     shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     middles = _middles(said, gears, on)
     flow = flow_of(said, stages, sets, on)
+    bins = spectrum_of(said, stages, sets, on, flow) if spectrum else Spectrum(((),) * len(stages))
     bent = bool(shafts) and _held(said, shafts)
     tables = [_head(stages, sets, said, bent=bent)]
     for n, gear in (gears | of_sets).items():
@@ -85,7 +88,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "") -> str
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
     places = places_of(said, stages, middles)
     heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
-    tables += [_pair(said, stage, names, flow, n, heights if bent else {}) for n, stage in enumerate(stages)]
+    tables += [_pair(said, stage, names, flow, n, heights if bent else {}, bins) for n, stage in enumerate(stages)]
     tables += [
         set_table(said, one, names, whole, flow.driven, n, flow.held)
         for n, (one, whole) in enumerate(zip(sets, flow.sets, strict=True))
@@ -178,7 +181,8 @@ def _height(place: Place, middle: float) -> float:
 
 
 def _pair(
-    said: Said, stage: Stage, names: dict[int, str], flow: Flow, n: int, heights: dict[int, float]
+    said: Said, stage: Stage, names: dict[int, str], flow: Flow, n: int, heights: dict[int, float],
+    spectrum: Spectrum,
 ) -> Table:  # fmt: skip
     """``[pair.NAME]``: who drives, distance, torque and speed."""
     first, second = stage.gears
@@ -200,7 +204,10 @@ def _pair(
     keys.append(Key("speed", quantity(abs(speed), "rpm", _SOLVED), where))
     if not stage.internal:
         keys.append(Key("width", text("slices"), "cheaper than solid gears"))
-        keys += [lubricant_key(said, stage.component), operation_key(said, stage.component)]
+        keys += [
+            lubricant_key(said, stage.component),
+            operation_key(said, stage.component, spectrum.bins[n], spectrum.life),
+        ]
     return Table(f"pair.{_roman(n + 1)}", tuple(keys), f"{stage.component.said} {stage.component.name}".strip())
 
 

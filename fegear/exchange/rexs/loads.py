@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import InputError
 from fegear.exchange.rexs.drive import Mesh, Torque, driven
 from fegear.exchange.rexs.places import bodies_of, direction
+from fegear.exchange.rexs.said import Said
 from fegear.exchange.rexs.sets import flow_through
 from fegear.exchange.rexs.teeth import module_of, teeth_of
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from fegear.exchange.rexs.drive import Driven, PlanetSet
     from fegear.exchange.rexs.model import Component, LoadCase, Model
     from fegear.exchange.rexs.places import Stage
-    from fegear.exchange.rexs.said import Said
     from fegear.exchange.rexs.sets import Planetary
 
 #: What a mesh gets where the model says nothing: torque per mm of face and module squared [Pa], and speed [rad/s].
@@ -86,6 +86,22 @@ class Flow:
         return force
 
 
+@dataclass(frozen=True, slots=True)
+class Spectrum:
+    """Load spectrum of every mesh.
+
+    Parameters
+    ----------
+    bins : tuple
+        Of each mesh, for every load case: torque on its driver [N m], its speed [rad/s], share of the time.
+    life : float or None
+        All of the time [s], where load cases say how long they last and not as a share.
+    """
+
+    bins: tuple[tuple[tuple[float, float, float], ...], ...]
+    life: float | None = None
+
+
 def chosen_load_case(model: Model, asked: int | None) -> LoadCase | None:
     """The load case of a number, by default the first.
 
@@ -99,6 +115,71 @@ def chosen_load_case(model: Model, asked: int | None) -> LoadCase | None:
         listed_ones = ", ".join(map(str, known)) or "none"
         raise InputError("--load-case", asked, "is none of the model", f"it has {listed_ones}")
     return known[asked] if asked is not None else next(iter(known.values()), None)
+
+
+def spectrum_of(
+    said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int, Component | None], nominal: Flow
+) -> Spectrum:
+    """The load spectrum of every mesh.
+
+    Parameters
+    ----------
+    said : Said
+    stages, sets, on
+        As of `flow_of`.
+    nominal : Flow
+        Of the load case by which drivers are named.
+
+    Raises
+    ------
+    InputError
+        If load cases do not say how long they last, or give no torque or speed.
+    """
+    flows: list[Flow] = []
+    times: list[float | None] = []
+    in_hours: list[bool] = []
+    for one in said.model.load_cases:
+        under = Said(said.model, one.attributes, said.used)
+        time, absolute = _time(under)
+        times.append(time)
+        in_hours.append(absolute)
+        flows.append(flow_of(under, stages, sets, on))
+    whole = sum(time or 0.0 for time in times)
+    if not times or None in times or min(time or 0.0 for time in times) < 0.0 or not whole or len(set(in_hours)) > 1:
+        raise InputError(
+            "--spectrum", f"{len(times)} load cases", "do not all say alike how long they last",
+            "give load_duration_fraction or operating_time of gear_unit in each",
+        )  # fmt: skip
+    found = []
+    for n, stage in enumerate(stages):
+        bins = []
+        for flow, time in zip(flows, times, strict=True):
+            if n in flow.assumed_torque or n in flow.assumed_speed:
+                raise InputError(
+                    "--spectrum", stage.component.said, "has a load case without torque or speed", "complete it"
+                )
+            drives, torque, speed = flow.into(n)
+            if drives != nominal.into(n)[0]:
+                ratio = abs(flow.meshes[n].teeth[0] / flow.meshes[n].teeth[1])
+                torque, speed = (torque * ratio, speed / ratio) if not drives else (torque / ratio, speed * ratio)
+                said.notes.append(
+                    f"{stage.component.said}: power turns round in its spectrum; flanks are not told apart."
+                )
+            bins.append((torque, abs(speed), (time or 0.0) / whole))
+        found.append(tuple(bins))
+    return Spectrum(tuple(found), whole if in_hours[0] else None)
+
+
+def _time(said: Said) -> tuple[float | None, bool]:
+    """How long a load case lasts by itself: a share, or a time [s]; None where it does not say."""
+    for unit in said.model.of("gear_unit"):
+        own = said.loaded.get(unit.id, {})
+        for quantity, *names in (
+            ("share", "load_duration_fraction", "operating_time_fraction"), ("time", "load_duration", "operating_time")
+        ):  # fmt: skip
+            if own.keys() & set(names):
+                return said.number(unit, quantity, *(name for name in names if name in own)), quantity == "time"
+    return None, False
 
 
 def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int, Component | None]) -> Flow:

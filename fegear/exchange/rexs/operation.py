@@ -63,7 +63,9 @@ def _grade(name: str) -> float | None:
     return next((float(one) for one in reversed(numbers) if one in _GRADES), None)
 
 
-def operation_key(said: Said, stage: Component, bins: Sequence[tuple[float, float, float]] = ()) -> Key:
+def operation_key(
+    said: Said, stage: Component, bins: Sequence[tuple[float, float, float]] = (), life: float | None = None
+) -> Key:
     """Application factor, life and spectrum of a pair.
 
     Parameters
@@ -72,11 +74,12 @@ def operation_key(said: Said, stage: Component, bins: Sequence[tuple[float, floa
     stage : Component
     bins : sequence of (float, float, float)
         Torque of the driver [N m], its speed [rad/s] and share of the time; none without a spectrum.
+    life : float, optional
+        That of the spectrum [s]; without it that of the gear unit.
     """
     factor = said.number(
         stage, "number", "application_factor_iso_6336_2019", "application_factor_iso_6336_2006", "application_factor"
     )  # fmt: skip
-    life = None
     for unit in said.model.of("gear_unit"):
         life = life or said.number(unit, "time", "operating_time", "load_duration")
     spectrum = listed(
@@ -89,4 +92,4 @@ def operation_key(said: Said, stage: Component, bins: Sequence[tuple[float, floa
     )  # fmt: skip
     about = "K_A of 1 with a spectrum" if bins else "application_factor_iso_6336" if factor else "K_A assumed"
     about += "; operating time of gear_unit" if life else "; life assumed"
-    return Key("operation", value, about + ("; load cases by load_duration_fraction" if bins else ""))
+    return Key("operation", value, about + ("; all load cases" if bins else ""))
