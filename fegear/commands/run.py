@@ -55,6 +55,7 @@ def run(
     from fegear.engine.run import run_plan
     from fegear.output.figures import Drawing, PictureProcess
     from fegear.output.folder import STEPS, default_folder, whole_or_nothing, write_results
+    from fegear.output.numbers import beyond_tolerance
     from fegear.output.report.page import begin_page
     from fegear.output.tables import sheet_lines
     from fegear.results.catalogue import STAGES
@@ -88,8 +89,9 @@ def run(
             voice.say(line)
     for value in results.values:
         voice.say(repr(value))
-    for remark in remarks:
-        voice.note(remark)
+    for remark in (*remarks, beyond_tolerance(results.values, scene.case.accuracy.tolerance)):
+        if remark:
+            voice.note(remark)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
     voice.tell_folder(target)
 

@@ -157,6 +157,7 @@ def sweep(
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.sweep import write_sweep
     from fegear.studies.sweep import read_axis, sweep_case
+    from fegear.studies.swept import best_lines, swept_values, varying
 
     voice = Voice(quiet, as_json)
     try:
@@ -181,6 +182,8 @@ def sweep(
         leave("interrupted; started again, the sweep resumes where it stopped.", 130)
     for remark in remarks:
         voice.note(remark)
+    for line in best_lines(results, varying(list(swept_values(results)))):
+        voice.say(line)
     solved, read, spared = results.shapes
     voice.say(f"{count - len(results.failures)} of {count} points have results.")
     if results.kept:

@@ -6,9 +6,14 @@ Shades of the colours by which figures call them, on light and on dark ground.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from fegear.engine.colours import look
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fegear.engine.outcome import Value
 
 _SIGNS = (("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
 
@@ -72,6 +77,33 @@ def with_error(value: float, error: float) -> tuple[str, str]:
     if float(left) == 0.0:
         left = f"{error:.0e}"
     return shown + power, left + power
+
+
+#: So many values are named whose errors are too large; of the others it is said how many.
+_NAMED = 4
+#: A value so small beside its error is the round-off of zero.
+_ROUND_OFF = 1e-9
+
+
+def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
+    """Which values are known less well than the tolerance asks for, the worst first; empty if none is.
+
+    Parameters
+    ----------
+    values : iterable of Value
+    tolerance : float
+        Relative, of ``[accuracy]``.
+    """
+    found = sorted(
+        ((one.error / abs(one.value), one) for one in values if one.error and abs(one.value) > _ROUND_OFF * one.error),
+        key=lambda pair: -pair[0],
+    )
+    found = [(share, one) for share, one in found if share > tolerance]
+    if not found:
+        return ""
+    named = "; ".join(f"{one!r} ({plain_number(100.0 * share, 3)} %)" for share, one in found[:_NAMED])
+    more = f"; and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
+    return f"Errors beyond the tolerance of {tolerance:g}: {named}{more}."
 
 
 #: Okabe and Ito's palette, and lighter shades of it on dark ground.

@@ -22,6 +22,13 @@ if TYPE_CHECKING:
 _ROUND_OFF = 1e-12
 #: Differences below this, in the unit of a value, are round-off of zero.
 _NOTHING = 1e-12
+#: By which values one point is chosen before another, by the end of their names, and whether the most is best.
+_CHOSEN_BY = {
+    "te_peak_to_peak": False, "largest_root_tension": False, "largest_hertz_pressure": False, "K_Hbeta": False,
+    "S_F": True, "S_H": True,
+}  # fmt: skip
+#: Of one pair each of these is told, of many the first.
+_MOST_TOLD = 8
 
 
 def failures(results: SweepResults) -> Array:
@@ -99,3 +106,34 @@ def varying(swept: Sequence[Swept]) -> list[Swept]:
         return found.size > 1 and float(np.ptp(found)) > max(_ROUND_OFF * float(np.abs(found).max()), _NOTHING)
 
     return [one for one in swept if moves(one.number)]
+
+
+def best_lines(results: SweepResults, swept: Sequence[Swept]) -> list[str]:
+    """Where the values by which one chooses are best: one line each, with how sure that is.
+
+    A point whose value differs from the best by less than both errors may as well be the best; a best at the end of an
+    axis may lie beyond it.
+    """
+    lines, grid = [], [len(axis) for axis in results.axes]
+    for one in swept:
+        most = _CHOSEN_BY.get(one.name.rpartition(".")[2])
+        if most is None:
+            continue
+        best = int(np.nanargmax(one.number) if most else np.nanargmin(one.number))
+        error = np.zeros(one.number.size) if one.error is None else np.nan_to_num(one.error)
+        alike = int(np.sum(np.abs(one.number - one.number[best]) <= error + error[best])) - 1
+        line = f"{'Largest' if most else 'Least'} {one.name}: {one.number[best]:.6g} {one.unit}".rstrip()
+        line += f" at {results.place(best)}"
+        if alike:
+            line += (
+                f"; {alike} other point{'s do' if alike > 1 else ' does'} not differ from it by more than the errors"
+            )
+        ends = [
+            axis.key
+            for axis, i in zip(results.axes, np.unravel_index(best, grid), strict=True)
+            if axis.numbers is not None and len(axis) > 2 and i in (0, len(axis) - 1)
+        ]
+        if ends:
+            line += f"; it lies at the end of {' and '.join(ends)}"
+        lines.append(f"{line}.")
+    return lines[:_MOST_TOLD]

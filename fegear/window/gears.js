@@ -51,7 +51,7 @@ const fegearGears = (() => {
     const more = layersOf(pair, kept, () => draw());
     stage.append(more.scales);
     more.elements[0].append(told);
-    host.append(stage, tools, ...more.elements);
+    host.append(...more.flanks, stage, tools, ...more.elements);
     let last = 0;
     const frames = kept.frames = []; // when they were drawn [ms]
     function turn(time) {
@@ -202,7 +202,8 @@ const fegearGears = (() => {
     scale.className = "mesh-scale";
     flanks.className = "flanks";
     flanks.setAttribute("role", "img");
-    flanks.setAttribute("aria-label", `Pressure on both flanks of pair ${pair} along the contact lines`);
+    flanks.setAttribute("aria-label", `A tooth of either gear of pair ${pair} with the pressure on its flank and the contact lines`);
+    const turned = fegearFlanks.turns(flanks, draw);
     scale.hidden = flanks.hidden = pressed.hidden = true;
     const buttons = {};
     for (const [kind, [words, title]] of Object.entries(KINDS)) {
@@ -302,6 +303,7 @@ const fegearGears = (() => {
       told.hidden = !lines.length;
       const pressure = kept.sent.pressure;
       flanks.hidden = pressed.hidden = !pressure;
+      whichLabel.hidden = !kept.sent.field && !!kept.data?.wide;
       if (pressure) {
         const title = document.createElement("span");
         title.textContent = "Hertzian pressure:";
@@ -313,7 +315,8 @@ const fegearGears = (() => {
     return {
       tell,
       allow,
-      elements: [switches, told, flanks, pressed],
+      flanks: [flanks, pressed],
+      elements: [switches, told],
       scales,
       rest,
       limit: () => limit,
@@ -322,8 +325,8 @@ const fegearGears = (() => {
       draw() {
         const pressure = kept.sent.pressure;
         if (!pressure || !kept.data) return;
-        const found = fegearLayers.flanks(flanks, kept.data, pressure, kept.place, faced() ? sectionAt() : null);
-        now.textContent = `at this position up to ${digits(found.largest, 4)} MPa; the scale leaves tips and form circles out. All flanks in contact are laid over each other.`;
+        const largest = fegearFlanks.draw(flanks, kept.data, pressure, kept.place, turned);
+        now.textContent = `up to ${digits(largest, 4)} MPa at this position; colours: of each place while it is in contact, without tips and form circles`;
       },
       take(content) {
         const { kind } = content, made = content.refused ? content : { stress: fegearLayers.stressOf, deformed: fegearLayers.deformedOf, field: fegearField.made }[kind]?.(content) ?? content;

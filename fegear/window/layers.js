@@ -1,5 +1,5 @@
 "use strict";
-// What is drawn over the gears in mesh: root stress in colour, deformed teeth, the tool; and flanks with their pressure.
+// What is drawn over the gears in mesh: root stress in colour, deformed teeth, the tool; scales of colour.
 const fegearLayers = (() => {
   const STOPS = { // of the scales of colours, on light and on dark ground
     stress: { light: ["#08519c", "#4292c6", "#c4c8cc", "#ef6548", "#990000"], dark: ["#9ecbff", "#3f8ae0", "#4b5158", "#f0603f", "#ffc2a8"] },
@@ -204,73 +204,5 @@ const fegearLayers = (() => {
     const [px, py] = turned(u + du, v + dv, turn - ahead);
     return [px, py + centre];
   }
-
-  // ---- flanks --------------------------------------------------------------------------------------------------------
-  function flanks(canvas, data, sent, place, section) { // both flanks side by side: height over the face, contact lines in colour
-    const box = canvas.getBoundingClientRect(), ratio = devicePixelRatio || 1;
-    const wide = Math.round(box.width * ratio), tall = Math.round(box.height * ratio);
-    if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
-    const context = canvas.getContext("2d"), look = getComputedStyle(canvas), scale = shades("pressure");
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, box.width, box.height);
-    context.font = `13px ${look.fontFamily}`;
-    const count = sent.roll.length, spread = sent.roll.map((one) => Math.abs(((place - one) % 1 + 1.5) % 1 - 0.5));
-    const p = spread.indexOf(Math.min(...spread));
-    const on = (((place - sent.roll[p]) % 1 + 1.5) % 1 - 0.5) * data.base_pitch * 1e3; // since that position, along the line of action
-    const room = { left: 58, right: 14, top: 26, bottom: 40 }, half = box.width / 2;
-    ["driver", "driven"].forEach((member, side) => {
-      const [form, tip, pitch] = sent.ends[member], base = data[`${member}_base`] * 1e3;
-      const x0 = side * half + room.left, x1 = (side + 1) * half - room.right, y0 = box.height - room.bottom, y1 = room.top;
-      const across = (z) => x0 + (z - sent.low) / (sent.high - sent.low) * (x1 - x0);
-      const up = (r) => y0 + (r - form) / (tip - form) * (y1 - y0);
-      context.strokeStyle = look.getPropertyValue("--soft");
-      context.fillStyle = look.getPropertyValue("--paper");
-      context.lineWidth = 1;
-      context.fillRect(x0, y1, x1 - x0, y0 - y1);
-      context.strokeRect(x0, y1, x1 - x0, y0 - y1);
-      context.setLineDash([6, 4]);
-      context.beginPath();
-      context.moveTo(x0, up(pitch));
-      context.lineTo(x1, up(pitch));
-      context.stroke();
-      context.setLineDash([]);
-      if (section !== null) { // where the gears above are cut
-        context.beginPath();
-        context.moveTo(across(section), y0);
-        context.lineTo(across(section), y1);
-        context.stroke();
-      }
-      context.fillStyle = look.getPropertyValue("--ink");
-      context.textAlign = "left";
-      context.fillText(`${member}: radius over the face [mm]`, x0, y1 - 9);
-      context.fillStyle = look.getPropertyValue("--soft");
-      context.textAlign = "right";
-      for (const r of [form, pitch, tip]) context.fillText(r.toFixed(2), x0 - 6, up(r) + 4);
-      context.textAlign = "center";
-      for (const z of [sent.low, 0.5 * (sent.low + sent.high), sent.high]) context.fillText(z.toFixed(1), Math.min(Math.max(across(z), x0 + 14), x1 - 14), y0 + 17);
-      context.fillText("z [mm]", 0.5 * (x0 + x1), y0 + 33);
-      context.save();
-      context.beginPath();
-      context.rect(x0, y1, x1 - x0, y0 - y1);
-      context.clip();
-      context.lineWidth = 6;
-      context.lineCap = "butt";
-      const way = side ? -on : on; // the contact moves to the driver's tip and to the root of the driven gear
-      for (const line of sent.positions[p]) {
-        const zs = line[1], rs = line[2 + side], values = line[4];
-        const height = rs.map((r) => Math.hypot(base, Math.max(0, Math.sqrt(Math.max(0, r * r - base * base)) + way)));
-        for (let i = 1; i < zs.length; i += 1) {
-          const value = 0.5 * (values[i] + values[i - 1]);
-          context.strokeStyle = shade(scale, value / (sent.limit || 1));
-          context.beginPath();
-          context.moveTo(across(zs[i - 1]), up(height[i - 1]));
-          context.lineTo(across(zs[i]), up(height[i]));
-          context.stroke();
-        }
-      }
-      context.restore();
-    });
-    return { p, count, largest: Math.max(0, ...sent.positions[p].flatMap((line) => line[4])) };
-  }
-  return { stressOf, deformedOf, gears, contactMoved, flanks, stops, unpack, between };
+  return { stressOf, deformedOf, gears, contactMoved, stops, shades, shade, unpack, between };
 })();

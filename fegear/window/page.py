@@ -44,7 +44,7 @@ _STILL = 0.4
 
 
 #: Its own scripts, in their order.
-_SCRIPTS = ("moved", "window", "layers", "field", "plots", "glance", "gears", "hands")
+_SCRIPTS = ("moved", "window", "layers", "flanks", "field", "plots", "glance", "gears", "hands")
 
 
 #: Where the page's own files are served.

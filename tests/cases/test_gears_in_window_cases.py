@@ -109,3 +109,49 @@ def test_sections_of_a_pair_with_a_width_are_painted(program, tmp_path):
         assert len(set(drawn.values())) == 4  # stress differs along the face, the ring stands in one section
         assert browser.run(f"draw(0.4, {{ stress, z: {sections[1]} }}), painted()") > 2000
         assert [one for one in browser.complaints if "getImageData" not in one] == []
+
+
+def test_a_tooth_in_space_has_the_involute_that_is_drawn_and_its_contact_lines_run(program, tmp_path):
+    document = json.loads(json.dumps(CASE))
+    for gear, hand in (("pinion", "right"), ("wheel", "left")):
+        document["gear"][gear] |= {"helix_angle": "15 deg", "hand": hand, "normal_module": "3 mm"}
+        del document["gear"][gear]["module"]
+    document["load_distribution"] = {"positions": 6, "panels": 4}
+    document |= {"results": ["load-distribution"]}
+    scene = build_scene(document, "case", None)
+    task = Task("loaded-flanks", "I")
+    data = run_plan(scene, make_plan(scene, STAGES, [task])).outcomes[task].data
+    sent = {"mesh": gears_in_mesh(scene, "I"), "pressure": on_the_gears(task, data), "deformed": {"gears": {}},
+            "stress": {"fillets": []}}  # fmt: skip
+    script = "".join(
+        (resources.files("fegear.window") / name).read_text("utf-8") for name in ("layers.js", "flanks.js")
+    )
+    page = tmp_path / "page.html"
+    page.write_text(PAGE % (script, json.dumps(sent)))
+    with chromium.Browser(program("chromium"), 900, 600) as browser:
+        browser.open(page)
+        for member in ("driver", "driven"):
+            outline = np.array(browser.run(f"fegearFlanks.solid(sent.mesh, '{member}')"))
+            form, tip, _ = sent["pressure"]["ends"][member]
+            base, pitch = (1e3 * sent["mesh"][f"{member}_{name}"] for name in ("base", "radius"))
+            flank = outline[(outline[:, 0] > form + 0.1) & (outline[:, 0] < tip - 0.1)]
+
+            def angle(radius, base=base):
+                return np.sqrt((radius / base) ** 2 - 1.0) - np.arccos(base / radius)
+
+            off = np.abs(flank[:, 1] - (angle(pitch) - angle(flank[:, 0]))) * pitch
+            assert np.sum(off < 0.01) >= 4  # the loaded flank [mm]; the other is a tooth thickness away
+            assert np.sum(off > 1.0) >= 4
+
+        def drawn(place: float, yaw: float) -> str:
+            return browser.run(
+                f"fegearFlanks.draw(canvas, sent.mesh, sent.pressure, {place}, {{ yaw: {yaw}, pitch: 0.5 }}),"
+                "canvas.toDataURL()"
+            )
+
+        assert len({drawn(0.1, 0.5), drawn(0.25, 0.5), drawn(0.1, 0.7)}) == 3
+        assert browser.run("painted()") > 20000
+        largest = browser.run("fegearFlanks.draw(canvas, sent.mesh, sent.pressure, sent.pressure.roll[2], "
+                              "{ yaw: 0.5, pitch: 0.5 })")  # fmt: skip
+        assert largest == pytest.approx(max(max(line[4]) for line in sent["pressure"]["positions"][2]))
+        assert [one for one in browser.complaints if "getImageData" not in one] == []

@@ -23,7 +23,7 @@ from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
 from fegear.engine.table import Column, Table
 from fegear.output.draw_png import Picture
-from fegear.output.numbers import plain_number, pretty_unit, with_error
+from fegear.output.numbers import beyond_tolerance, plain_number, pretty_unit, with_error
 from fegear.output.report.blocks import (  # fmt: skip
     Bars,
     Block,
@@ -67,6 +67,22 @@ CASES = sorted((ROOT / "cases").rglob("*.toml"))
 )
 def test_values_have_the_digits_that_their_errors_leave(value, error, told):
     assert with_error(value, error) == told
+
+
+def test_values_that_are_known_less_well_than_asked_are_named_the_worst_first():
+    values = [
+        Value("I.te_peak_to_peak", 1.221e-6, "um", 0.26e-6),
+        Value("I.te_mean", 20e-6, "um", 0.1e-6),
+        Value("I.te_peak_to_peak.designed", 3.7e-20, "um", 1.7e-9),  # round-off of zero
+        Value("I.largest_load", 5e3, "N"),
+        Value("I.largest_line_load", 406.9e3, "N/mm", 740e3),
+    ]
+    assert beyond_tolerance(values, 0.02) == (
+        "Errors beyond the tolerance of 0.02: I.largest_line_load = 406.9 +- 7.4e+02 N/mm (182 %); "
+        "I.te_peak_to_peak = 1.221 +- 0.26 um (21.3 %)."
+    )
+    assert beyond_tolerance(values[:1] * 6, 0.001).endswith("; and 2 more.")
+    assert beyond_tolerance(values, 2.0) == ""
 
 
 def test_numbers_and_units_are_written_for_people():

@@ -17,7 +17,8 @@ from typer.testing import CliRunner
 from fegear.base.errors import InputError
 from fegear.cli import app
 from fegear.engine.executor import Executor
-from fegear.studies.sweep import point_content, read_axis, sweep_case
+from fegear.studies.sweep import SweepResults, point_content, read_axis, sweep_case
+from fegear.studies.swept import Swept, best_lines
 
 CASE = """
 title = "A pinion and its mate"
@@ -138,6 +139,27 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
         rows = list(csv.DictReader(file))
     assert [row["gear.a.teeth"] for row in rows] == ["18", "18", "21", "21", "24", "24"]
     assert float(rows[3]["I.contact_ratio"]) == pytest.approx(ratio, rel=1e-11)
+
+
+def test_the_best_point_is_told_with_those_that_may_be_as_good_and_where_a_better_one_may_lie():
+    axes = (read_axis("gear.a.profile_shift=0:0.2:3"), read_axis("gear.b.teeth=30:31:2"))
+    results = SweepResults("two", "", axes, (), 0.0, 0, (0, 0, 0.0))
+    shift = np.array([5.0, 4.0, 3.0, 3.1, np.nan, 6.0])
+    values = [
+        Swept("I.te_peak_to_peak", "um", "", shift, np.full(6, 0.06)),
+        Swept("I.driver.S_F", "", "", shift, None),
+        Swept("I.te_peak_to_peak.designed", "um", "", shift, None),
+        Swept("I.te_mean", "um", "", shift, None),
+    ]
+    least, most = best_lines(results, values)
+    assert least == (
+        "Least I.te_peak_to_peak: 3 um at gear.a.profile_shift = 0.1, gear.b.teeth = 30; 1 other point does not differ "
+        "from it by more than the errors."
+    )
+    assert most == (
+        "Largest I.driver.S_F: 6 at gear.a.profile_shift = 0.2, gear.b.teeth = 31; it lies at the end of "
+        "gear.a.profile_shift."
+    )
 
 
 def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path):
