@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from fegear.base.errors import InputError
+from fegear.case.gear_body import GearBodyPart
+from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.part import (
     Angle,
     LengthOrZero,
@@ -20,16 +22,14 @@ from fegear.case.part import (
     PositivePressure,
     at,
     refuse,
-    spelt_also,
 )
 from fegear.case.relief import BiasPart, LeadPart, MeasuredPart, ReliefPart, SpacingErrorsPart, TopographyPart
 from fegear.case.strength import DeviationsPart, StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
 from fegear.geometry.inspection import over_balls
-from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.plausible import refuse_material
-from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
 #: Names of the geometry layer that a case file calls otherwise.
@@ -55,100 +55,12 @@ class MaterialPart(Part):
         return made
 
 
-#: Names of the profiles of ISO 53, as `BasicRack.named` reads them.
-_ISO_53 = r"^\s*([Ii][Ss][Oo])?\s*(53)?[ ._-]*[A-Da-d][ ._-]*$"
-
-
-class RackPart(Part):
-    """``rack = { addendum, dedendum, tip_radius, protuberance, ... }`` in modules, or the name of an ISO 53 profile."""
-
-    model_config = spelt_also(
-        lambda _table: {"type": "string", "pattern": "^(ISO ?)?(53 ?)?[A-Da-d]$", "examples": ["ISO 53 A"]}
-    )
-
-    profile: str | None = Field(
-        default=None,
-        description="Profile of ISO 53, A to D, from which the keys that are not given are taken; without it C.",
-    )
-    addendum: Number | None = Field(
-        default=None,
-        description="Addendum in modules: how far the tooth stands above the pitch circle; without it that of the "
-        "profile, 1.0.",
-    )
-    dedendum: Number | None = Field(
-        default=None,
-        description="Dedendum in modules: how deep the rack cuts below the pitch circle; without it that of the "
-        "profile, 1.25 for C.",
-    )
-    tip_radius: Number | Literal["full"] | None = Field(
-        default=None,
-        description="Tip radius of the rack in modules, which makes the fillet, or `full` for a full fillet; without "
-        "it that of the profile, 0.25 for C.",
-    )
-    protuberance: Number = Field(
-        default=0.0,
-        description="Protuberance pr in modules: with `grinding_allowance` q the root is cut deeper than the "
-        "finished flank by pr - q.",
-    )
-    grinding_allowance: Number = Field(
-        default=0.0, description="Grinding allowance q in modules: what grinding still takes off the flank."
-    )
-    protuberance_angle: Angle = Field(default=math.radians(10.0), description="Angle of the protuberance flank.")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _name_alone(cls, value: Any) -> Any:
-        return {"profile": value} if isinstance(value, str) else value
-
-    def build(self, pressure_angle: float) -> BasicRack:
-        """Make the rack; what is not given comes from the named profile, else from ISO 53 C."""
-        base = BasicRack.named(self.profile or "C", pressure_angle)
-        addendum = base.addendum if self.addendum is None else self.addendum
-        dedendum = base.dedendum if self.dedendum is None else self.dedendum
-        more = (self.protuberance, self.grinding_allowance, self.protuberance_angle)
-        if self.tip_radius == "full":
-            return BasicRack.full_fillet(addendum, dedendum, pressure_angle, *more)
-        tip_radius = base.tip_radius if self.tip_radius is None else float(self.tip_radius)
-        return BasicRack(addendum, dedendum, tip_radius, pressure_angle, *more)
-
-
-class CutterPart(Part):
-    """``cutter = { teeth, profile_shift, addendum, tip_radius }``, lengths in modules."""
-
-    teeth: int = Field(description="Number of teeth of the cutter, at least three fewer than the gear has.")
-    profile_shift: Number = Field(
-        default=0.0, description="Profile shift coefficient x_0 of the cutter in its present state of sharpening."
-    )
-    addendum: Number | None = Field(
-        default=None,
-        description="Addendum h_a0 of the cutter in modules, above its reference circle shifted by x_0; without it "
-        "1.25. Give this or `root_diameter`.",
-    )
-    root_diameter: PositiveLength | None = Field(
-        default=None, description="Root diameter of the gear that the cutter makes; give this or `addendum`."
-    )
-    tip_radius: Number = Field(
-        default=0.2, description="Radius of the rounding of the cutter's tip in modules, which makes the fillet."
-    )
-
-    @model_validator(mode="after")
-    def _one_height(self) -> Self:
-        if self.addendum is not None and self.root_diameter is not None:
-            raise refuse("contradicts addendum", "give either addendum or root_diameter", key="root_diameter")
-        return self
-
-    def build(self, module: float) -> PinionCutter:
-        """Make the cutter of a gear of this module [m]."""
-        addendum = 1.25 if self.addendum is None else self.addendum
-        root = math.nan if self.root_diameter is None else 0.5 * self.root_diameter / module
-        return PinionCutter(self.teeth, self.profile_shift, addendum, root, self.tip_radius)
-
-
 #: Keys of gears that an internal one has not, and what it has instead.
 _EXTERNAL_ONLY = {
     "rack": "describe its cutter",
     "bore_radius": "write outer_radius or rim_thickness, for its body is held outside the teeth",
     "web_thickness": "leave it out",
+    "body": "write outer_radius or rim_thickness",
     "tooth_mesh": "leave it out: its mesh is generated",
     "tooth_mesh_fillet": "leave it out",
 }
@@ -212,6 +124,11 @@ class GearPart(Part):
         default=None,
         description="Thickness b_s of the web that carries the rim, for C_R of ISO 6336-1, at most twice the face; "
         "`bore_radius` is then the inside of the rim. Without it the body is a disc as wide as the face.",
+    )
+    body: GearBodyPart | None = Field(
+        default=None,
+        description="Rim, web and hub of a gear that is solved with its width, its bore held over the hub; without it "
+        "the body is a disc as wide as the face.",
     )
     face_width: PositiveLength | None = Field(
         default=None, description="Width of the gear; without it 1 mm, which no result per unit width depends on."
@@ -302,9 +219,16 @@ class GearPart(Part):
 
     def rim(self, root_radius: float) -> float | None:
         """s_R [m]: as given, else what a given bore leaves below the root circle [m]; None of a solid gear."""
+        if self.body is not None:
+            return self.body.rim_thickness
         if self.rim_thickness is not None or self.bore_radius is None:
             return self.rim_thickness
         return root_radius - self.bore_radius
+
+    @property
+    def web(self) -> float | None:
+        """b_s [m], of the body or for the ratings alone; None of a disc."""
+        return self.web_thickness if self.body is None else self.body.web_thickness
 
     @property
     def over_face(self) -> tuple[str, ...]:
@@ -372,7 +296,14 @@ class GearPart(Part):
             raise refuse("contradicts outer_radius", "give either rim_thickness or outer_radius", key="rim_thickness")
 
     def _check_web(self) -> None:
-        """Refuse webs of no rim, and wider than any."""
+        """Refuse webs of no rim, wider than any, and twice given."""
+        if self.body is not None:
+            for key in ("rim_thickness", "web_thickness"):
+                if getattr(self, key) is not None:
+                    raise refuse("contradicts body, which has its own", f"write {key} in body alone", key=key)
+            for key in ("bore_radius", "face_width"):
+                if getattr(self, key) is None:
+                    raise refuse("is missing for a gear with a body", f'write {key} = "20 mm"', key=key)
         if self.web_thickness is None:
             return
         if self.rim_thickness is None and self.bore_radius is None:
@@ -423,7 +354,8 @@ class GearPart(Part):
             tooth = self._tooth(m)
             width = 1e-3 if self.face_width is None else self.face_width
             held = self._held_radius(tooth.root_radius * m)
-            gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur")
+            body = None if self.body is None else self.body.build(tooth.root_radius * m, held, width)
+            gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur", body)
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
             told = self.deviations is not None and self.deviations.enough_to_rate

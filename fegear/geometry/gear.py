@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.shown import shown, shows
+from fegear.geometry.gear_body import GearBody, moments
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 from fegear.geometry.tooth import Tooth
 
@@ -79,6 +80,8 @@ class Gear:
         Plane assumption; "auto" is strain when the face is at least five tooth thicknesses (at the pitch circle) wide.
     hand : {"left", "right", "spur"}
         Hand of the helix; "spur" if and only if the helix angle is zero.
+    body : GearBody, optional
+        Rim, web and hub in the place of a disc as wide as the face [m].
 
     Raises
     ------
@@ -95,6 +98,7 @@ class Gear:
     material: Material = field(default_factory=Material)
     plane: Literal["strain", "stress", "auto"] = "strain"
     hand: Hand = "spur"
+    body: GearBody | None = None
 
     def __post_init__(self) -> None:
         """Refuse sizes that cannot be and settle the plane assumption."""
@@ -115,6 +119,8 @@ class Gear:
             refuse_size(self.module, self.face_width)
             refuse_material(self.material)
         self._check_held_radius()
+        if self.body is not None:
+            self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius)
         if self.plane not in ("strain", "stress", "auto"):
             raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
         if self.plane == "auto":
@@ -281,6 +287,17 @@ class Gear:
         """Thickness of a tooth at a radius [m], normal to its helix there: s_n = s_t cos(beta) [m]."""
         arc = 2.0 * radius * float(self.tooth.half_thickness_angle(radius / self.module))
         return arc * math.cos(math.atan(self.twist * radius))
+
+    @property
+    def moments(self) -> tuple[float, float, float]:
+        """Mass [kg], inertia about the axis and across it through the middle of the face [kg m^2].
+
+        The teeth are a ring up to the pitch circle; without a body the gear is a disc between that and its bore.
+        """
+        inner, outer = sorted((self.pitch_radius, self.bore_radius))
+        if self.body is None:
+            return moments([(outer, inner, -0.5 * self.face_width, 0.5 * self.face_width)], self.material.density)
+        return moments(self.body.cylinders(outer, inner, self.face_width), self.material.density)
 
     @property
     def base_pitch(self) -> float:

@@ -79,17 +79,19 @@ def write_solid(
         rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
         raise InputError("face_positions", f"{off[0] * one * _MM:.6g} mm", rule)
     hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
+    body = None if gear.body is None else gear.body.scaled(1.0 / one)
     section = (
         gear_section(dict.fromkeys(range(gear.teeth), mesh))
         if mesh
-        else uneven_section(gear.tooth, gear.bore_radius / one, _COARSENESS)
+        else uneven_section(gear.tooth, gear.bore_radius / one, _COARSENESS, body=body)
     )
-    stations = graded_stations(2.0 * half, [x for hat in hats for x in hat], _FIRST_LAYER, _GROWTH, _LAYER)
+    through = [x for hat in hats for x in hat] + list(() if body is None else body.ends)
+    stations = graded_stations(2.0 * half, through, _FIRST_LAYER, _GROWTH, _LAYER)
     nodes = int(1.3 * section.points.shape[1] * stations.size)
     if nodes > _MOST_NODES:
         rule = f"would make a mesh of about {nodes:.1g} nodes, and {_MOST_NODES:.0e} is the most"
         raise InputError("--format", "solid", rule, "choose a narrower face, fewer face positions or fewer teeth")
-    solid = extruded(section, stations, gear.twist * one)
+    solid = extruded(section, stations, gear.twist * one, body)
     place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
     width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))
     bands = {

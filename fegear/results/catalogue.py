@@ -32,6 +32,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Compliance and root stress over the face", ("stiffness",),
               "compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
               extra="space"),
+        Entry("body-modes", "gear.body_modes.BODY_MODES", "Natural frequencies of a gear's body", ("body-modes",),
+              "natural frequencies and mode shapes of a gear with its width, rim, web and hub, its bore held"),
         Entry("root-stress", "gear.root_stress.ROOT_STRESS", "Root stress along the fillets", ("root-stress",),
               "stress along both fillets of a tooth, for every load position"),
         Entry("crosscheck", "gear.crosscheck.CROSSCHECK", "Closed forms against finite elements", ("crosscheck",),

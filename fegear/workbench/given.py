@@ -214,6 +214,7 @@ class GearKeys(TypedDict, total=False):
     outer_radius: Quantity
     rim_thickness: Quantity
     web_thickness: Quantity
+    body: Mapping[str, Any]
     face_width: Quantity
     ball_diameter: Quantity
     plane: Literal["strain", "stress", "auto"]

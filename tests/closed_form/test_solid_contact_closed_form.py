@@ -74,7 +74,7 @@ def test_integrals_of_profiles_are_what_a_quadrature_finds(line):
 
 
 def test_cosines_of_the_functions_along_the_face():
-    face = face_functions(3.0, 7, held=(-1.5, 0.2))
+    face = face_functions(3.0, 7, (-1.5, 0.2))
     cosines, plain = function_cosines(face, 40)
     z, weight = np.polynomial.legendre.leggauss(400)
     ends = np.array(face.breaks)

@@ -96,7 +96,7 @@ def test_rigid_motions_are_free_of_strain(mesh, tau):
         flat = local.transpose(0, 2, 1, 3).reshape(section.size * face.count, 6)
         force, size = np.zeros_like(flat), 0.0
         for element in range(0, section.centres.shape[1], 7):
-            ids, stiffness = _smallest(section, face, number, np.array([element]))
+            ids, stiffness = _smallest(section, [face.products], number, np.array([element]))
             force[ids] += stiffness @ flat[ids]
             size = max(size, np.abs(stiffness).max())
         left.append(np.abs(force).max() / (size * np.abs(flat).max()))

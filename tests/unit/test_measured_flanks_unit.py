@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -134,20 +133,6 @@ def test_radius_roll_angle_and_length_of_roll_say_the_same(tmp_path):
         found = measured_gear(scene_of(tmp_path, {"profile": f"{n}.csv"}), "a").profile
         slopes.append(found.deviations(np.zeros(found.x.size))[0].slope)
     assert slopes == pytest.approx([3e-6] * 3, rel=1e-6)
-
-
-def test_a_ring_is_evaluated_from_its_root_to_its_tip(tmp_path):
-    document = tomllib.loads((CASES / "planet_and_ring.toml").read_text("utf-8"))
-    ring, pair = build_scene(document, "case", CASES).gears["ring"], build_scene(document, "case", CASES).pairs["I"]
-    radii = np.linspace(ring.tip_radius + 1e-5, ring.root_radius - 2e-4, 200)
-    top = ring.tooth.involute.end
-    start = min(float(pair.roll_angle(x, "driven")) for x in (pair.x_start, pair.x_end))
-    deviation = 6.0 * (ring.tooth.roll(radii / ring.module) - start) / (0.95 * (top - start))
-    write(tmp_path / "p.csv", ["radius [mm]", "deviation [um]"], radii * 1e3, deviation)
-    document["gear"]["ring"]["measured"] = {"profile": "p.csv"}
-    found = measured_gear(build_scene(document, "case", tmp_path), "ring").profile
-    assert found.ends == pytest.approx((ring.base_radius * start, ring.base_radius * (start + 0.95 * (top - start))))
-    assert found.deviations(np.zeros(found.x.size))[0].slope == pytest.approx(6e-6, rel=1e-4)
 
 
 def test_every_tooth_is_evaluated_and_the_mean_is_what_pairs_take(tmp_path):

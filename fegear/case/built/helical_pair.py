@@ -14,7 +14,6 @@ from fegear.case.text_file import read_columns
 from fegear.dynamics.helical_pair.mesh_parameters import partial_face_mu
 from fegear.dynamics.helical_pair.model import HelicalPairModel
 from fegear.dynamics.train.modes import undamped_modes
-from fegear.dynamics.train.train import disc_inertia
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -86,12 +85,9 @@ def helical_pair_inputs(scene: Scene, name: str) -> HelicalPairInputs:
 
 
 def _body(pair: GearPair, member: Member) -> dict[str, float]:
-    """Mass, inertia and size of a gear as a disc of its pitch radius with its bore."""
+    """Mass, inertia and size of a gear."""
     gear = pair.gear(member)
-    r, bore, width = gear.pitch_radius, gear.bore_radius, gear.face_width
-    mass = gear.material.density * math.pi * (r**2 - bore**2) * width
-    tilt = mass * (3.0 * (r**2 + bore**2) + width**2) / 12.0
-    spin = disc_inertia(r, width, gear.material.density, bore)
+    mass, spin, tilt = gear.moments
     return {
         "mass": mass, "inertia_x": tilt, "inertia_y": tilt, "inertia_z": spin, "base_radius": gear.base_radius,
         "half_face_width": 0.5 * pair.face_width,

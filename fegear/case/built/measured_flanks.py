@@ -145,9 +145,12 @@ def _profile_ends(scene: Scene, name: str) -> tuple[float, float]:
         if name == getattr(scene.case.pair[key], member)
         for x in (pair.x_start, pair.x_end)
     ]
-    # Roll angles of a ring are negative, and rise toward its tip, too.
-    start = max(min(contact, default=involute.start), involute.start)
-    return profile_range(gear.base_radius * start, gear.base_radius * involute.end)
+    low, high = sorted((involute.start, involute.end))
+    if gear.tooth.internal:  # its tip lies where the roll angle is least
+        root = min(max(contact, default=high), high)
+        first, last = sorted(profile_range(gear.base_radius * root, gear.base_radius * low))
+        return first, last
+    return profile_range(gear.base_radius * max(min(contact, default=low), low), gear.base_radius * high)
 
 
 def _lead_ends(scene: Scene, name: str) -> tuple[float, float]:

@@ -15,7 +15,6 @@ from fegear.dynamics.planetary.kinematics import Running, running
 from fegear.dynamics.planetary.phases import Phases, mesh_phases
 from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet
 from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
-from fegear.dynamics.train.train import disc_inertia
 from fegear.geometry.involute import inv
 
 if TYPE_CHECKING:
@@ -109,15 +108,12 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
 
 
 def _mass(body: SetBodyPart | None, gear: Gear | None) -> tuple[float, float]:
-    """Mass and inertia [kg, kg m^2]: as given, or of the gear's disc; nan where neither is known."""
+    """Mass and inertia [kg, kg m^2]: as given, or of the gear's body; nan where neither is known."""
     if body is not None:
         return body.mass, body.inertia
     if gear is None:
         return math.nan, math.nan
-    density, width = gear.material.density, gear.face_width
-    inner, outer = sorted((gear.pitch_radius, gear.bore_radius))
-    mass = math.pi * density * width * (outer**2 - inner**2)
-    return mass, disc_inertia(outer, width, density, inner)
+    return gear.moments[:2]
 
 
 def ring_checks(scene: Scene, name: str) -> tuple[InternalCheck, ...]:

@@ -198,6 +198,8 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
             return ()
         held = f"held outside of a rim of {USUAL_RING_RIM:g} modules, at {bore:.6g} mm"
         return (f"Gear {gear}: no outer_radius or rim_thickness was given; assumed default: the body is {held}.",)
+    if part.body is not None and part.face_width is not None:
+        return (f"Gear {gear}: plane results take its body for a disc; rim, web and hub count where it is solid.",)
     if part.bore_radius is not None:
         return ()
     held = f"held at half the root radius, {bore:.6g} mm"

@@ -311,8 +311,8 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
     if made.tooth.internal:
         return Body(made.bore_radius - made.root_radius, part.web_thickness, fixed=fixed)
     rim, bored = part.rim(made.root_radius), part.bore_radius is not None
-    body = Body(rim, part.web_thickness, bored, fixed)
-    if rim is None or part.rim_thickness is not None:
+    body = Body(rim, part.web, bored and part.body is None, fixed)
+    if rim is None or part.rim_thickness is not None or part.body is not None:
         return body
     backup = rim / (made.tip_radius - made.root_radius)
     told = f"{rim * 1e3:.4g} mm, {backup:.3g} of the tooth depth"

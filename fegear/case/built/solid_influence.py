@@ -158,6 +158,7 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
             gear.bore_radius / gear.module,
             asked.settings,
             reach=asked.reach,
+            body=None if gear.body is None else gear.body.scaled(1.0 / gear.module),
             cache=cache,
         )
     except RangeError as error:

@@ -21,7 +21,6 @@ from fegear.dynamics.train.train import (
     Shaft,
     Torque,
     Train,
-    disc_inertia,
     joined_inertias,
     mesh_damping,
     shaft_damping,
@@ -109,8 +108,7 @@ def train_inputs(scene: Scene) -> TrainInputs:
 def _inertia(scene: Scene, part: BodyPart) -> float:
     inertia = part.inertia or 0.0
     for gear_name in part.gears or ():
-        gear = scene.gears[gear_name]
-        inertia += disc_inertia(gear.pitch_radius, gear.face_width, gear.material.density, gear.bore_radius)
+        inertia += scene.gears[gear_name].moments[1]
     return inertia
 
 

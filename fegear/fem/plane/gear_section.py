@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.fem.plane.body import with_body
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.sector import mesh_inside
 from fegear.fem.plane.settings import MeshSettings
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.geometry.gear_body import GearBody
     from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Two triangles become a quadrilateral whose corners are at least so square: the sine of its most oblique angle.
@@ -121,8 +123,9 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
 
 
 def uneven_section(
-    tooth: InvoluteTooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None
-) -> Section:
+    tooth: InvoluteTooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None,
+    body: GearBody | None = None,
+) -> Section:  # fmt: skip
     """All teeth of a gear for one load: tooth 0 fine, its neighbours less so, the others coarse.
 
     Parameters
@@ -134,6 +137,8 @@ def uneven_section(
         Edge lengths as a multiple of the usual ones, .055 modules along fillet and flank of tooth 0.
     others : float, optional
         The same for all other teeth, whose usual edges are two and four times as long.
+    body : GearBody, optional
+        Whose rim, web and hub meet along edges of the section [modules].
 
     Returns
     -------
@@ -141,13 +146,16 @@ def uneven_section(
     """
     multiples = (coarseness, *(others or coarseness,) * (len(_EDGES) - 1))
     settings = [_settings(f, *edges) for f, edges in zip(multiples, _EDGES, strict=True)]
-    boundaries = [sector_boundary(tooth, bore_radius, kind) for kind in settings]
+    inside = bore_radius if body is None else body.rim_radius
+    boundaries = [sector_boundary(tooth, inside, kind) for kind in settings]
     # Neighbours fit: all have the sides and the bore of tooth 0.
     shared = {chain.name: chain for chain in boundaries[0] if chain.name in _SHARED}
     kinds = [
         mesh_inside([shared.get(c.name, c) for c in chains], tooth.teeth, growth=kind.side_growth)
         for chains, kind in zip(boundaries, settings, strict=True)
     ]
+    if body is not None:
+        kinds = [with_body(kind, body, bore_radius, settings[0].rim_fraction) for kind in kinds]
     first = -((tooth.teeth - 1) // 2)
     return gear_section({k: kinds[min(abs(k), 2)] for k in range(first, first + tooth.teeth)})
 

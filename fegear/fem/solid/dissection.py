@@ -103,10 +103,11 @@ def condense_solid(
     natural[number[number >= 0]] = known.number[known.number >= 0]
     steps: list[Eliminated] | None = [] if expandable else None
     members = [np.flatnonzero(leaf == i) for i in range(1 << depth)]
+    products = [face.products_over(*span) for span in section.spans]
 
     def part(level: int, i: int) -> tuple[Index, Array]:
         if level == 0:
-            ids, matrix = _smallest(section, face, number, members[i])
+            ids, matrix = _smallest(section, products, number, members[i])
         else:
             ids, matrix = joined(part(level - 1, 2 * i), part(level - 1, 2 * i + 1))
         return reduced(ids, matrix, ends[level + 1], natural, steps)
@@ -181,36 +182,45 @@ def _narrowest(along: Array, nodes: Index, heavy: Array) -> tuple[Index, int]:
     return found
 
 
-def _smallest(section: Section, face: FaceFunctions, number: Index, elements: Index) -> tuple[Index, Array]:
-    """Unknowns (ascending in the order of elimination) and stiffness of a few elements."""
+def _smallest(
+    section: Section, products: list[tuple[Array, Array, Array]], number: Index, elements: Index
+) -> tuple[Index, Array]:
+    """Unknowns (ascending in the order of elimination) and stiffness of a few elements.
+
+    `products` are the face functions' over the part of the face that each zone of the section fills.
+    """
     dofs = section.element_dofs[elements]
     every, local = np.unique(dofs, return_inverse=True)
     local = local.reshape(dofs.shape)
     n = every.size
-    place = (local[:, :, None] * n + local[:, None, :]).ravel()
+    place = local[:, :, None] * n + local[:, None, :]
     # Unknowns with many functions first: those that have a function are then the first so many.
     counts = (number[every] >= 0).sum(axis=1)
     highest = np.where(counts > 0, number.shape[1] - np.argmax(number[every][:, ::-1] >= 0, axis=1), 0)
     sequence = np.argsort(-highest, kind="stable")
-    sums = []
-    for matrices in section.stiffness:
-        total = np.bincount(place, matrices[elements].ravel(), n * n).reshape(n, n)
-        sums.append(total[np.ix_(sequence, sequence)])
-    a00, a01, a11 = sums
-    a10 = np.ascontiguousarray(a01.T)
     reach = np.array([int((highest > k).sum()) for k in range(number.shape[1])])
     used = int((reach > 0).sum())
     start = np.concatenate([[0], np.cumsum(reach[:used])])
     none = np.zeros(0, dtype=np.int64)
     ids = np.concatenate([none, *(number[every[sequence[: reach[k]]], k] for k in range(used))])
     matrix = np.zeros((ids.size, ids.size))
-    m0, m1, m2 = (product[:used, :used] for product in face.products)
-    for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
-        rows, columns = slice(0, reach[k]), slice(0, reach[m])
-        block = matrix[start[k] : start[k + 1], start[m] : start[m + 1]]
-        for a, factor in ((a00, m0[k, m]), (a01, m1[k, m]), (a10, m1[m, k]), (a11, m2[k, m])):
-            if factor != 0.0:
-                block += factor * a[rows, columns]
+    for zone, product in enumerate(products):
+        mine = section.zone[elements] == zone
+        if not mine.any():
+            continue
+        sums = []
+        for matrices in section.stiffness:
+            total = np.bincount(place[mine].ravel(), matrices[elements[mine]].ravel(), n * n).reshape(n, n)
+            sums.append(total[np.ix_(sequence, sequence)])
+        a00, a01, a11 = sums
+        a10 = np.ascontiguousarray(a01.T)
+        m0, m1, m2 = (part[:used, :used] for part in product)
+        for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
+            rows, columns = slice(0, reach[k]), slice(0, reach[m])
+            block = matrix[start[k] : start[k + 1], start[m] : start[m + 1]]
+            for a, factor in ((a00, m0[k, m]), (a01, m1[k, m]), (a10, m1[m, k]), (a11, m2[k, m])):
+                if factor != 0.0:
+                    block += factor * a[rows, columns]
     sequence = np.argsort(ids)
     sequence = sequence[ids[sequence] >= 0]
     return ids[sequence], matrix[np.ix_(sequence, sequence)]

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.fem.plane.body import zones
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fegear.base.arrays import Array, Index
+    from fegear.base.arrays import Array, Index, Mask
     from fegear.fem.plane.gear_section import Section
+    from fegear.geometry.gear_body import GearBody
     from fegear.geometry.tooth import Tooth
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
@@ -92,7 +94,9 @@ def _plane(section: Section, station: int | Index) -> Index:
     return np.asarray(station) * (section.points.shape[1] + _corners(section).size)
 
 
-def extruded(section: Section, stations: Sequence[float] | Array, twist: float) -> SolidMesh:
+def extruded(
+    section: Section, stations: Sequence[float] | Array, twist: float, body: GearBody | None = None
+) -> SolidMesh:
     """Draw a section along the face.
 
     Parameters
@@ -102,6 +106,8 @@ def extruded(section: Section, stations: Sequence[float] | Array, twist: float) 
         [modules], ascending.
     twist : float
         [rad/module], positive for a right hand.
+    body : GearBody, optional
+        Whose web and hub are all that is left of the layers inside the rim [modules].
 
     Returns
     -------
@@ -110,7 +116,7 @@ def extruded(section: Section, stations: Sequence[float] | Array, twist: float) 
     Raises
     ------
     InputError
-        If the stations do not ascend.
+        If the stations do not ascend, or web or hub end inside a layer.
     """
     z = np.asarray(stations, dtype=float)
     if z.ndim != 1 or z.size < 2 or not (np.diff(z) > 0.0).all():
@@ -128,11 +134,21 @@ def extruded(section: Section, stations: Sequence[float] | Array, twist: float) 
         """Corners below, above, middles below, above, then those that rise."""
         bottom, middle, rise = elements[:n], elements[n:], size + rank[elements[:n]]
         one = np.concatenate([bottom, bottom + step, middle, middle + step, rise])
-        return (one[:, None] + low[:, None]).reshape(one.shape[0], -1)
+        drawn = one[:, None] + low[:, None]
+        return drawn.reshape(one.shape[0], -1) if body is None else drawn[:, _filled(body, section, bottom, z)]
 
     return SolidMesh(
         section, z, twist, np.hstack(planes), solid(section.triangles, 3), solid(section.quadrilaterals, 4)
     )
+
+
+def _filled(body: GearBody, section: Section, corners: Index, stations: Array) -> Mask:
+    """Which elements of each layer are material, shape (L, M)."""
+    if np.abs(np.subtract.outer(body.ends, stations)).min(axis=1).max() > 1e-9 * np.ptp(stations):
+        raise InputError("stations", str(stations), "must hold the places where web and hub end")
+    middle = 0.5 * (stations[1:] + stations[:-1])
+    there = np.array([(middle > low) & (middle < high) for low, high in body.spans])
+    return np.asarray(there[zones(body, section.points, corners)].T)
 
 
 def planes_of(mesh: SolidMesh) -> list[tuple[float, Index]]:
@@ -147,6 +163,14 @@ def planes_of(mesh: SolidMesh) -> list[tuple[float, Index]]:
 def _turned_up(points: Array, place: float, twist: float) -> Array:
     s, c = np.sin(twist * place), np.cos(twist * place)
     return np.stack([c * points[0] - s * points[1], s * points[0] + c * points[1], np.full(points.shape[1], place)])
+
+
+def with_stations(stations: Array, more: Sequence[float]) -> Array:
+    """Stations along the face, ascending, in the place of those that come too near to some more that are wanted."""
+    wanted = np.unique(more)
+    room = 0.25 * float(np.diff(stations).min())
+    kept = stations[(np.abs(stations[:, None] - wanted) > room).all(axis=1)]
+    return np.union1d(kept, wanted[(wanted > stations[0] - room) & (wanted < stations[-1] + room)])
 
 
 def graded_stations(face_width: float, through: Sequence[float], finest: float, growth: float, largest: float) -> Array:

@@ -5,6 +5,7 @@ How many functions along the face each node of the section needs: short waves di
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ from fegear.fem.solid.section import upward
 from fegear.fem.solid.settings import whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fegear.base.arrays import Array, Index
     from fegear.fem.solid.section import Section
@@ -26,6 +27,12 @@ if TYPE_CHECKING:
 
 #: Coefficients of a function's series that are smaller than this share of its largest are none.
 _NOISE = 1e-10
+#: Places along the face this near to each other, as a share of its width, are one.
+_NEAR = 1e-6
+#: Long waves that each piece of the face beyond the first adds, as a share of those of a face of one piece.
+_PIECE = 0.6
+#: Power of a piece's share of the width with which its degree goes.
+_BY_LENGTH = 0.6
 
 
 @dataclass(frozen=True)
@@ -61,14 +68,29 @@ class FaceFunctions:
     def _numbers(self) -> list[Index]:
         """Function of each of a piece's own: first its two ends, then the others by their degree over its length."""
         ends = len(self.breaks)
-        lengths = np.diff(self.breaks)
-        inner = [(n / lengths[i], i, n) for i, degree in enumerate(self.degrees) for n in range(2, degree + 1)]
         numbers = [np.empty(degree + 1, dtype=np.int64) for degree in self.degrees]
         for i, own in enumerate(numbers):
             own[:2] = i, i + 1
-        for place, (_, i, n) in enumerate(sorted(inner)):
+        for place, (_, i, n) in enumerate(self._inner):
             numbers[i][n] = ends + place
         return numbers
+
+    @cached_property
+    def _inner(self) -> list[tuple[float, int, int]]:
+        """Functions that vanish at the ends of their piece: degree over its length, piece and degree, in order.
+
+        Pieces whose lengths differ by round-off alone stand side by side.
+        """
+        lengths = [float(f"{length / self.width:.9g}") for length in np.diff(self.breaks)]
+        return sorted((n / lengths[i], i, n) for i, degree in enumerate(self.degrees) for n in range(2, degree + 1))
+
+    @cached_property
+    def full_counts(self) -> Index:
+        """How many of the first functions treat pieces of one length alike, for each number that is wanted."""
+        last = [np.inf, *(wave for wave, _, _ in self._inner), np.inf]
+        steps = [i for i in range(1, len(last)) if last[i] != last[i - 1]]
+        allowed = len(self.breaks) - 1 + np.array(steps)
+        return allowed[np.searchsorted(allowed, np.arange(self.count + 1))]
 
     @cached_property
     def _series(self) -> list[Array]:
@@ -112,31 +134,43 @@ class FaceFunctions:
     @cached_property
     def products(self) -> tuple[Array, Array, Array]:
         """Integrals of P_k P_l, P_k P_l' and P_k' P_l', shape (count, count) each; entries of no size are zero."""
-        place, weight = self.quadrature()
+        return self.products_over(-math.inf, math.inf)
+
+    def products_over(self, low: float, high: float) -> tuple[Array, Array, Array]:
+        """The same from one break to another."""
+        place, weight = self.quadrature(low, high)
         values, slopes = self.at(place)
         found = [(values * weight) @ values.T, (values * weight) @ slopes.T, (slopes * weight) @ slopes.T]
         for matrix in found:
             matrix[np.abs(matrix) < 1e-13 * np.abs(matrix).max()] = 0.0
         return found[0], found[1], found[2]
 
-    def quadrature(self) -> tuple[Array, Array]:
-        """Gauss points and weights that integrate products of two functions exactly, shape (q,) each [modules]."""
+    def quadrature(self, low: float = -math.inf, high: float = math.inf) -> tuple[Array, Array]:
+        """Gauss points and weights that integrate products of two functions exactly, shape (q,) each [modules].
+
+        Over the whole face, or from one break to another.
+        """
         places, weights = [], []
-        for low, high, degree in zip(self.breaks, self.breaks[1:], self.degrees, strict=False):
-            x, w = np.polynomial.legendre.leggauss(degree + 1)
-            places.append(0.5 * (low + high) + 0.5 * (high - low) * x)
-            weights.append(0.5 * (high - low) * w)
+        for i in self._between(low, high):
+            start, end = self.breaks[i], self.breaks[i + 1]
+            x, w = np.polynomial.legendre.leggauss(self.degrees[i] + 1)
+            places.append(0.5 * (start + end) + 0.5 * (end - start) * x)
+            weights.append(0.5 * (end - start) * w)
         return np.concatenate(places), np.concatenate(weights)
 
     def vanishing_on(self, low: float, high: float) -> Index:
         """Functions that are zero everywhere between two breaks, ascending."""
-        breaks = np.asarray(self.breaks)
-        inside = [i for i in range(len(self.degrees)) if breaks[i] >= low - 1e-9 and breaks[i + 1] <= high + 1e-9]
+        inside = self._between(low, high)
         touched = np.concatenate([self._numbers[i] for i in inside]) if inside else np.zeros(0, dtype=np.int64)
         return np.setdiff1d(np.arange(self.count), touched)
 
+    def _between(self, low: float, high: float) -> list[int]:
+        """Pieces between two breaks."""
+        ends, near = self.breaks, _NEAR * self.width
+        return [i for i in range(len(self.degrees)) if ends[i] >= low - near and ends[i + 1] <= high + near]
 
-def face_functions(width: float, degree: int, held: tuple[float, float] | None = None) -> FaceFunctions:
+
+def face_functions(width: float, degree: int, cuts: Sequence[float] = ()) -> FaceFunctions:
     """Functions over a face width.
 
     Parameters
@@ -145,22 +179,25 @@ def face_functions(width: float, degree: int, held: tuple[float, float] | None =
         [modules]; the face runs from -width / 2 to width / 2.
     degree : int
         Degree over the whole width.
-    held : (float, float), optional
-        Part of the width on which the bore is held; its ends become breaks between pieces, whose degrees go with the
-        root of their lengths: what changes at the ends of the hub needs short waves beside them.
+    cuts : sequence of float
+        Where web, hub or the held part of a bore end; they become breaks between pieces, whose degrees go with the
+        root of their lengths or somewhat less: what changes there needs short waves beside it.
 
     Returns
     -------
     FaceFunctions
     """
     half = 0.5 * width
-    if held is None:
+    near = _NEAR * width
+    breaks = [-half]
+    for x in sorted(cuts):
+        if breaks[-1] + near < x < half - near:
+            breaks.append(x)
+    if len(breaks) == 1:
         return FaceFunctions((-half, half), (degree,))
-    near = 1e-6 * width
-    between = [x for x in held if -half + near < x < half - near]
-    breaks = (-half, *between, half)
-    share = np.sqrt(np.diff(breaks) / width)
-    return FaceFunctions(breaks, tuple(max(4, whole(degree * float(s))) for s in share))
+    breaks.append(half)
+    share = (np.diff(breaks) / width) ** _BY_LENGTH
+    return FaceFunctions(tuple(breaks), tuple(max(4, whole(degree * float(s))) for s in share))
 
 
 def solid_unknowns(
@@ -170,6 +207,7 @@ def solid_unknowns(
     held: tuple[float, float] | None = None,
     *,
     plane_strain: bool = False,
+    all_waves: bool = False,
 ) -> Unknowns:
     """Unknowns of the solid sector, its bore held.
 
@@ -182,13 +220,23 @@ def solid_unknowns(
         Part of the width on which the bore is held [modules]; by default all of it.
     plane_strain : bool
         Nothing moves along the axis.
+    all_waves : bool
+        Every node has all functions along the face, as a body without a loaded flank wants them.
 
     Returns
     -------
     Unknowns
     """
-    counts = function_counts(section, face, settings)
+    few = function_counts(section, face, settings)
+    counts = np.full_like(few, face.count) if all_waves else few
     has = np.arange(face.count) < np.repeat(counts, 3)[:, None]
+    if len(section.spans) > 1:  # where web and hub are no material no function of theirs is any use
+        there = np.zeros((section.places.shape[1], face.count), dtype=bool)
+        for zone, span in enumerate(section.spans):
+            used = np.ones(face.count, dtype=bool)
+            used[face.vanishing_on(*span)] = False
+            there[np.unique(section.element_dofs[section.zone == zone, ::3] // 3)] |= used
+        has &= np.repeat(there, 3, axis=0)
     bore = 3 * section.nodes_of("bore")[:, None] + np.arange(3)
     free = np.zeros(face.count, dtype=bool)
     if held is not None:
@@ -206,9 +254,10 @@ def function_counts(section: Section, face: FaceFunctions, settings: SolidSettin
     d from the flank has all functions of degree below `wave_reach` times (width / 2 d), and a few more.
     """
     distance = np.maximum(flank_distance(section), 1e-9 * face.width)
-    ends = len(face.breaks)
-    wanted = settings.wave_reach * 0.5 * face.width / distance + settings.fewest_waves * (ends - 1)
-    counts = np.minimum(np.ceil(np.minimum(wanted, face.count)).astype(np.int64), face.count)
+    wanted = settings.wave_reach * 0.5 * face.width / distance + settings.fewest_waves * (
+        1.0 + _PIECE * (len(face.breaks) - 2)
+    )
+    counts = face.full_counts[np.minimum(np.ceil(np.minimum(wanted, face.count)).astype(np.int64), face.count)]
     # Sides meet those of the neighbours: both have the functions of the one that is nearer to its flank.
     more = np.maximum(counts[section.side_a], counts[section.side_b])
     counts[section.side_a] = counts[section.side_b] = more

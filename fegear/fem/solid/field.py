@@ -12,13 +12,12 @@ from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.gear_section import Section as PlaneSection
 from fegear.fem.plane.ring import closed_ring
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.solid.bands import loads_of
 from fegear.fem.solid.dissection import condense_solid
-from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of
+from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of, with_stations
 from fegear.fem.solid.face import face_functions, solid_unknowns
 from fegear.fem.solid.section import make_section
-from fegear.fem.solid.solution import flank_nodes, section_flank
+from fegear.fem.solid.solution import flank_nodes, section_flank, section_mesh
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
+    from fegear.geometry.gear_body import GearBody
     from fegear.geometry.tooth import Tooth
 
 #: Six-node triangles want edges so much shorter than those of third order.
@@ -76,6 +76,7 @@ def solid_field(
     stations: ArrayLike,
     *,
     reach: int = 1,
+    body: GearBody | None = None,
 ) -> SolidField:
     """Solve the ring under one band, and everything inside the tooth.
 
@@ -92,6 +93,8 @@ def solid_field(
         Places along the face between the layers [modules].
     reach : int
         Teeth -reach .. reach.
+    body : GearBody, optional
+        As for `solid_influence`; its ends along the face become stations.
 
     Returns
     -------
@@ -99,10 +102,10 @@ def solid_field(
     """
     with one_thread():
         chosen = replace(settings.section.scaled(_SIX_NODE_EDGES), order=2)
-        sector = mesh_sector(tooth, bore_radius, chosen)
-        section = make_section(sector, 2, tau, poisson_ratio, tooth.base_radius)
-        face = face_functions(width, settings.degree(width))
-        known = solid_unknowns(section, face, settings)
+        sector = section_mesh(tooth, bore_radius, chosen, body)
+        section = make_section(sector, 2, tau, poisson_ratio, tooth.base_radius, body)
+        face = face_functions(width, settings.degree(width), () if body is None else body.ends)
+        known = solid_unknowns(section, face, settings, None if body is None else body.hub)
         ports = 3 * flank_nodes(section)
         sides = [(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in (section.side_a, section.side_b)]
         inner = np.setdiff1d(ports, np.concatenate(sides))
@@ -115,7 +118,8 @@ def solid_field(
             sector.points, sector.triangles, np.empty((8, 0), dtype=np.int64),
             {(name, 0): edges for name, edges in sector.edges.items()}, tooth.teeth, closed=False,
         )  # fmt: skip
-        mesh = extruded(plane, np.asarray(stations, dtype=float), tau)
+        layers = np.asarray(stations, dtype=float)
+        mesh = extruded(plane, layers if body is None else with_stations(layers, body.ends), tau, body)
         elements = sector_elements(sector, order=2)
         node = elements.point_nodes
         planes = planes_of(mesh)

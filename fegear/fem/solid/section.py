@@ -7,12 +7,14 @@ sum of products of section and face integrals.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.fem.plane.body import zones
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.elements import SectorElements
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.geometry.gear_body import GearBody
+
+#: From where to where a disc fills the face: all of it.
+_WHOLE_FACE = ((-math.inf, math.inf),)
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,11 @@ class Section:
     tau : float
         Twist [rad/module].
     poisson_ratio : float
+    zone : ndarray of int, shape (M,)
+        Rim and teeth (0), web (1) or hub (2) that each element belongs to.
+    spans : tuple of (float, float)
+        Along the face, from where to where each zone is material [modules]; the first has no ends but those of the
+        face.
     """
 
     stiffness: tuple[Array, Array, Array]
@@ -65,6 +76,8 @@ class Section:
     order: int
     tau: float
     poisson_ratio: float
+    zone: Index
+    spans: tuple[tuple[float, float], ...]
 
     @property
     def size(self) -> int:
@@ -110,7 +123,9 @@ def flank_normals(tangent: Array, place: Array, tau: float) -> Array:
     return np.stack([tangent[1], -tangent[0], tau * (tangent * place).sum(axis=0)])
 
 
-def make_section(mesh: SectorMesh, order: int, tau: float, poisson_ratio: float, base_radius: float) -> Section:
+def make_section(
+    mesh: SectorMesh, order: int, tau: float, poisson_ratio: float, base_radius: float, body: GearBody | None = None
+) -> Section:
     """Integrate the section's matrices.
 
     Parameters
@@ -123,6 +138,8 @@ def make_section(mesh: SectorMesh, order: int, tau: float, poisson_ratio: float,
     poisson_ratio : float
     base_radius : float
         [modules].
+    body : GearBody, optional
+        Web and hub; without it the section is material over the whole face.
 
     Returns
     -------
@@ -153,6 +170,8 @@ def make_section(mesh: SectorMesh, order: int, tau: float, poisson_ratio: float,
         order=order,
         tau=tau,
         poisson_ratio=poisson_ratio,
+        zone=np.zeros(count, dtype=np.int64) if body is None else zones(body, mesh.points, mesh.triangles[:3]),
+        spans=_WHOLE_FACE if body is None else body.spans,
     )
 
 
@@ -211,10 +230,10 @@ def _stiffness(elements: SectorElements, axes: Array, tau: float, poisson_ratio:
     in_section = element_matrices(weights, integrals)
     mixed = element_matrices(weights[..., 3:], integrals[:, :1])
     along_face = element_matrices(weights[:, 3:, :, 3:], integrals[:1, :1])
-    return _turned(in_section, axes), _turned(mixed, axes), _turned(along_face, axes)
+    return turned_matrices(in_section, axes), turned_matrices(mixed, axes), turned_matrices(along_face, axes)
 
 
-def _turned(matrices: Array, axes: Array) -> Array:
+def turned_matrices(matrices: Array, axes: Array) -> Array:
     """Element matrices, shape (M, 3 n, 3 n), for unknowns along axes of shape (M, n, 3, 3)."""
     count, n = axes.shape[:2]
     rows = (axes.transpose(0, 1, 3, 2) @ matrices.reshape(count, n, 3, 3 * n)).reshape(count, 3 * n, n, 3)

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
     from fegear.fem.solid.slice_laws import SliceLaws
+    from fegear.geometry.gear_body import GearBody
     from fegear.geometry.tooth import Tooth
 
 
@@ -90,6 +91,7 @@ def solve_slices(
     *,
     reach: int = 1,
     held: tuple[float, float] | None = None,
+    body: GearBody | None = None,
     laws: SliceLaws = LAWS,
     plane: SolidSolution | None = None,
 ) -> SolidSolution:
@@ -99,8 +101,8 @@ def solve_slices(
     ----------
     tooth, tau, width, poisson_ratio, bore_radius, settings, reach
         As of `solve_solid`.
-    held : None
-        A bore held on a part of the face is not known to slices.
+    held, body : None
+        A bore held on a part of the face, and web and hub, are not known to slices.
     laws : SliceLaws
         By default those fitted to solid gears.
     plane : SolidSolution, optional
@@ -114,8 +116,13 @@ def solve_slices(
     Raises
     ------
     RangeError
-        If the bore is held on a part of the face.
+        If the bore is held on a part of the face, or the gear is no disc.
     """
+    if body is not None:
+        raise RangeError(
+            "body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
+            'solve it as a solid: width = "solid"',
+        )  # fmt: skip
     if held is not None:
         raise RangeError("held", held, "is not known to slices, whose bore is held all along the face")
     started = time.perf_counter()
@@ -143,7 +150,7 @@ def solve_slices(
         displacement[k, side] = _moved(moved, one, root if k == 0 else np.broadcast_to(beside, root.shape))
     seconds = {"section": solved - started, "slices": time.perf_counter() - solved}
     return SolidSolution(
-        tooth, tau, width, bore_radius, None, poisson_ratio, False, face, plane.flank, compliance, plane.fillets,
+        tooth, tau, width, bore_radius, None, None, poisson_ratio, False, face, plane.flank, compliance, plane.fillets,
         displacement, plane.reach, plane.unknowns, settings, seconds,
     )  # fmt: skip
 

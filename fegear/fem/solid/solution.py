@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
+from fegear.fem.plane.body import with_body
 from fegear.fem.plane.ring import closed_ring
 from fegear.fem.plane.root_stress import extreme, search_end
 from fegear.fem.plane.sector import mesh_sector
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.influence import Side
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.geometry.gear_body import GearBody
     from fegear.geometry.tooth import Tooth
 
 #: How far below the edge of a pressed band root tension begins [modules].
@@ -55,6 +58,8 @@ class SolidSolution(TwistedFlank):
         [modules].
     held : (float, float) or None
         Part of the width on which the bore is held.
+    body : GearBody or None
+        Web and hub that carry the rim; None of a disc as wide as the face.
     poisson_ratio : float
     plane_strain : bool
         Whether nothing moves along the axis.
@@ -76,6 +81,7 @@ class SolidSolution(TwistedFlank):
     width: float
     bore_radius: float
     held: tuple[float, float] | None
+    body: GearBody | None
     poisson_ratio: float
     plane_strain: bool
     face: FaceFunctions
@@ -197,6 +203,7 @@ def solve_solid(
     *,
     reach: int = 1,
     held: tuple[float, float] | None = None,
+    body: GearBody | None = None,
     mesh: SectorMesh | None = None,
     sector_teeth: int = 0,
     plane_strain: bool = False,
@@ -218,7 +225,10 @@ def solve_solid(
     reach : int
         K: neighbours -K..K; at most (z - 1) // 2.
     held : (float, float), optional
-        Part of the width, from -width / 2 to width / 2, on which the bore is held; by default all of it.
+        Part of the width, from -width / 2 to width / 2, on which the bore is held; by default all of it, or all of
+        the hub.
+    body : GearBody, optional
+        Web and hub that carry the rim; by default a disc as wide as the face.
     mesh : SectorMesh, optional
         A section's mesh instead of the generated one.
     sector_teeth : int
@@ -233,19 +243,22 @@ def solve_solid(
     settings = settings or SolidSettings()
     with one_thread():
         return _solve(
-            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, mesh, sector_teeth, plane_strain
+            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, body, mesh, sector_teeth, plane_strain
         )
 
 
 def _solve(
     tooth: Tooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
-    held: tuple[float, float] | None, mesh: SectorMesh | None, sector_teeth: int, plane_strain: bool,
+    held: tuple[float, float] | None, body: GearBody | None, mesh: SectorMesh | None, sector_teeth: int,
+    plane_strain: bool,
 ) -> SolidSolution:  # fmt: skip
     started = time.perf_counter()
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
-    mesh = mesh_sector(tooth, bore_radius, settings.section, frontal=True) if mesh is None else mesh
-    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius)
-    face = face_functions(width, settings.degree(width), held)
+    if mesh is None:
+        mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True)
+    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body)
+    held = held if body is None else body.hub
+    face = face_functions(width, settings.degree(width), (held or ()) if body is None else body.ends)
     known = solid_unknowns(section, face, settings, held, plane_strain=plane_strain)
     flank = section_flank(mesh, section, tooth)
     fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
@@ -281,9 +294,28 @@ def _solve(
         "influence": time.perf_counter() - closed,
     }
     return SolidSolution(
-        tooth, tau, width, bore_radius, held, nu, plane_strain, face, flank, compliance, fillets, displacement,
+        tooth, tau, width, bore_radius, held, body, nu, plane_strain, face, flank, compliance, fillets, displacement,
         reach, known.size, settings, seconds,
     )  # fmt: skip
+
+
+def section_mesh(
+    tooth: Tooth,
+    bore_radius: float,
+    settings: MeshSettings,
+    body: GearBody | None,
+    *,
+    frontal: bool = False,
+    layer: float | None = None,
+) -> SectorMesh:
+    """The section of one tooth, down to the bore, whose edges follow the circles of rim and hub if it has a body.
+
+    `layer` is the largest share of web and hub that one layer of elements spans, by default the settings'.
+    """
+    if body is None:
+        return mesh_sector(tooth, bore_radius, settings, frontal=frontal)
+    rim = mesh_sector(tooth, body.rim_radius, settings, frontal=frontal)
+    return with_body(rim, body, bore_radius, settings.rim_fraction if layer is None else layer)
 
 
 def flank_nodes(section: Section) -> Index:

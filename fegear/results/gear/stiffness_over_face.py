@@ -148,7 +148,7 @@ def face_positions(scene: Scene, name: str) -> Array:
 
 
 def _inputs(scene: Scene, name: str) -> SolidTableInputs:
-    assumed, radii = bore_remarks(scene, name), load_radii(scene, name)
+    assumed, radii = () if scene.gears[name].body else bore_remarks(scene, name), load_radii(scene, name)
     if scene.case.stiffness.contact_half_width is None:
         usual = f"so c_self is for a half-width of {USUAL_HALF_WIDTH} modules."
         assumed = (f"Gear {name}: no contact_half_width was given, {usual}", *assumed)
@@ -336,7 +336,7 @@ def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure
     fine = influence.fine
     field = solid_field(
         gear.external_tooth, fine.tau, influence.width, fine.poisson_ratio, fine.bore_radius, influence.settings, band,
-        np.linspace(-0.5, 0.5, layers + 1) * influence.width,
+        np.linspace(-0.5, 0.5, layers + 1) * influence.width, body=fine.body,
     )  # fmt: skip
     # Deflection x E x module over force; stress x module^2 over force.
     moved = field.displacement[0] * force / (gear.material.young_modulus * gear.module) * 1e3

@@ -1,0 +1,161 @@
+"""Stage ``body-modes``: natural frequencies of a gear with its width, rim, web and hub, its bore held."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.case.built.solid_influence import check_solid_gear, solid_settings_of
+from fegear.engine.citation import citing
+from fegear.engine.declared import column_of, error_column
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import TriangleField
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.geometry.outline import turned
+from fegear.results.forecasts import RING
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Upstream, Work
+    from fegear.fem.solid.body_modes import BodyModes
+    from fegear.fem.solid.settings import SolidSettings
+    from fegear.geometry.gear import Gear
+
+#: Nodal diameters up to which modes are looked for, and how many with each.
+_DIAMETERS, _EACH = 3, 3
+#: Quadratic elements as many times as long as those of loaded teeth, and again for the solution that shows the error,
+#: in which layers and polynomials are as many times fewer.
+_COARSER, _AGAIN, _FEWER = 3.0, 1.35, 0.6
+#: What is stated: so many times the difference of both, and a share of the frequency; the corners between rim, web and
+#: hub let frequencies converge slowly, and twice the layers on finer meshes moved them by .1 to .5 %.
+_TIMES, _FLOOR = 2.5, 3e-3
+#: Motion as drawn, in modules.
+_DRAWN = 1.0
+#: Processor seconds of a usual gear.
+_SECONDS = 25.0
+
+
+@dataclass(frozen=True)
+class BodyToSolve:
+    """A gear, and how finely its body is solved."""
+
+    gear: Gear
+    settings: SolidSettings
+    name: str
+
+
+@dataclass(frozen=True)
+class SolvedBody:
+    """Modes of a body; and what a coarser solution says of their frequencies."""
+
+    found: BodyModes
+    other: BodyModes
+
+    @property
+    def errors(self) -> Array:
+        """Estimated errors of the frequencies, of one module and unit material, shape (modes,)."""
+        pairs = zip(self.found.modes, self.other.modes, strict=True)
+        return np.array([_TIMES * abs(a.frequency - b.frequency) + _FLOOR * a.frequency for a, b in pairs])
+
+
+def _inputs(scene: Scene, name: str) -> BodyToSolve:
+    settings = solid_settings_of(scene, name)
+    section = replace(settings.section.scaled(_COARSER), order=2)
+    return BodyToSolve(scene.gears[name], replace(settings, section=section), name)
+
+
+def _compute(asked: BodyToSolve, _upstream: Upstream, work: Work) -> SolvedBody:
+    from fegear.fem.solid.body_modes import body_modes
+
+    gear, m = asked.gear, asked.gear.module
+    found = []
+    for edges, fineness in ((1.0, 1.0), (_AGAIN, _FEWER)):
+        settings = replace(asked.settings, section=asked.settings.section.scaled(edges))
+        found.append(body_modes(
+            gear.external_tooth, gear.twist * m, gear.face_width / m, gear.material.poisson_ratio,
+            gear.bore_radius / m, settings, None if gear.body is None else gear.body.scaled(1.0 / m),
+            diameters=min(_DIAMETERS, gear.teeth // 2), each=_EACH, fineness=fineness,
+        ))  # fmt: skip
+        work.progress(len(found) / 2)
+    return SolvedBody(*found)
+
+
+def _present(known: SolvedBody, asked: BodyToSolve) -> Outcome:
+    modes, gear, name = known.found.modes, asked.gear, asked.name
+    # omega of one module, Young's modulus and density.
+    unit = math.sqrt(gear.material.young_modulus / gear.material.density) / gear.module / (2.0 * math.pi)
+    kinds = np.array([mode.kind for mode in modes])
+    frequency = column_of(modes[0], "frequency", unit * np.array([mode.frequency for mode in modes]))
+    table = Table(
+        f"body_modes_{name}",
+        (
+            column_of(modes[0], "diameters", np.array([mode.diameters for mode in modes])),
+            frequency,
+            error_column(frequency, unit * known.errors),
+            Column("kind", kinds, "", "along which direction it moves most"),
+            *(column_of(modes[0], way, np.array([getattr(mode, way) for mode in modes]))
+              for way in ("axial", "radial", "tangential")),
+        ),
+        f"Natural frequencies of gear {name}, bore held",
+    )  # fmt: skip
+    lowest = int(np.argmin(frequency.values))
+    value = Value(
+        f"{name}.lowest_body_frequency", float(frequency.values[lowest]), "Hz",
+        float(unit * known.errors[lowest]), f"{kinds[lowest]}, {modes[lowest].diameters} nodal diameters",
+    )  # fmt: skip
+    held = "hub" if gear.body is not None else "bore"
+    remark = (
+        f"Gear {name}: natural frequencies of its body alone, the {held} held fast over its width; without the mesh, "
+        "shaft and bearings. Up to "
+        f"{modes[-1].diameters} nodal diameters, {_EACH} modes with each; those with some come in pairs."
+    )
+    return Outcome(
+        known, (table,), (value,), {"unknowns": known.found.unknowns}, (remark,), (_figure(known, asked, unit),)
+    )
+
+
+def _figure(known: SolvedBody, asked: BodyToSolve, unit: float) -> Figure:
+    """The lowest mode with each number of nodal diameters, seen along the axis."""
+    gear, m, mesh = asked.gear, asked.gear.module * 1e3, known.found.mesh
+    corners, count = mesh.triangles[:3], mesh.vertex_count
+    panels = []
+    for n in sorted({mode.diameters for mode in known.found.modes}):
+        mode = min((one for one in known.found.modes if one.diameters == n), key=lambda one: one.frequency)
+        points, moved = [], []
+        for k in range(gear.teeth):
+            place = mesh.points[:, :count]
+            motion = (mode.shape * np.exp(2j * math.pi * n * k / gear.teeth)).real
+            out = place / np.hypot(*place)
+            there = place + _DRAWN * (motion[0] * out + motion[1] * np.stack([out[1], -out[0]]))
+            points.append(turned(there, 2.0 * math.pi * k / gear.teeth))
+            moved.append(np.sqrt((motion**2).sum(axis=0)))
+        triangles = np.hstack([corners + k * count for k in range(gear.teeth)])
+        field = TriangleField(np.hstack(points) * m, triangles, np.concatenate(moved), 1.0, "motion over the largest")
+        end = 1.06 * gear.tip_radius * 1e3
+        panels.append(Panel(
+            Axis("x", "mm", limits=(-end, end)), Axis("y", "mm", limits=(-end, end)), (field,),
+            title=f"{n} nodal diameters: {unit * mode.frequency:.0f} Hz, {mode.kind}", equal=True,
+        ))  # fmt: skip
+    return Figure(
+        f"body_modes_{asked.name}", f"Mode shapes of gear {asked.name}",
+        f"The lowest mode of gear {asked.name} with each number of nodal diameters, seen along the axis: how far the "
+        "middle of its web moves, and, in the plane of the picture, where to.",
+        tuple(panels), columns=2,
+    )  # fmt: skip
+
+
+BODY_MODES = Stage(
+    subjects=lambda scene: tuple(name for name, part in scene.case.gear.items() if not part.internal),
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=check_solid_gear,
+    cites=citing(*RING),
+    forecast=lambda scene, name: Forecast(asdict(solid_settings_of(scene, name)), _SECONDS),
+)

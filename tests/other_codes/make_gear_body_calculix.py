@@ -1,0 +1,81 @@
+"""Write gear_body_calculix.json: whole gears on a web by CalculiX, under load and in vibration (run by hand).
+
+python tests/other_codes/make_gear_body_calculix.py [middle|off]...
+
+Quadratic wedges and hexahedra, all sides joined node by node. Two cores take twenty minutes for the loads of one gear
+(160,000 nodes) and six for its frequencies (75,000 nodes, layers through web and hub twice as fine).
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+import solid_by_calculix as calculix
+
+from fegear.fem.plane import gear_section
+from fegear.fem.plane.body import with_body
+from fegear.fem.solid.extruded import extruded, pressed_band
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.output.solid_export import write_solid_inp
+
+FILE = Path(__file__).with_name("gear_body_calculix.json")
+TOOTH, BORE, FACE = Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), 2.0, 4.0
+RADIUS, PLACES = 8.2, (-2.0, -1.0, 0.0, 1.0, 2.0)
+#: The web in the middle of the face and off it; the hub as wide as the face.
+BODIES = {
+    which: GearBody(5.7, 3.0, web, (-2.0, 2.0)) for which, web in {"middle": (-0.5, 0.5), "off": (-1.5, -0.5)}.items()
+}
+#: Edges of tooth 0 and of the others as a multiple of the usual ones; planes along the face under load and for modes.
+EDGES, COARSE = (1.2, 2.0), 3.0
+LOADED = np.unique(np.round([*np.linspace(-2, 2, 17), -1.9, 1.9, -1.6, -1.4, -0.6, -0.4, 0.4, 0.6], 9))
+MODES = {
+    "middle": [-2, -1.5, -1, -0.5, -0.25, 0, 0.25, 0.5, 1, 1.5, 2],
+    "off": [-2, -1.75, -1.5, -1.25, -1, -0.75, -0.5, -0.25, 0, 0.5, 1, 1.5, 2],
+}
+
+
+def hat(place):
+    return max(place - 0.5, -2.0), place, min(place + 0.5, 2.0)
+
+
+def under_load(body):
+    """Deflections between bands, and the largest root tension along the face of each."""
+    calculix.TOOTH, calculix.BORE = TOOTH, BORE
+    mesh = extruded(gear_section.uneven_section(TOOTH, BORE, *EDGES, body), LOADED, 0.0, body)
+    bands = {f"{p:g}": pressed_band(mesh, TOOTH, RADIUS, 0.25, hat(p), 0) for p in PLACES}
+    with tempfile.TemporaryDirectory() as folder:
+        moved = calculix.solve(Path(folder), "g", mesh, bands, tuple(bands))
+    return {
+        "deflection": [[calculix.deflection(moved[a], bands[b]) for b in bands] for a in bands],
+        "tension": [calculix.largest_along(mesh, moved[a], "fillet", 1).tolist() for a in bands],
+    }
+
+
+def frequencies(which, count=12):
+    """Lowest natural frequencies [sqrt(E / rho) / module], the bore held."""
+    gear_section.with_body = lambda rim, body, bore, _share: with_body(rim, body, bore, 0.2)
+    body, material = BODIES[which], Material(200e9, calculix.NU, 7850.0)
+    mesh = extruded(gear_section.uneven_section(TOOTH, BORE, COARSE, COARSE, body), np.array(MODES[which]), 0.0, body)
+    with tempfile.TemporaryDirectory() as folder:
+        deck = Path(folder) / "m.inp"
+        write_solid_inp(deck, Gear(TOOTH, 1e-3, BORE * 1e-3, FACE * 1e-3, material), mesh, {}, 1.0, {})
+        deck.write_text(f"{deck.read_text()}*STEP\n*FREQUENCY\n{count}\n*END STEP\n")
+        subprocess.run(["ccx", "m"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        rows = [line.split() for line in deck.with_suffix(".dat").read_text().splitlines()]
+    found = [float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()][:count]
+    return (2e-3 * np.pi * np.array(found) / np.sqrt(material.young_modulus / material.density)).tolist()
+
+
+if __name__ == "__main__":
+    for which in sys.argv[1:] or BODIES:
+        known = json.loads(FILE.read_text()) if FILE.exists() else {}
+        known[which] = under_load(BODIES[which]) | {"frequencies": frequencies(which)}
+        FILE.write_text(json.dumps(known, indent=1) + "\n")
