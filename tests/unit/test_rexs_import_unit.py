@@ -351,12 +351,17 @@ def test_helices_that_cannot_mesh_and_teeth_below_zero_are_refused_and_a_ring_ma
         assert float(case(in_json(tree))["pair"]["II"]["torque"].split()[0]) == pytest.approx(300.0)
 
 
-def test_a_truth_value_is_no_name_of_a_material():
+def test_a_truth_value_is_no_name_and_no_place():
+    lost = values_of(two_stages(), 5, support_vector=False)
+    text = case_of(model_of(in_json(lost), HERE))
+    assert "shaft 5: support_vector is a truth value and not read" in text
+    assert tomllib.loads(text)["shaft"]["shaft_5"]["axis"][1] == "84 mm"  # its stage places it
     steel = part(61, "material", "steel", material_designation=True, elastic_modulus=(206e3, "N/mm^2"))
     tree = two_stages()
     links = [*tree["relations"], link(191, "reference", origin=11, referenced=61)]
-    with pytest.raises(InputError, match="material_designation = true: is a truth value"):
-        case(in_json({**tree, "components": [*tree["components"], steel], "relations": links}))
+    text = case_of(model_of(in_json({**tree, "components": [*tree["components"], steel], "relations": links}), HERE))
+    assert "material 61: material_designation is a truth value and not read" in text
+    assert "# material 61 steel" in text
     assert (
         model_of(in_json({"version": "1.4", "components": [{**steel, "name": True}]}), HERE).components[61].name == ""
     )

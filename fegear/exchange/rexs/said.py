@@ -81,7 +81,7 @@ class Said:
     def vector(self, component: Component, name: str) -> tuple[float, float, float] | None:
         """Three components along u, v and w in SI (mm); None without."""
         one = self.found(component, name)
-        if one is None:
+        if one is None or self._is_truth(one, component):
             return None
         if not isinstance(one.value, tuple) or len(one.value) != 3:
             raise InputError(name, shown(one.value), f"has not three entries in {component.said}", "correct the model")
@@ -89,18 +89,16 @@ class Said:
         return u, v, w
 
     def word(self, component: Component, *names: str) -> str | None:
-        """A word or a name; None without.
-
-        Raises
-        ------
-        InputError
-            If it is a truth value.
-        """
+        """A word or a name; None without, or where a truth value stands in its place."""
         one = self.found(component, *names)
-        if one is not None and isinstance(one.value, bool):
-            rule = f"is a truth value, where {component.said} needs a word"
-            raise InputError(one.name, str(one.value).lower(), rule, "correct the model")
-        return None if one is None else str(one.value)
+        return None if one is None or self._is_truth(one, component) else str(one.value)
+
+    def _is_truth(self, one: Attribute, component: Component) -> bool:
+        """Whether a truth value stands where none is meant, as some programs write what they could not; a note then."""
+        if isinstance(one.value, bool):
+            self.used.discard((component.id, one.name))
+            self.notes.append(f"{component.said}: {one.name} is a truth value and not read.")
+        return isinstance(one.value, bool)
 
     def yes(self, component: Component, name: str) -> bool | None:
         """Whether something holds; None where nothing is said."""
