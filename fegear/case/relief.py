@@ -35,8 +35,8 @@ class EndReliefPart(Part):
     )
     amount_over_delta: Number | None = Field(
         default=None,
-        description="The amount in units of Welbourn's Delta: deflection at the HPSTC plus twice the largest spacing "
-        "error.",
+        description="The amount in units of Welbourn's Delta: deflection at the driver's HPSTC plus twice the largest "
+        "spacing error.",
     )
     start_roll_angle: Angle | None = Field(
         default=None, description="Where the relief starts, as a roll angle of the gear; give one of the four starts."

@@ -139,6 +139,8 @@ def relief_chart(
 def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: float = 0.0) -> float:
     """Delta of TM-89901 after Welbourn [m]: combined tooth deflection at the HPSTC plus twice the spacing error.
 
+    The HPSTC is the driver's: where the gears differ, so does Delta when the other one drives.
+
     Parameters
     ----------
     engagement : Engagement
@@ -159,7 +161,10 @@ def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: 
 
 
 def unit_amount(engagement: Engagement, load: float) -> float:
-    """Largest transmission error of the unmodified pair [m]: Welbourn's Delta for contact ratios between 1 and 2."""
+    """Unit of normalised amounts [m]: Welbourn's Delta for contact ratios between 1 and 2.
+
+    For others the largest transmission error of the unmodified pair, which of unequal gears Delta is not.
+    """
     from fegear.contact.plane.transmission_error import transmission_error
 
     if 1.0 <= engagement.pair.contact_ratio < 2.0:

@@ -287,3 +287,18 @@ def test_driver_and_driven_that_change_places_leave_error_stiffness_and_root_str
     for one, value in a.items():
         # Root stress peaks at kinks, whose places are followed to a share of a sample's distance.
         assert b[one].si == pytest.approx(value.si, rel=SAME_AT_KINKS if "root_" in one else SAME), one
+
+
+def test_amounts_over_delta_hang_on_which_gear_drives(monkeypatch):
+    """Delta is the deflection at the driver's HPSTC, which lies elsewhere when the other gear drives; lengths do not."""
+    document = of_two_gears(case("lin_tip_relief"))
+    document["results"] = ["transmission-error"]
+
+    def mean(one):
+        return next(v.si for v in ran(one, monkeypatch).values if v.name == "I.te_mean")
+
+    apart = abs(mean(turned(document)) / mean(document) - 1.0)
+    assert 1e-4 < apart < 1e-2
+    for gear in document["gear"].values():
+        gear["relief"] = {"tip": {"amount": "28 um", "normalised_length": 1.0, "shape": "linear"}}
+    assert mean(turned(document)) == pytest.approx(mean(document), rel=1e-8)
