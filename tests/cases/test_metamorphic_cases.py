@@ -290,7 +290,7 @@ def test_driver_and_driven_that_change_places_leave_error_stiffness_and_root_str
 
 
 def test_amounts_over_delta_hang_on_which_gear_drives(monkeypatch):
-    """Delta is the deflection at the driver's HPSTC, which lies elsewhere when the other gear drives; lengths do not."""
+    """Delta is the deflection at the driver's HPSTC, which lies elsewhere when the other one drives."""
     document = of_two_gears(case("lin_tip_relief"))
     document["results"] = ["transmission-error"]
 
