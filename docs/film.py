@@ -3,6 +3,8 @@
 The film is kept in ``results/film`` and taken anew when the window or the program changes. Where chromium or NiceGUI is
 missing the site is built without it, and the page says so. ``FEGEAR_GALLERY``, if set, takes it only if it names
 ``window``.
+
+``python docs/film.py docs/images/window.webp`` takes the part of it that stands in the README.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ from shortened import chosen
 from fegear.base.plain import code_version, content_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "results" / "film"
@@ -198,13 +200,32 @@ def named(words: str) -> str:
     return f"[...document.querySelectorAll('button')].find(one => one.textContent.trim() === '{words}')"
 
 
-def act(camera: Camera) -> None:
-    """What is seen: everything is done with the mouse."""
-    browser = camera.browser
+def ready(camera: Camera) -> None:
+    """Wait until everything is drawn; the pointer and the words in the corner appear."""
     camera.wait(f"{_IDLE} && {_ERROR}?.querySelector('.small-plot path') != null")
     camera.wait("document.querySelector('.mesh-scales').textContent.includes('von Mises')")
     time.sleep(0.5)
-    browser.run(_OVERLAY)
+    camera.browser.run(_OVERLAY)
+
+
+def dragged(camera: Camera) -> None:
+    """A tip relief is dragged while the case without it is pinned."""
+    words = "Pinned as A; a tip relief, dragged: everything follows"
+    camera.say(words)
+    camera.click(named("Pin as A"))
+    camera.wait(f"{named('Unpin A')} !== undefined")
+    camera.click(named("Add tip relief"))
+    point = "document.querySelector('[data-handle=\"test tip amount\"]')"
+    camera.wait(f"{point} !== null && {_IDLE}")
+    camera.shoot(0.5)
+    camera.drag(point, [-9.0 * i for i in range(1, 8)] + [-63.0 + 7.0 * i for i in range(1, 6)], words)
+    camera.wait(_IDLE)
+    camera.shoot(1.8)
+
+
+def act(camera: Camera) -> None:
+    """What is seen: everything is done with the mouse."""
+    browser = camera.browser
     camera.say("fegear open drive.toml")
     camera.point((880.0, 700.0))
     camera.shoot(1.6)
@@ -224,17 +245,7 @@ def act(camera: Camera) -> None:
         camera.shoot(0.13)
     camera.click(named("Deformed"))
 
-    words = "Pinned as A; a tip relief, dragged: everything follows"
-    camera.say(words)
-    camera.click(named("Pin as A"))
-    camera.wait(f"{named('Unpin A')} !== undefined")
-    camera.click(named("Add tip relief"))
-    point = "document.querySelector('[data-handle=\"test tip amount\"]')"
-    camera.wait(f"{point} !== null && {_IDLE}")
-    camera.shoot(0.5)
-    camera.drag(point, [-9.0 * i for i in range(1, 8)] + [-63.0 + 7.0 * i for i in range(1, 6)], words)
-    camera.wait(_IDLE)
-    camera.shoot(1.8)
+    dragged(camera)
 
     camera.say("The load, moved")
     slider = "document.querySelector('[data-slider]')"
@@ -285,11 +296,12 @@ def opened(text: str, size: tuple[int, int]) -> Iterator:
             window.wait(20)
 
 
-def take(path: Path) -> None:
+def take(path: Path, played: Callable[[Camera], None] = act) -> None:
     """Open the window in a process of its own and film it."""
     with opened(_CASE, _PAGE_SIZE) as browser:
         camera = Camera(browser)
-        act(camera)
+        ready(camera)
+        played(camera)
         camera.save(path)
 
 
@@ -328,3 +340,7 @@ def on_page_markdown(markdown, page, files, **_others):
         return markdown.replace(_LINE, f"*This build of the site has no film: {why_not() or 'none was asked for'}.*")
     picture = f'<img src="window_files/window.webp" alt="{_ABOUT}" width="{_WIDTH}" loading="lazy">'
     return markdown.replace(_LINE, f"<details open><summary>Film</summary>{picture}</details>")
+
+
+if __name__ == "__main__":
+    take(Path(sys.argv[1]), dragged)

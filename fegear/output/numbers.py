@@ -79,6 +79,8 @@ def with_error(value: float, error: float) -> tuple[str, str]:
     return shown + power, left + power
 
 
+#: Differences of large numbers, as a peak to peak, miss a sharp tolerance by little without anybody being misled.
+_MISLEADING = 0.01
 #: So many values are named whose errors are too large; of the others it is said how many.
 _NAMED = 4
 #: A value so small beside its error is the round-off of zero.
@@ -86,7 +88,7 @@ _ROUND_OFF = 1e-9
 
 
 def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
-    """Which values are known less well than the tolerance asks for, the worst first; empty if none is.
+    """Which values are known less well than the tolerance asks for and than 1 %, the worst first; empty if none is.
 
     Parameters
     ----------
@@ -98,12 +100,13 @@ def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
         ((one.error / abs(one.value), one) for one in values if one.error and abs(one.value) > _ROUND_OFF * one.error),
         key=lambda pair: -pair[0],
     )
-    found = [(share, one) for share, one in found if share > tolerance]
+    found = [(share, one) for share, one in found if share > max(tolerance, _MISLEADING)]
     if not found:
         return ""
     named = "; ".join(f"{one!r} ({plain_number(100.0 * share, 3)} %)" for share, one in found[:_NAMED])
     more = f"; and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
-    return f"Errors beyond the tolerance of {tolerance:g}: {named}{more}."
+    beyond = f"the tolerance of {tolerance:g}" if tolerance >= _MISLEADING else f"1 % (the tolerance is {tolerance:g})"
+    return f"Errors beyond {beyond}: {named}{more}."
 
 
 #: Okabe and Ito's palette, and lighter shades of it on dark ground.
