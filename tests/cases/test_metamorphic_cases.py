@@ -34,9 +34,9 @@ OWN_SCALE = {
 }  # fmt: skip
 #: Numbers with a scale of their own in any case: balls of whole sizes, ISO 6336 in mm, paint of 6.3 um, a nanometre.
 OWN_NUMBERS = re.compile(r"ball_diameter|over_balls|_iso$|^contact_pattern_|printed_share$|contact_I\.spread$")
-#: Where the ends of a band of equally good reliefs lie, and in which valleys descents end, is known to the search's own
-#: step of 1e-3 (`_WITHIN`); what the best of them leave is not excepted.
-SEARCHED = re.compile(r"^grindable_\w+\.(amount_from|amount_to|start_from|start_to|runner_up|agreeing)$")
+#: Where the ends of a band of equally good reliefs lie is known to the search's own step of 1e-3 (`_WITHIN`); what the
+#: best of them leave is not excepted.
+SEARCHED = re.compile(r"^grindable_\w+\.(amount_from|amount_to|start_from|start_to)$")
 SAME_SEARCHED = 1e-3
 #: An angle between two gears is a difference of angles of some radian: below this it has no digits left [rad].
 SMALLEST_ANGLE = 1e-6

@@ -160,10 +160,10 @@ def test_no_brute_force_finds_less(z1, z2, addendum, shift, shape, metric):
     stated = Reference(e, load, 1500).left(numbers(found, e.pair), power, metric)
     assert stated == pytest.approx(found.objective, rel=0.01)
     assert found.candidates > 10_000
-    assert 1 <= found.agreeing <= found.starts
-    # What the search costs, by its count of exact load sharings at .2 to .4 ms each: half of them for the descents, the
-    # others for the ground of the deepest valleys and the relief with the least removal.
-    assert found.evaluations < 700
+    # Two independent searches came to the same, or it is said how far they are apart.
+    assert found.objective_error <= found.least_error < 0.02 * found.least
+    # What the search costs, by its count of exact load sharings: a tenth of a millisecond each where many go together.
+    assert found.evaluations < 1500
     assert found.objective <= 1.0001 * found.before[0]
 
 
@@ -234,6 +234,30 @@ def test_the_driver_of_a_like_pair_takes_the_deeper_relief_and_both_have_one_ban
         assert found.driver.amount <= found.driver_band[1].amount
         assert (found.error > 0.0).all()
         assert (found.band_error > 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("teeth", "options", "shape"),
+    [
+        ((17, 60), {"shift": 0.3}, "linear"),
+        pytest.param((17, 60), {"shift": 0.3}, "parabolic", marks=pytest.mark.long),
+        pytest.param((24, 36), {"hertz": "load-dependent"}, "linear", marks=pytest.mark.long),
+        pytest.param((50, 50), {"addendum": 1.3}, "parabolic", marks=pytest.mark.long),
+    ],
+)  # fmt: skip
+def test_ends_of_bands_are_where_they_are_whatever_the_last_digits(teeth, options, shape):
+    """Under 1e-12 of every input they moved by up to a third, a thousand times their error."""
+    bands, errors = [], []
+    for k in range(3):
+        rng = np.random.default_rng(k)
+        off = 1.0 + (1e-12 * rng.uniform(-1.0, 1.0, 4) if k else np.zeros(4))
+        e, load = engaged(*teeth, **{"addendum": 1.0, **options, "module": 3e-3 * off[0], "line_load": 3e5 * off[1]})
+        found = grindable(e, load, shape)
+        bands.append([[v for r in ends for v in (r.amount, r.start)]
+                      for ends in zip(found.driver_band, found.driven_band, strict=True)])  # fmt: skip
+        errors.append(found.band_error)
+        assert found.driver_band[0].amount < found.driver_band[1].amount
+    assert (np.ptp(bands, axis=0) <= 0.5 * np.min(errors, axis=0)).all()
 
 
 def scaled(e, load, by):

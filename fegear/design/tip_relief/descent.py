@@ -20,12 +20,12 @@ from fegear.design.tip_relief.cutting_planes import least_in_box
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.base.arrays import Array, Floats, Index
+    from fegear.base.arrays import Array, Floats, Index, Mask
     from fegear.design.tip_relief.trials import Trials, Tried
 
 
 #: What a round may leave of its own linear problem's promise, and what it must promise to go on, over the value.
-_GAP, _ENDED = 0.01, 3e-4
+_GAP, _ENDED = 0.1, 1e-3
 
 
 _ROUND_OFF = 1e-10
@@ -75,6 +75,10 @@ class Aim:
         """That of some of the candidates."""
         return self if self.along is None else Aim(self.along[chosen], self.allowed)
 
+    def like(self, other: Aim) -> bool:
+        """Whether another is the same."""
+        return self.along is None or other.along is None or bool((self.along == other.along).all())
+
     def value(self, at: Floats, left: Floats) -> Floats:
         """Of candidates (C, 4) in their units that leave so much, shape (C,)."""
         if self.along is None:
@@ -99,18 +103,6 @@ def _ahead(trials: Trials, tried: Tried, p: Floats, limits: Limits, trust: Float
 
     x, least, _ = least_in_box(tangent, low, high, _ROUND_OFF, share=_GAP)
     return x * reach, least
-
-
-def room(trials: Trials, p: Floats, limits: Limits, trust: float, aim: Aim | None = None) -> Floats:
-    """How much less of the aim may be near candidates, shape (C, 4): what they are off as ends of a search, shape (C,).
-
-    What is seen is taken as linear within a region of that trust; it curves upward, so there is less in truth. Never
-    below what ends a descent.
-    """
-    aim, tried = aim or Aim(), trials.exact(p)
-    values = aim.value(p / limits.unit, trials.left(tried.seen, tried.low))
-    _, least = _ahead(trials, tried, p, limits, np.full(p.shape[0], trust), aim)
-    return np.asarray(np.maximum(values - least, _ENDED * (np.abs(values) if aim.along is None else 1.0)))
 
 
 def descend(
@@ -181,14 +173,21 @@ _STEP = 3e-6
 _NEAR = 0.12
 
 
-#: Rounds at most, the step over the relief that ends them, and steps of each.
-_ROUNDS, _END, _STEPS = 12, 1e-8, 60
+#: Rounds at most, the step over the relief that ends them, for the next would be of its square, the region of trust
+#: that does, steps of each, and reliefs nearer than this, in their units, that have met.
+_ROUNDS, _END, _END_OF_TRUST, _STEPS, _MET = 12, 1e-7, 1e-8, 60, 1e-4
+#: To what the problem of a round is solved, on the way and where steps are below the last of these.
+_ON_THE_WAY, _AT_THE_END, _NEAR_THE_END = 1e-8, 1e-12, 3e-3
+#: Steps after which a smooth problem that has not ended is taken to go toward an edge: there another goes on.
+_STEPS_TO_EDGE = 18
 #: A first harmonic below this, over what is left, is about to vanish.
 _VANISHING = 0.1
 
 
 #: First extent of trust.
 _TRUST = 0.04
+#: A curvature, or a harmonic, below this is round-off.
+_FLATTEST = 1e-3
 
 
 @dataclass(frozen=True)
@@ -266,6 +265,24 @@ class _Problem:
             parts.append(block)
         return np.concatenate(parts)
 
+    def rounded(self) -> Array:
+        """Steps, columns (4, 4), along which what is left curves by one, as quasi-Newton methods take it at first.
+
+        Kraft's begins with a curvature of one in every direction and learns another in some twenty steps. Of extremes,
+        which are all but flat, it learns nothing: they keep their numbers.
+        """
+        if not self.harmonics:
+            return np.eye(4)
+        one = max(self.high, key=lambda each: float(_effective(each.value, self.harmonics)[0]))
+        bent = np.tensordot(_effective(one.value, self.harmonics)[1], one.curve, axes=1)
+        for chosen in (slice(None), slice(None, None, self.harmonics)):
+            v, by = one.value[chosen], one.slope[chosen]
+            size = max(float(np.sqrt(v @ v)), _FLATTEST)
+            along = v @ by / size
+            bent += (by.T @ by - np.outer(along, along)) / size
+        curves, ways = np.linalg.eigh(bent)
+        return np.asarray(ways / np.sqrt(np.maximum(np.abs(curves), _FLATTEST)))
+
     def vanishing(self, d: Array) -> tuple[_Curved, ...]:
         """Cosine and sine parts of first harmonics that a step all but takes away, and with all their digits may.
 
@@ -311,10 +328,12 @@ def _problem(trials: Trials, tried: Tried, left: float, unit: Floats) -> _Proble
     return _Problem(tuple(high), tuple(low), 0 if trials.metric == "peak_to_peak" else trials.harmonics)
 
 
-def _best_step(problem: _Problem, low: Array, high: Array, aim: Aim, left: float, on_edge: bool) -> tuple[Array, bool]:
+def _best_step(
+    problem: _Problem, low: Array, high: Array, aim: Aim, left: float, close: float, on_edge: bool
+) -> tuple[Array, bool]:
     """Step, in the units of the numbers, to the least of the aim within a box, shape (4,), and whether on an edge.
 
-    From an edge only the same is tried, which takes an eighth of the time.
+    Solved to `close`. From an edge only the same is tried, which takes an eighth of the time.
     """
     from scipy.optimize import minimize
 
@@ -323,19 +342,27 @@ def _best_step(problem: _Problem, low: Array, high: Array, aim: Aim, left: float
         towards[4] = 1.0
     else:
         towards[:4], top = aim.along[0], aim.allowed / left
-    bounds = [*zip(low, high, strict=True), (-np.inf, top), *[(-np.inf, np.inf)] * (problem.size - 5)]
+    bounds = [(-np.inf, np.inf)] * 4 + [(-np.inf, top)] + [(-np.inf, np.inf)] * (problem.size - 5)
+    most, steps = _STEPS, _STEPS_TO_EDGE if problem.harmonics else _STEPS
+    ways = np.eye(problem.size)
+    ways[:4, :4] = problem.rounded()
+    box = np.concatenate([ways[:4], -ways[:4]])
 
     def solved(edges: tuple[_Curved, ...]) -> tuple[Array, float]:
         zero = {
-            "type": "eq", "fun": lambda y: np.concatenate([one.at(y[:4]) for one in edges]),
-            "jac": lambda y: np.pad(np.concatenate([one.slope_at(y[:4]) for one in edges]), ((0, 0), (0, 1))),
+            "type": "eq", "fun": lambda z: np.concatenate([one.at((ways @ z)[:4]) for one in edges]),
+            "jac": lambda z: np.concatenate([one.slope_at((ways @ z)[:4]) for one in edges]) @ ways[:4],
+        }  # fmt: skip
+        inside = {
+            "type": "ineq", "fun": lambda z: np.concatenate([problem.values(y := ways @ z), y[:4] - low, high - y[:4]]),
+            "jac": lambda z: np.concatenate([problem.slopes(ways @ z) @ ways, box]),
         }  # fmt: skip
         found = minimize(
-            lambda y: float(towards @ y), problem.start(), jac=lambda _: towards, method="SLSQP", bounds=bounds,
-            options={"ftol": 1e-12, "maxiter": _STEPS},
-            constraints=[{"type": "ineq", "fun": problem.values, "jac": problem.slopes}, *([zero] if edges else [])],
+            lambda z: float(towards @ ways @ z), problem.start(), jac=lambda _: towards @ ways, method="SLSQP",
+            bounds=bounds, options={"ftol": close, "maxiter": most if edges else steps},
+            constraints=[inside, *([zero] if edges else [])],
         )  # fmt: skip
-        d = np.clip(found.x[:4], low, high)
+        d = np.clip((ways @ found.x)[:4], low, high)
         if not problem.harmonics:
             return d, 0.0
         would = left * max(_effective(one.at(d), problem.harmonics)[0] for one in problem.high)
@@ -350,59 +377,112 @@ def _best_step(problem: _Problem, low: Array, high: Array, aim: Aim, left: float
     return (other, True) if its_value <= value else (d, False)
 
 
-def refine(trials: Trials, start: Floats, limits: Limits, aim: Aim | None = None) -> tuple[Floats, float, int]:
-    """Lead one relief to the minimum nearby, to all digits that matter.
+@dataclass
+class _Led:
+    """One of the reliefs led to the end."""
+
+    p: Floats
+    tried: Tried
+    left: float
+    value: float
+    aim: Aim
+    step: float = _TRUST
+    close: float = _ON_THE_WAY
+    trust: float = _TRUST
+    on_edge: bool = False
+    released: bool = False
+    joins: _Led | None = None
+
+    @property
+    def end(self) -> _Led:
+        """Itself, or where another came that it came up with."""
+        return self if self.joins is None else self.joins.end
+
+
+def refine(trials: Trials, starts: Floats, limits: Limits, aim: Aim | None = None) -> tuple[Floats, Floats, Mask, int]:
+    """Lead reliefs to the minima nearby, to all digits that matter.
+
+    All go on together, for trying many costs little more than trying one; of two that meet the lower goes on.
 
     Parameters
     ----------
     trials : Trials
-    start : ndarray, shape (4,)
+    starts : ndarray, shape (B, 4)
     limits : Limits
     aim : Aim, optional
-        Of this one, `along` of shape (1, 4); by default what is left.
+        What is left by default.
 
     Returns
     -------
-    best : ndarray, shape (4,)
-    left : float
-        What it leaves [m].
+    best : ndarray, shape (B, 4)
+    left : ndarray, shape (B,)
+        What they leave [m].
+    ended : ndarray of bool, shape (B,)
+        Whether they came to an end.
     evaluations : int
     """
-    aim, unit = aim or Aim(), limits.unit
+    aim, unit, evaluations = aim or Aim(), limits.unit, 0
     cloud = np.concatenate([np.zeros((1, 4)), _STEP * np.diag(unit), -_STEP * np.diag(unit)])
 
-    def tried_at(p: Floats) -> tuple[Tried, float, float]:
-        tried = trials.exact(p + cloud)
-        left = float(trials.left(tried.seen[:1], tried.low[:1])[0])
-        return tried, left, float(aim.value((p / unit)[None], np.array([left]))[0])
+    def tried_at(some: list[tuple[Floats, Aim]]) -> list[_Led]:
+        tried = trials.exact((np.array([p for p, _ in some])[:, None] + cloud).reshape(-1, 4))
+        left = trials.left(tried.seen[::9], tried.low[::9])
+        parts = (tried.of(slice(9 * i, 9 * i + 9)) for i in range(len(some)))
+        return [
+            _Led(p, part, float(at), float(own.value((p / unit)[None], np.array([at]))[0]), own)
+            for (p, own), part, at in zip(some, parts, left, strict=True)
+        ]
 
-    p, trust, evaluations = np.clip(start, limits.low, limits.high), _TRUST, 9
-    on_edge, released = False, False
-    tried, left, value = tried_at(p)
+    starts = np.clip(starts, limits.low, limits.high)
+    every = tried_at([(p, aim.of(np.array([i]))) for i, p in enumerate(starts)])
+    active = [one for one in every if one.left > 0.0]
     for _ in range(_ROUNDS):
-        if not left > 0.0:
+        evaluations += 9 * len(active)
+        new = [_next(trials, one, limits) for one in active]
+        to = [(p, one.aim) for one, p in zip(active, new, strict=True) if p is not None]
+        reached = iter(tried_at(to) if to else [])
+        active = [
+            one for one, p in zip(active, new, strict=True)
+            if p is not None and _goes_on(one, next(reached), unit) and one.left > 0.0
+        ]  # fmt: skip
+        for one in active:
+            met = [
+                other for other in every
+                if other.value < one.value and one.aim.like(other.aim) and (np.abs(other.p - one.p) < _MET * unit).all()
+            ]  # fmt: skip
+            one.joins = min(met, key=lambda other: other.value, default=None)
+        active = [one for one in active if one.joins is None]
+        if not active:
             break
-        problem = _problem(trials, tried, left, unit)
-        reach = trust * np.maximum(p, 0.2 * unit)
-        low, high = np.maximum(limits.low - p, -reach) / unit, np.minimum(limits.high - p, reach) / unit
-        d, on_edge = _best_step(problem, low, high, aim, left, on_edge)
-        if released and on_edge:
-            break
-        new = np.clip(p + d * unit, limits.low, limits.high)
-        new_tried, new_left, new_value = tried_at(new)
-        evaluations += 9
-        step = float(np.abs((new - p) / np.maximum(p, 0.2 * unit)).max())
-        worse = new_value > value + 1e-12 * max(abs(value), left)
-        if not worse:
-            p, tried, left, value = new, new_tried, new_left, new_value
-            trust = min(2.0 * trust, 0.3) if step > 0.5 * trust else trust
-            if step < _END:
-                if not on_edge or released:
-                    break
-                # On an edge: once more with leave to come off it.
-                on_edge, released = False, True
-        else:
-            trust = 0.25 * min(trust, step)
-            if trust < _END:
-                break
-    return p, left, evaluations
+    found = [one.end for one in every]
+    ended = np.array([all(one is not other for other in active) for one in found])
+    left = np.array([one.left for one in found])
+    return np.array([one.p for one in found]), left, ended, evaluations + 9 * len(every)
+
+
+def _next(trials: Trials, one: _Led, limits: Limits) -> Floats | None:
+    """Where the problem about a relief has its least, None where it ends on an edge for the second time."""
+    unit, p = limits.unit, one.p
+    one.close = _AT_THE_END if one.step < _NEAR_THE_END else _ON_THE_WAY
+    reach = one.trust * np.maximum(p, 0.2 * unit)
+    low, high = np.maximum(limits.low - p, -reach) / unit, np.minimum(limits.high - p, reach) / unit
+    problem = _problem(trials, one.tried, one.left, unit)
+    d, one.on_edge = _best_step(problem, low, high, one.aim, one.left, one.close, one.on_edge)
+    return None if one.released and one.on_edge else np.clip(p + d * unit, limits.low, limits.high)
+
+
+def _goes_on(one: _Led, new: _Led, unit: Floats) -> bool:
+    """Take a step where it does not make it worse; whether there is more to come."""
+    step = float(np.abs((new.p - one.p) / np.maximum(one.p, 0.2 * unit)).max())
+    one.step = step
+    if new.value > one.value + 1e-12 * max(abs(one.value), one.left):
+        one.trust = 0.25 * min(one.trust, step)
+        return one.trust >= _END_OF_TRUST
+    one.p, one.tried, one.left, one.value = new.p, new.tried, new.left, new.value
+    one.trust = min(2.0 * one.trust, 0.3) if step > 0.5 * one.trust else one.trust
+    if step < _END and one.close == _AT_THE_END:
+        # On an edge: once more with leave to come off it.
+        again = one.on_edge and not one.released
+        one.on_edge, one.released = False, True
+        return again
+    return True

@@ -56,11 +56,11 @@ class TipReliefPair:
         Combinations of amounts and lengths scanned.
     evaluations : int
         Load sharings over a base pitch solved exactly on the way.
-    starts, agreeing : int
-        Searches from different places of the scan, and those of them that end within 5 % of the best: several vouch
-        for the global minimum, a single one leaves a doubt.
-    runner_up, runner_up_error : float
-        The least that the other searches leave [m]; the most that any leaves where all agree; and its estimated error.
+    starts : int
+        Places of the scan from which searches went out.
+    least_error : float
+        How far the least of two independent searches, from every other of these places each, are apart [m]; not below
+        `objective_error`.
     objective_error : float
         How far what is left by the search's own roll positions is from `objective` [m].
     seconds : float
@@ -82,9 +82,7 @@ class TipReliefPair:
     candidates: int
     evaluations: int
     starts: int
-    agreeing: int
-    runner_up: float
-    runner_up_error: float
+    least_error: float
     objective_error: float
     seconds: float
 
@@ -135,15 +133,15 @@ def optimise_tip_relief(
     before = _left(replace(plain, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED), w)
     after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
     objective = float((after[metric] * w.max() / w).max())
-    # More may be left than the search saw: then the relief goes on as it does from the least to what is allowed.
+    # More may be left than the search saw, or less: what is allowed moves by as much; over the whole band it is SHARE.
     off = max(abs(objective - found.left), REPEATED * objective)
-    per_left = np.abs(found.best - found.ground) / max(SHARE * found.least, _NOTHING)
+    per_left = np.abs(found.band - found.best).max(axis=0) / max(SHARE * found.least, _NOTHING)
     by_roll = np.array([v for gear in gears for v in (1.0, pair.path_length / gear.base_radius)])
     error = np.maximum(off * per_left, REPEATED * np.abs(found.best)) * by_roll
     return TipReliefPair(
         tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric], objective, found.least,
         driver_band, driven_band, error, found.band_error * by_roll, found.candidates, found.evaluations, found.starts,
-        found.agreeing, found.runner_up, found.runner_up_error, off, seconds,
+        max(found.spread, off), off, seconds,
     )  # fmt: skip
 
 

@@ -5,6 +5,9 @@ largest and the smallest transmission error change places and pairs part and tou
 valley where it began. So all combinations on a grid are scanned with `QuickSharing`; the best of them that lie apart
 descend with it, and the best ends with the exact load sharing. The deepest valleys are followed to their ground.
 
+Every other of the starts belongs to one search, those between to another: how far apart the least is that both find
+says what a single one would be worth.
+
 The ground is flat: reliefs of half and of twice the depth may leave the same within a hundredth, and which of them is
 lowest hangs on the last digits of the load. So all that leave at most a hundredth more than the least count as equally
 good. Of them the one with the least removal is taken, and of two such the longer; the others are stated as a band. Of
@@ -21,16 +24,14 @@ import numpy as np
 
 from fegear.contact.fourier import Panels
 from fegear.design.charts import Bench, bench
-from fegear.design.tip_relief.descent import Aim, Limits, descend, refine, room
+from fegear.design.tip_relief.descent import Aim, Limits, descend, refine
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Floats, Index
+    from fegear.base.arrays import Floats, Index, Mask
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.geometry.pair import GearPair
@@ -49,26 +50,28 @@ _BEST, _STARTS, _APART = 4000, 64, 2
 #: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
 #: harmonics need good quadrature.
 _STAGES = {
-    "peak_to_peak": ((56, 64, 0.15, 8), (56, 12, 0.15, 6)),
-    "effective_error": ((0, 48, 0.15, 10), (0, 16, 0.15, 7)),
+    "peak_to_peak": ((56, 64, 0.15, 6), (56, 12, 0.15, 4)),
+    "effective_error": ((0, 48, 0.15, 6), (0, 12, 0.15, 4)),
 }
 #: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.
 _GROUNDS, _CHOSEN = 3, 3
 #: Valleys from which the least removal is looked for besides.
 _VALLEYS = 6
-#: Ends that leave so many times the least are not led on, nor are those that lie so near to one that was, in their
-#: units; a penalty below this is none.
-_HOPELESS, _BESIDE_END, _WITHIN = 1.03, 0.04, 1e-3
+#: Ends that leave so many times the least are not led on; a penalty below this is none, and
+#: ends of a band are known to this, in their units.
+_HOPELESS, _WITHIN = 1.03, 1e-3
 #: Candidates closer than this in all numbers, in their units, are the same.
 _SAME = 0.01
 #: Starts that agree leave at most so much times the least.
 _AGREED = 1.05
 #: A whole path of contact more of relief is worth this much more removal, in mean transmission errors.
 _LONGER = 0.01
+#: The rule: least removal, then longest, by the four numbers in their units.
+_RULE = np.array([1.0, -_LONGER, 1.0, -_LONGER])
 #: Removals that differ by less, in mean transmission errors, are equal: then the driver's counts.
 _EQUAL = 1e-6
-#: Region of trust within which an end of a band, or another valley, may go on.
-_DOUBT = 0.1
+#: Valleys lie apart by more, in their units.
+_VALLEY = 0.1
 #: Gears are alike whose sizes and compliances differ by less, over these.
 _LIKE = 1e-9
 #: Positions beside changes of pairs, over the distance of the even ones.
@@ -143,32 +146,28 @@ class Found:
         good.
     left, least : float
         What it leaves, and what the best of all leave [m], by the search's own roll positions.
-    ground : ndarray, shape (4,)
-        The best of all.
+    spread : float
+        How far the least of two independent searches are apart [m]: one from every other place of the scan, one from
+        those between.
     band, band_error : ndarray, shape (2, 4)
         From where to where the numbers of equally good reliefs go, and how much farther that may be.
     candidates : int
         Combinations scanned.
     evaluations : int
         Load sharings over a base pitch solved exactly.
-    starts, agreeing : int
-        Searches from places of the scan that lie apart, and those of them that come within 5 % of the lowest.
-    runner_up, runner_up_error : float
-        The least that the others leave [m]; the most that any leaves where all agree; and how much less it may be.
+    starts : int
+        Places of the scan that lie apart from which both went out.
     """
 
     best: Floats
     left: float
     least: float
-    ground: Floats
+    spread: float
     band: Floats
     band_error: Floats
     candidates: int
     evaluations: int
     starts: int
-    agreeing: int
-    runner_up: float
-    runner_up_error: float
 
 
 def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> Found:
@@ -197,41 +196,42 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]),
         np.array([scale, 1.0, scale, 1.0]),
     )  # fmt: skip
-    p: Floats
-    values: Floats
-    of_starts: Floats
-    valleys: Floats
     p, candidates = scan(coarse, limits)
-    valleys = p
-    values, solved, of_starts, trials, now = np.arange(float(p.shape[0])), 0, np.empty(0), coarse, -1
+    starts, solved = p.shape[0], 0
+    values, of = np.arange(float(starts)), np.eye(2, dtype=bool)[np.arange(starts) % 2]
+    valleys, trials, now = p, coarse, -1
     for step, (positions, followed, trust, rounds) in enumerate(_STAGES[metric]):
         if positions != now:
             now, trials = positions, Trials(_set_up(engagement, positions, loads.size), loads, power, metric)
-        p = p[_apart(p, values, limits, math.ceil(followed * thrift))]
+        p, of = _followed(p, values, of, limits, math.ceil(followed * thrift))
         p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
         solved += count if step else 0
-        of_starts = values if step == 1 else of_starts
         valleys = valleys if step else p[values < _AGREED * values.min() + 1e-6 * scale]
-    agree = of_starts < _AGREED * of_starts.min() + 1e-6 * scale
-    other = int(of_starts.argmax() if agree.all() else np.where(agree, np.inf, of_starts).argmin())
-    doubt = float(room(trials, p[other : other + 1], limits, _DOUBT)[0])
     like = _are_like(pair, engagement.compliance)
     p, valleys = (_driver_deeper(p), _driver_deeper(valleys)) if like else (p, valleys)
-    grounds: list[tuple[float, Floats]] = []
-    for i in _apart(p, values, limits, _GROUNDS):
-        if grounds and (values[i] > _HOPELESS * grounds[0][0] or _led_already(p[i], grounds, limits)):
-            continue
-        end, left, count = refine(trials, p[i], limits)
-        grounds.append((left, end))
-        solved += count
-    least, ground = min(grounds, key=lambda one: one[0])
-    p, values = np.concatenate([[end for _, end in grounds], p]), np.append([left for left, _ in grounds], values)
+    deep = [i for i in _apart(p, values, limits, _GROUNDS) if values[i] < _HOPELESS * values.min()]
+    deep += [i for i in (int(np.where(one, values, np.inf).argmin()) for one in of.T) if i not in deep]
+    grounds, lefts, _, count = refine(trials, p[deep], limits)
+    solved += count
+    least = float(lefts.min())
+    spread = float(np.ptp([lefts[one].min() for one in of[deep].T]))
     allowed = (1.0 + SHARE) * least
+    p, values = np.concatenate([grounds, p]), np.append(lefts, values)
     best, count = _among_equals(trials, p[values <= allowed], valleys, allowed, limits, like)
     return Found(
-        best.chosen, best.left, least, ground, best.band, best.band_error, candidates, solved + count, of_starts.size,
-        int(agree.sum()), float(of_starts[other]), doubt,
+        best.chosen, best.left, least, spread, best.band, best.band_error, candidates, solved + count, starts
     )  # fmt: skip
+
+
+def _followed(p: Floats, values: Floats, of: Mask, limits: Limits, most: int) -> tuple[Floats, Mask]:
+    """The best of candidates that lie apart, and of which of both searches each is: of both, where both came to it.
+
+    Of each search the best is among them.
+    """
+    chosen = _apart(p, values, limits, most)
+    chosen += [i for i in (int(np.where(one, values, np.inf).argmin()) for one in of.T) if i not in chosen]
+    beside = (np.abs(p[chosen][:, None] - p) <= _SAME * limits.unit).all(axis=2)
+    return p[chosen], np.asarray(beside @ of)
 
 
 def _mirrored(p: Floats) -> Floats:
@@ -268,11 +268,6 @@ def _apart(p: Floats, values: Floats, limits: Limits, most: int, apart: float = 
     return found
 
 
-def _led_already(p: Floats, ends: Sequence[tuple[float, Floats, *tuple[float, ...]]], limits: Limits) -> bool:
-    """Whether a candidate lies beside an end that another came to."""
-    return any((np.abs(p - one[1]) < _BESIDE_END * limits.unit).all() for one in ends)
-
-
 @dataclass(frozen=True, slots=True)
 class _Choice:
     """One of the equally good reliefs, and from where to where they go, see `Found`."""
@@ -288,7 +283,8 @@ def _among_equals(
 ) -> tuple[_Choice, int]:
     """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
 
-    The least removal is a search of its own: the valley with the least removal need not be among the deepest.
+    The least removal is a search of its own: the valley with the least removal need not be among the deepest. It and
+    the ends of the band are led to all their digits: they have the same place wherever the search came from.
 
     Parameters
     ----------
@@ -309,44 +305,38 @@ def _among_equals(
     evaluations : int
     """
     unit = limits.unit
-    rule = np.array([1.0, -_LONGER, 1.0, -_LONGER])
     starts = np.concatenate([
-        some[_apart(some, some / unit @ rule, limits, most, apart)]
-        for some, most, apart in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _DOUBT))
+        some[_apart(some, some / unit @ _RULE, limits, most, apart)]
+        for some, most, apart in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _VALLEY))
     ])  # fmt: skip
-    outward = np.concatenate([-np.eye(4), np.eye(4)])
-    # The band is looked for from what lies farthest out already.
-    ends = equals[(equals / unit @ outward.T).argmax(axis=0)]
-    along = np.concatenate([np.tile(rule, (starts.shape[0], 1)), -outward])
-    p, values, solved = descend(
-        trials.exact, trials, np.concatenate([starts, ends]), limits, 0.1, 7, Aim(along, allowed)
-    )
-    doubt = room(trials, p[starts.shape[0] :], limits, _DOUBT, Aim(-outward, allowed)).reshape(2, -1)
-    # Whatever came within what is allowed may lead on to less removal.
-    within = p[values - (along * p / unit).sum(axis=1) < _WITHIN]
-    within = _driver_deeper(within) if like else within
-    removals = (within / unit) @ rule
-    led: list[tuple[float, Floats, float]] = []
-    for i in _apart(within, removals, limits, _CHOSEN):
-        if _led_already(within[i], led, limits):
-            continue
-        end, left, count = refine(trials, within[i], limits, Aim(rule[None], allowed))
-        solved += count
-        led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
-        fewest = min(removal for removal, _, _ in led)
-        if sum(removal < fewest + _EQUAL for removal, _, _ in led) > 1:
-            break
-    else:
-        # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
-        end, left, count = refine(trials, min(led, key=lambda one: one[0])[1], limits, Aim(rule[None], allowed))
-        solved += count
-        led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
-    fewest = min(removal for removal, _, _ in led)
-    _, chosen, left = max((one for one in led if one[0] < fewest + _EQUAL), key=lambda one: float(one[1][0]))
-    known = np.concatenate([within, chosen[None]])
+    aim = Aim(np.tile(_RULE, (starts.shape[0], 1)), allowed)
+    p, values, solved = descend(trials.exact, trials, starts, limits, 0.1, 5, aim)
+    known = np.concatenate([p[values - p / unit @ _RULE < _WITHIN], equals])
+    known = _driver_deeper(known) if like else known
+    fewest = known[_apart(known, known / unit @ _RULE, limits, _CHOSEN)]
     known = np.concatenate([known, _mirrored(known)]) if like else known
-    error = (np.maximum(doubt, _mirrored(doubt)) if like else doubt) * unit
-    return _Choice(chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), error), solved
+    # The band is looked for from what lies farthest out already.
+    outward = np.concatenate([-np.eye(4), np.eye(4)])
+    ends = known[(known / unit @ outward.T).argmax(axis=0)]
+    along = np.concatenate([np.tile(_RULE, (fewest.shape[0], 1)), -outward])
+    p, left, ended, count = refine(trials, np.concatenate([fewest, ends]), limits, Aim(along, allowed))
+    solved += count
+    # An end that was still on its way may go on by twice as far again.
+    moved = 2.0 * np.abs(p[-8:] - ends)[range(8), [0, 1, 2, 3] * 2]
+    doubt = np.maximum(np.where(ended[-8:], 0.0, moved).reshape(2, 4), _WITHIN * unit)
+    (p, ends), left = np.split(p, [-8]), left[:-8]
+    removal = p / unit @ _RULE
+    if (removal < removal.min() + _EQUAL).sum() == 1:
+        # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
+        more, its_left, _, count = refine(trials, p[[removal.argmin()]], limits, Aim(_RULE[None], allowed))
+        p, left, solved = np.concatenate([p, more]), np.append(left, its_left), solved + count
+        removal = p / unit @ _RULE
+    p = _driver_deeper(p) if like else p
+    best = int(np.where(removal < removal.min() + _EQUAL, p[:, 0], -np.inf).argmax())
+    ends = np.concatenate([ends, p[[best]]])
+    ends = np.concatenate([ends, _mirrored(ends)]) if like else ends
+    error = np.maximum(doubt, _mirrored(doubt)) if like else doubt
+    return _Choice(p[best], float(left[best]), np.array([ends.min(axis=0), ends.max(axis=0)]), error), solved
 
 
 def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:

@@ -46,7 +46,7 @@ class Tried:
     low: Floats
     low_slope: Floats
 
-    def of(self, chosen: Mask) -> Tried:
+    def of(self, chosen: Mask | slice) -> Tried:
         """Some of the candidates."""
         return Tried(self.seen[chosen], self.slope[chosen], self.low[chosen], self.low_slope[chosen])
 

@@ -299,7 +299,8 @@ def what_it_leaves(results: Results, how: How) -> str:
     beside = f"; {', '.join(others)}" if others else ""
     return (
         f"The best {shape} tip reliefs leave {te[f'{shape} tip relief']:.3g} um {before}{beside}. "
-        f"{best.agreeing} of {best.starts} searches end there, after a scan of {best.candidates:,} reliefs."
+        f"Two independent searches after a scan of {best.candidates:,} reliefs find the least to "
+        f"{best.least_error / best.least if best.least > 0.0 else 0.0:.1g} of it."
     )
 
 

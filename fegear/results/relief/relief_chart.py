@@ -136,8 +136,8 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
     left = float(getattr(best, metric)[-1])
     values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "left at the largest load"))
     settings = {
-        "shape": asked.shape, "metric": metric, "candidates": best.candidates, "evaluations": best.evaluations,
-        "starts": best.starts, "agreeing": best.agreeing,
+        "shape": asked.shape, "metric": metric, "candidates": best.candidates, "starts": best.starts,
+        "apart": f"two independent searches by {best.least_error * 1e6:.1g} um",
     }  # fmt: skip
     return Outcome(data, tables, tuple(values), settings, figures=_chart_figures(name, data))
 
