@@ -24,7 +24,8 @@ import numpy as np
 
 from fegear.contact.fourier import Panels
 from fegear.design.charts import Bench, bench
-from fegear.design.tip_relief.descent import Aim, Limits, descend, refine
+from fegear.design.tip_relief.descent import Aim, Limits, descend
+from fegear.design.tip_relief.ground import refine
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import deepest_relief
