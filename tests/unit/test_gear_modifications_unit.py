@@ -5,8 +5,8 @@ import pytest
 
 from fegear.case.reading import build_scene
 from fegear.engine.outcome import Value
+from fegear.output.report.run import rated_columns
 from fegear.results.gear.geometry import drawing_of, pair_table
-from fegear.results.rating.rating import rated_columns
 
 
 def table(**keys):

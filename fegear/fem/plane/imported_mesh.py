@@ -15,9 +15,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.mesh import SectorMesh
@@ -196,6 +193,7 @@ def check_triangles(points: Array, cells: Index, module: float, refuse: Refuse) 
         [m], for the places in messages.
     refuse : callable
     """
+    from scipy.spatial import cKDTree
 
     def where(place: Array) -> str:
         x, y = place[:2] * module * 1e3
@@ -230,6 +228,9 @@ def check_triangles(points: Array, cells: Index, module: float, refuse: Refuse) 
 
 def _check_boundary(points: Array, corners: Index, where: Callable[[Array], str], refuse: Refuse) -> None:
     """Refuse edges of three elements, and any boundary but one closed line."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     ends = np.sort(np.hstack([corners[[0, 1]], corners[[1, 2]], corners[[2, 0]]]), axis=0)
     edges, times = np.unique(ends, axis=1, return_counts=True)
     if (times > 2).any():
@@ -298,6 +299,8 @@ def check_fillet(
     points: Array, edges: Mapping[str, Index], tooth: InvoluteTooth, module: float, refuse: Refuse
 ) -> None:
     """Refuse fillets that the gear's rack does not cut; arguments as of `check_gear`."""
+    from scipy.spatial import cKDTree
+
     outline = [piece.points(np.linspace(piece.start, piece.end, 4001)) for piece in tooth.outline.values()]
     tree = cKDTree(np.hstack(outline).T)
     for name, sign in (("fillet", 1.0), ("back_fillet", -1.0)):

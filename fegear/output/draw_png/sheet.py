@@ -116,7 +116,9 @@ class Sheet:
             axes = self.made.add_axes((0.1, 0.1, 0.8, 0.8), label=str(i))
             set_scales(axes, panel)
             images.append(draw_items(axes, panel))
-            axes.set_title(words(title), pad=6 + 72 * _SECOND * bool(panel.x.second))
+            # Left to itself a title looks for what stands above its panel, which lays every label out once more.
+            above = None if panel.x.second or panel.camera else 1.0
+            axes.set_title(words(title), y=above, pad=6 + 72 * _SECOND * bool(panel.x.second))
             joined = self._joined(*divmod(i, self.columns))
             dress(axes, panel, joined=joined, beside=self._beside(i))
             drawn.append(axes)

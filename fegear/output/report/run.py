@@ -15,6 +15,7 @@ import fegear
 from fegear.engine.citation import bibliography
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Mark, Points
+from fegear.engine.table import Column
 from fegear.geometry.pair import MEMBERS
 from fegear.output.file_names import file_name
 from fegear.output.numbers import plain_number
@@ -43,7 +44,6 @@ from fegear.output.tables import table_file
 from fegear.results.gear.drawing import pair_figure
 from fegear.results.gear.geometry import MEANINGS as MODIFICATIONS
 from fegear.results.gear.geometry import drawing_of, lone_table, pair_table, pair_values
-from fegear.results.rating.rating import rated_columns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -296,6 +296,30 @@ def gear_sections(results: Results) -> tuple[Section, ...]:
     if lone is not None:
         sections.append(Section("Gear data", _blocks(lone, (), written)))
     return tuple(sections)
+
+
+#: Values of the result ``rating`` that the data sheet shows, in its order.
+_SHOWN = {
+    "S_H": "safety against pitting S_H, ISO 6336",
+    "S_H_computed": "S_H, computed load distribution",
+    "S_H_spectrum": "S_H under the spectrum",
+    "S_H_agma": "S_H, AGMA 2101",
+    "S_F": "safety against tooth breakage S_F, ISO 6336",
+    "S_F_computed": "S_F, computed root stress",
+    "S_F_spectrum": "S_F under the spectrum",
+    "S_F_agma": "S_F, AGMA 2101",
+}
+
+
+def rated_columns(values: Sequence[Value], pair: str) -> tuple[Column, ...]:
+    """A column for every safety of driver and driven among the values of a run; none without a rating."""
+    known = {value.name: value.value for value in values}
+    rows = {key: [known.get(f"{pair}.{member}.{key}", np.nan) for member in MEMBERS] for key in _SHOWN}
+    return tuple(
+        Column(key, np.array([round(one, 3) for one in row]), "", _SHOWN[key])
+        for key, row in rows.items()
+        if not np.isnan(row).any()
+    )
 
 
 def _loaded(results: Results, name: str) -> tuple[SheetGroup, ...]:

@@ -11,15 +11,12 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.base.errors import RangeError
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import RING
 from fegear.results.gear.stiffness import needs_solution, solution_of
@@ -37,13 +34,10 @@ from fegear.results.rating.rating_tables import (
 from fegear.results.rating.shared_load import inputs_with_shares, needs_shares, rated_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from fegear.case.built.agma_pair import AgmaInputs
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.contact.wide.rated import Computed
-    from fegear.engine.outcome import Value
     from fegear.engine.stage import Upstream, Work
     from fegear.formulas.agma.agma2101 import AgmaRating
     from fegear.formulas.iso6336.conditions import Conditions, Factor, PairRating, Replacement
@@ -321,30 +315,6 @@ def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
     if "computed" in scene.case.rating.beside:
         found += citing(*RING)(scene, _name)
     return tuple(found)
-
-
-#: Values of the result ``rating`` that the data sheet shows, in its order.
-_SHOWN = {
-    "S_H": "safety against pitting S_H, ISO 6336",
-    "S_H_computed": "S_H, computed load distribution",
-    "S_H_spectrum": "S_H under the spectrum",
-    "S_H_agma": "S_H, AGMA 2101",
-    "S_F": "safety against tooth breakage S_F, ISO 6336",
-    "S_F_computed": "S_F, computed root stress",
-    "S_F_spectrum": "S_F under the spectrum",
-    "S_F_agma": "S_F, AGMA 2101",
-}
-
-
-def rated_columns(values: Iterable[Value], pair: str) -> tuple[Column, ...]:
-    """A column for every safety of driver and driven among the values of a run; none without a rating."""
-    known = {value.name: value.value for value in values}
-    rows = {key: [known.get(f"{pair}.{member}.{key}", np.nan) for member in MEMBERS] for key in _SHOWN}
-    return tuple(
-        Column(key, np.array([round(one, 3) for one in row]), "", _SHOWN[key])
-        for key, row in rows.items()
-        if not np.isnan(row).any()
-    )
 
 
 #: K_v above which the load is a trifle beside what flank deviations excite: teeth part and meet again.
