@@ -250,3 +250,12 @@ def test_modes_are_followed_through_crossings():
     assert np.abs(residual).max() < 1e-6 * np.abs(exact.stiffness @ followed.shapes[1]).max()
     fine = follow_modes(build, np.linspace(0.5, 2.0, 302))
     assert fine.ratio[-1] == pytest.approx(followed.ratio[1], rel=1e-10), "the way there does not matter"
+
+
+def test_a_contact_at_the_end_of_the_face_may_be_rounded():
+    """Digits that a file or another processor rounds are no reason to refuse a contact; more is."""
+    for rounded in (1.0 + 1e-12, -1.0 - 1e-12):
+        assert partial_face_mu(rounded) == pytest.approx(1.0, abs=1e-11)
+        MeshParameters(3e8, rounded, partial_face_mu(rounded))
+    with pytest.raises(RangeError, match="within"):
+        partial_face_mu(1.0 + 1e-6)

@@ -61,11 +61,15 @@ class MeshParameters:
         )
 
 
+#: By how much a contact at the very end of the face may lie beyond it: what a number in a file is rounded by.
+_ROUNDED = 1e-9
+
+
 def partial_face_mu(kappa: float) -> float:
     """Rotary parameter mu = kappa^2 + (1 - abs(kappa))^2/3 of a uniform contact that reaches one end of the face."""
-    if not abs(kappa) <= 1.0:
+    if not abs(kappa) <= 1.0 + _ROUNDED:
         raise RangeError("kappa", kappa, "must lie within [-1, 1] for a contact on the face")
-    return kappa**2 + (1.0 - abs(kappa)) ** 2 / 3.0
+    return kappa**2 + max(0.0, 1.0 - abs(kappa)) ** 2 / 3.0
 
 
 def mesh_parameters(

@@ -24,8 +24,8 @@ QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
 #: order; learned from random gears and rings (docs/numerics.md).
 _SHARE, _NEIGHBOUR_SHARE = {2: 0.1, 3: 0.25, 4: 1.3}, {2: 0.5, 3: 2.0, 4: 5.0}
 #: Root stress of the lower order lags behind the more, the shorter the edges: the part is this over the number of edges
-#: along the fillet, and no more than all of it.
-_STRESS_SHARE = 5.0
+#: along the fillet, and no more than all of it; no less than the other, for both orders have the edges' own curves.
+_STRESS_SHARE, _LEAST_STRESS_SHARE = 5.0, 0.2
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
@@ -144,7 +144,8 @@ class Estimate:
         # its difference vanish by chance.
         least = _USUAL * (max(usual.values()) if side == "compression" else usual[side])
         edges = self.fine.fillets["tension"].arc.size / self.fine.flank.order
-        return min(_STRESS_SHARE / edges, 1.0) * np.maximum(difference, least * np.abs(value))
+        share = np.clip(_STRESS_SHARE / edges, _LEAST_STRESS_SHARE, 1.0)
+        return np.asarray(share * np.maximum(difference, least * np.abs(value)))
 
     @cached_property
     def _neighbours(self) -> dict[int, Array]:
