@@ -107,6 +107,23 @@ def test_a_ring_is_as_stiff_as_a_rack_and_moves_as_its_rim_does(pairs):
         assert reduced_mass(of_pair(pair, tuple(bodies))) == pytest.approx(masses[0], rel=1e-12)
 
 
+def test_c_prime_of_rings_goes_on_below_the_stated_shifts_and_says_so():
+    """Rings of planetary sets lie below x_1 + x_2 = -0.5; the series goes on smoothly, external pairs are refused."""
+
+    def of(x_ring, wheel=-65):
+        return stiffness((23, wheel), 1.5, profile_shift=(0.3, x_ring))
+
+    inside, edge, beyond = (of(x) for x in (-0.7, -0.8, -0.9))
+    assert (inside.remark, edge.remark) == ("", "")
+    assert "x_1 + x_2 = -0.6 lies outside -0.5 to 2" in beyond.remark
+    steps = [1e9 / two.theoretical - 1e9 / one.theoretical for one, two in ((inside, edge), (edge, beyond))]
+    assert steps[1] - steps[0] == pytest.approx(2.0 * 0.00182 * 0.1**2, rel=1e-6)  # Table 9: only x_2^2 is curved
+    assert beyond.single < edge.single < 1.02 * beyond.single
+    assert "2.3 lies outside" in of(2.0).remark
+    with pytest.raises(RangeError, match=r"between -0\.5 and 2"):
+        of(-0.9, wheel=65)
+
+
 def test_thin_rims_of_rings_weaken_their_roots():
     assert ring_rim_factor(3.5) == 1.0
     assert ring_rim_factor(3.4999) == pytest.approx(1.0, abs=4e-3)  # the standard's curve ends at .9963
