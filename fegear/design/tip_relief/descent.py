@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.trials import Trials, Tried
 
 #: What a round may leave of its own linear problem's promise, and what it must promise to go on, over the value.
-_GAP, _ENDED = 0.1, 1e-3
+_GAP, _ENDED = 0.01, 3e-4
 _ROUND_OFF = 1e-10
 #: What leaving more than allowed costs, in mean transmission errors of removal, for each time the allowed.
 _FINE = 1000.0

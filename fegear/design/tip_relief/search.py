@@ -51,8 +51,8 @@ _BEST, _STARTS, _APART = 4000, 64, 2
 #: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
 #: harmonics need good quadrature.
 _STAGES = {
-    "peak_to_peak": ((56, 64, 0.15, 6), (56, 12, 0.15, 4)),
-    "effective_error": ((0, 48, 0.15, 6), (0, 12, 0.15, 4)),
+    "peak_to_peak": ((56, 64, 0.15, 8), (56, 12, 0.15, 6)),
+    "effective_error": ((0, 48, 0.15, 10), (0, 16, 0.15, 7)),
 }
 #: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.
 _GROUNDS, _CHOSEN = 3, 3
@@ -311,7 +311,7 @@ def _among_equals(
         for some, most, apart in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _VALLEY))
     ])  # fmt: skip
     aim = Aim(np.tile(_RULE, (starts.shape[0], 1)), allowed)
-    p, values, solved = descend(trials.exact, trials, starts, limits, 0.1, 5, aim)
+    p, values, solved = descend(trials.exact, trials, starts, limits, 0.1, 7, aim)
     known = np.concatenate([p[values - p / unit @ _RULE < _WITHIN], equals])
     known = _driver_deeper(known) if like else known
     fewest = known[_apart(known, known / unit @ _RULE, limits, _CHOSEN)]
