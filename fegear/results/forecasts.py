@@ -14,7 +14,6 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
-from fegear.case.built.train import build_train, train_inputs
 from fegear.engine.citation import Citation
 from fegear.engine.stage import Forecast
 
@@ -72,6 +71,8 @@ def sizes(scene: Scene) -> tuple[int, int]:
 
 def periods(scene: Scene) -> int:
     """Periods of the fastest mesh after which all meshes stand as before."""
+    from fegear.case.built.train import build_train, train_inputs
+
     orders = [Fraction(order) for order in build_train(train_inputs(scene)).mesh_orders]
     parts = [1 / order for order in orders]
     turns = Fraction(math.lcm(*(p.numerator for p in parts)), math.gcd(*(p.denominator for p in parts)))

@@ -23,6 +23,16 @@ make_plan(scene, STAGES)
 print(*(m.removeprefix("fegear.results.") for m in sys.modules if m.startswith("fegear.results.")))
 """
 
+PLANNED = """
+import sys
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan, plan_lines
+from fegear.results.catalogue import STAGES
+scene = read_scene(sys.argv[1], [])
+list(plan_lines(scene, make_plan(scene, STAGES)))
+print(*(m.removeprefix("fegear.") for m in sys.modules if m.startswith("fegear.")))
+"""
+
 
 def test_every_entry_finds_a_stage_that_is_named_after_it():
     homes = [entry.home for entry in STAGES.entries]
@@ -50,6 +60,13 @@ def test_a_plan_imports_no_result_that_it_does_not_need():
     homes = {entry.home.rpartition(".")[0] for entry in STAGES.entries}
     # The stages of a solved gear, plane or wide, and what says where the contacts of its pairs are.
     assert loaded & homes <= {"gear.stiffness", "gear.stiffness_over_face", "pair.loaded_pair"}
+
+
+def test_a_plan_of_plane_gears_imports_no_mechanics_of_other_cases():
+    """Shafts, measured flanks, wide pairs and motion took a tenth of the start of a case that has none of them."""
+    ran = subprocess.run([sys.executable, "-c", PLANNED, str(CASE)], capture_output=True, text=True, check=True)
+    others = ("shafts.", "dynamics.", "contact.wide.", "formulas.iso1328", "case.built.measured_flanks")
+    assert not [name for name in ran.stdout.split() if name.startswith(others)]
 
 
 def test_stages_at_hand_are_a_catalogue_too():

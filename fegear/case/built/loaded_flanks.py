@@ -10,7 +10,7 @@ from fegear.base.errors import InputError
 from fegear.case.built.flank_errors import cutter_modification, flank_errors
 from fegear.case.built.flank_modifications import gear_face
 from fegear.case.built.loaded_pair import build_relief
-from fegear.case.built.pair_inputs import gear_flanks, gear_name
+from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_flanks, gear_name
 from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear
 from fegear.case.effects import EffectsPart
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.pair import GearPair
 
-#: Effects that change a pair with a width.
-FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0
 

@@ -14,7 +14,6 @@ from fegear.base.errors import FegearError, InputError
 from fegear.base.tally import tallying
 from fegear.case.built.loaded_pair import relieved, spaced
 from fegear.case.built.pair_inputs import EFFECTS
-from fegear.case.built.train import motion_model
 from fegear.contact.loaded_teeth import Neglected
 from fegear.geometry.pair import MEMBERS
 
@@ -277,6 +276,7 @@ def _loaded(data: GearTrain) -> list[int]:
 
 def _changes(asked: MotionInputs, data: GearTrain, state: SteadyState) -> list[FactorChange]:
     """One motion with one effect more, at the speed of a state without it."""
+    from fegear.case.built.train import motion_model
     from fegear.dynamics.motion.steady_state import steady_state
 
     speed = state.model.speed

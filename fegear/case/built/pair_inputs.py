@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.built.measured_flanks import measured_gear
 from fegear.case.built.rated_duty import bore_remarks, width_remarks
 from fegear.case.effects import EffectsPart
 from fegear.case.part import at
@@ -39,6 +38,8 @@ if TYPE_CHECKING:
 
 #: Effects that change a pair of plane teeth, in the order in which they are reported.
 EFFECTS = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
+#: Effects that change a pair with a width.
+FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
 
 
 #: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.
@@ -169,6 +170,8 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> Flanks:
     spacing, wrong = np.empty(0), {}
     try:
         if part.measured is not None and not drawn:
+            from fegear.case.built.measured_flanks import measured_gear
+
             measured = measured_gear(scene, gear)
             tables = () if measured.relief is None or measured.topography is not None else (measured.relief,)
             if tables or measured.topography is not None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.case.built.pair_inputs import FLANK_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, error_column, value_of

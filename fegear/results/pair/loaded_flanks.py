@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
+from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
 from fegear.case.built.neglected_effects import neglected_remarks
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_name
 from fegear.case.built.shafts import on_shafts
 from fegear.contact.loaded_teeth import Change, Neglected
 from fegear.engine.citation import Citation, citing

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
 from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import EFFECTS, gear_name
+from fegear.case.built.pair_inputs import EFFECTS, FLANK_EFFECTS, gear_name
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.declared import column_of

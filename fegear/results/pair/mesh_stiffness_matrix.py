@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.case.built.pair_inputs import FLANK_EFFECTS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load
+from fegear.case.built.loaded_flanks import check_flanks_to_load
+from fegear.case.built.pair_inputs import FLANK_EFFECTS
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
+from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_name
 from fegear.case.built.shafts import gearbox_of
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
