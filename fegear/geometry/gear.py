@@ -300,6 +300,11 @@ class Gear:
         return moments(self.body.cylinders(outer, inner, self.face_width), self.material.density)
 
     @property
+    def body_in_modules(self) -> GearBody | None:
+        """Rim, web and hub in normal modules, as finite elements take them."""
+        return None if self.body is None else self.body.scaled(1.0 / self.module)
+
+    @property
     def base_pitch(self) -> float:
         """p_bt, across the axis [m]."""
         return self.tooth.base_pitch * self.module

@@ -91,10 +91,11 @@ class GearBody:
                 "change hub_width or hub_offset",
             )  # fmt: skip
         thin = _THINNEST * module
-        if not self.rim_radius <= root_radius - thin:
+        if not thin - _ROUND_OFF * root_radius <= root_radius - self.rim_radius <= root_radius - bore_radius - thin:
             raise GeometryError(
                 "body.rim_thickness", f"{(root_radius - self.rim_radius) * 1e3:.6g} mm",
-                f"must be at least {thin * 1e3:.6g} mm ({_THINNEST:g} modules)",
+                f"must be at least {thin * 1e3:.6g} mm ({_THINNEST:g} modules) and leave as much of the "
+                f"{(root_radius - bore_radius) * 1e3:.6g} mm between bore and root circle for a web",
             )  # fmt: skip
         hubless = abs(self.hub_radius - bore_radius) <= _ROUND_OFF * bore_radius
         if not (hubless or bore_radius + thin <= self.hub_radius) or not self.hub_radius <= self.rim_radius - thin:

@@ -79,7 +79,7 @@ def write_solid(
         rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
         raise InputError("face_positions", f"{off[0] * one * _MM:.6g} mm", rule)
     hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
-    body = None if gear.body is None else gear.body.scaled(1.0 / one)
+    body = gear.body_in_modules
     section = (
         gear_section(dict.fromkeys(range(gear.teeth), mesh))
         if mesh

@@ -141,6 +141,7 @@ def test_mass_and_inertia_are_integrals():
         (body((0.0, 0.1)), "body.web_thickness"),
         (body((-1.0, 1.0), (-0.5, 2.0)), "body.hub"),
         (GearBody(7.8, HUB, (-1.0, 1.0), FACE), "body.rim_thickness"),
+        (GearBody(-1.0, HUB, (-1.0, 1.0), FACE), "body.rim_thickness"),
         (GearBody(RIM, 6.5, (-1.0, 1.0), FACE), "body.hub_radius"),
         (GearBody(RIM, 2.0, (-1.0, 1.0), FACE), "body.hub_radius"),
         (GearBody(math.nan, HUB, (-1.0, 1.0), FACE), "body.rim_thickness"),

@@ -27,6 +27,8 @@ _USUAL_TOLERANCE, _FOLLOWS, _COARSEST, _FINE_TOLERANCE = 1e-2, 0.25, 1.25, 3e-3
 _SECONDS, _BY_WIDTH, _GROWTH = 2.5, 6e-3, 4.0
 #: Of one in slices.
 _SECONDS_OF_SLICES = 0.6
+#: How many times as long one on a web takes.
+_ON_A_WEB = 3.0
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,11 @@ def check_solid_gear(scene: Scene, name: str) -> None:
     InputError
     """
     part = scene.case.gear[name]
-    _source(scene, name)
+    if _source(scene, name) == "slices" and part.body is not None:
+        raise InputError(
+            f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
+            'solve the gear as a solid: write "solid" for "slices"',
+        )  # fmt: skip
     if part.face_width is None:
         raise InputError(
             f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",
@@ -158,7 +164,7 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
             gear.bore_radius / gear.module,
             asked.settings,
             reach=asked.reach,
-            body=None if gear.body is None else gear.body.scaled(1.0 / gear.module),
+            body=gear.body_in_modules,
             cache=cache,
         )
     except RangeError as error:
@@ -166,14 +172,14 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     return found.with_error(cache)
 
 
-def seconds_of_solid_gear(settings: SolidSettings, width: float) -> float:
+def seconds_of_solid_gear(settings: SolidSettings, width: float, *, on_a_web: bool = False) -> float:
     """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
     from fegear.fem.solid.settings import SolidSettings
 
     usual, section = SolidSettings().section, settings.section
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
     alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + _BY_WIDTH * width**3
-    return alone * finer**_GROWTH
+    return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else 1.0)
 
 
 def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:

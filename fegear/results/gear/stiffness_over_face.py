@@ -401,7 +401,8 @@ def _present_solution(influence: SolidInfluence, _asked: SolidGearToSolve) -> Ou
 
 def _solving_forecast(scene: Scene, name: str) -> Forecast:
     settings, gear = solid_settings_of(scene, name), scene.gears[name]
-    return Forecast(asdict(settings), seconds_of_solid_gear(settings, gear.face_width / gear.module))
+    seconds = seconds_of_solid_gear(settings, gear.face_width / gear.module, on_a_web=gear.body is not None)
+    return Forecast(asdict(settings), seconds)
 
 
 SOLID_STIFFNESS = Stage(
