@@ -198,7 +198,8 @@ const fegearGears = (() => {
     switches.append(whichLabel);
     const flanks = document.createElement("canvas"), pressed = document.createElement("p");
     switches.className = "mesh-tools";
-    told.className = pressed.className = "quiet mesh-told";
+    told.className = "quiet mesh-told";
+    pressed.className = "quiet mesh-pressed";
     scale.className = "mesh-scale";
     flanks.className = "flanks";
     flanks.setAttribute("role", "img");

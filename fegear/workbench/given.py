@@ -231,6 +231,7 @@ class GearKeys(TypedDict, total=False):
     spacing_errors: Sequence[Quantity] | Mapping[str, Any]
     tolerance_class: int
     deviations: Mapping[str, Any]
+    measured: Mapping[str, Any]
     helix_angle: Quantity
     hand: Literal["left", "right", "spur"]
     normal_module: Quantity

@@ -31,6 +31,8 @@ CASES, KEPT = ROOT / "cases", Path(__file__).with_suffix("")
 DIGITS, DIGITS_OF_WORDS, DIGITS_OF_ERRORS = 10, 6, 3
 #: Share of an array's largest number below which its digits are noise.
 NOISE = 1e-12
+#: An array without a larger number is the round-off of zero, in the unit in which it is shown.
+ZERO = 1e-10
 
 _NEGLECTED = (
     (re.compile(re.escape(str(ROOT))), "."),
@@ -208,6 +210,11 @@ def _apart(kept, found):
     return max(abs(one - other) for one, other in pairs) / size if size else 0.0
 
 
+def _zero(samples):
+    """Whether all numbers of an array are round-off of what is zero, in the unit in which they are shown."""
+    return bool(samples) and all(isinstance(one, (int, float)) and abs(one) < ZERO for one in samples)
+
+
 def _differences_of_entry(where, kept, found):
     if not isinstance(kept, dict) or not isinstance(found, dict):
         return [] if kept == found else [f"{where}: {kept} was kept, {found} is found"]
@@ -215,6 +222,8 @@ def _differences_of_entry(where, kept, found):
     for key in dict.fromkeys([*kept, *found]):
         old, new = kept.get(key), found.get(key)
         if old == new or key == "sampled":
+            continue
+        if key == "digest" and _zero(kept.get("sampled")) and _zero(found.get("sampled")):
             continue
         share = _apart(kept.get("sampled"), found.get("sampled")) if key == "digest" else _apart(old, new)
         if key == "digest":
