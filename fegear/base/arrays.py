@@ -8,9 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 def same(one: object, other: object) -> bool:
@@ -79,6 +83,34 @@ class ReadOnlyArrays(Alike):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
+
+
+#: Sizes that differ by less than this share are equal: the places of a symmetric thing are, but for round-off.
+_TIE = 1e-9
+
+
+def first_of_largest(values: ArrayLike, axis: int | None = None, tie: float = _TIE) -> Index:
+    """Where the largest of values stands, and the first of those that equal it but for a share of its size.
+
+    With `np.argmax` the last bit decides where a symmetric thing is largest, and another processor says another place.
+
+    Parameters
+    ----------
+    values : array_like
+        Without NaN; -inf never counts.
+    axis : int, optional
+        Along which it is looked for; without one the answer is the place among all of them, as of `np.argmax`.
+    tie : float
+        Share of the largest size below which two values are equal.
+
+    Returns
+    -------
+    ndarray of int
+        Of the shape of `values` without the axis; of shape () without one.
+    """
+    of = np.asarray(values)
+    top = of.max(axis=axis, keepdims=True)
+    return np.asarray(np.argmax(of >= top - tie * np.abs(top), axis=axis))
 
 
 #: Real numbers.

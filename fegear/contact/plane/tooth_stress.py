@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.pair_history import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
@@ -64,7 +65,7 @@ class ToothStress:
 
     def worst(self, i: int) -> int:
         """Position of the largest tension under load number i."""
-        return int(np.argmax(self.tension[:, i]))
+        return int(first_of_largest(self.tension[:, i]))
 
     def error(self, i: int) -> float | None:
         """Estimated error of the largest tension under load number i [Pa]; None where the source does not know it."""
@@ -72,7 +73,7 @@ class ToothStress:
 
     def largest_pressed(self, i: int) -> int | None:
         """Position of the most negative compression under load number i; None where the source knows none."""
-        return None if self.compression is None else int(np.argmin(self.compression[:, i]))
+        return None if self.compression is None else int(first_of_largest(-self.compression[:, i]))
 
     def compression_off(self, i: int) -> float | None:
         """Estimated error of the most negative compression under load number i [Pa]; None if it is not known."""

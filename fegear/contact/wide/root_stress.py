@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import ReadOnlyArrays, first_of_largest
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
 from fegear.contact.wide.lines import base_twist
@@ -60,10 +60,10 @@ class StressOverFace(ReadOnlyArrays):
     value: Array = shown("MPa", "largest tension up the fillet below the loaded flank", name="stress")
     radius: Array = shown("mm", "where it sits, from the axis")
 
-    def largest(self, sign: float) -> tuple[Array, Array]:
-        """Largest (sign 1) or most negative (-1) stress over the face and its place along it, shape (T,) each."""
-        at = np.argmax(sign * self.value, axis=1)
-        return self.value[np.arange(at.size), at], self.z[at]
+    def largest(self, sign: float) -> tuple[Array, Array, Array]:
+        """Largest (sign 1) or most negative (-1) stress over the face, its place along it, its radius; shape (T,)."""
+        tooth, at = np.arange(self.x.size), first_of_largest(sign * self.value, axis=1)
+        return self.value[tooth, at], self.z[at], self.radius[tooth, at]
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
 from fegear.dynamics.train.modes import undamped_modes
 
@@ -130,8 +131,7 @@ def mode_table(model: Model) -> ModeTable:
 
 def _same_way_up(shapes: Array) -> Array:
     """Shapes with the sign that makes the first of their largest components positive."""
-    size = np.abs(shapes)
-    first = np.argmax(size >= (1.0 - _TIE) * size.max(axis=0), axis=0)
+    first = first_of_largest(np.abs(shapes), axis=0, tie=_TIE)
     return np.asarray(shapes * np.sign(shapes[first, np.arange(shapes.shape[1])]))
 
 

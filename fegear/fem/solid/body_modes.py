@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.shown import shown
@@ -134,7 +135,7 @@ def body_modes(
                 shares = [e / sum(energy) for e in energy]
                 moved = np.where(known.number >= 0, u[known.number], 0.0) @ at
                 shape = _polar(section, moved, vertices)
-                top = shape.ravel()[np.argmax(np.abs(shape))]
+                top = shape.ravel()[first_of_largest(np.abs(shape))]
                 found.append(BodyMode(shape / top, n, math.sqrt(max(float(squares[i]), 0.0)), *shares))
     return BodyModes(tuple(found), mesh, known.size)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import ReadOnlyArrays, first_of_largest
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.fem.plane.root_stress import curves_apart, extreme
@@ -270,7 +270,7 @@ def _root(solution: SolidSolution, side: Side, asked: BandsOfTable, module: floa
     flat = stress[0].reshape(stress.shape[1], -1)
     end = np.tile(solution.root_end(0, side, pressed), count)
     value, arc = (x.reshape(count, -1) for x in extreme(flat, fillet.arc, sign, end))
-    best, load = np.argmax(sign * value, axis=0), np.arange(value.shape[1])
+    best, load = first_of_largest(sign * value, axis=0), np.arange(value.shape[1])
     at = arc[best, load]
     beside = [
         np.array([np.interp(at[p], fillet.arc, stress[c, :, best[p], p]) for p in load]).reshape(shape) for c in (1, 2)

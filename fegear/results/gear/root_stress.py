@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark
@@ -85,7 +86,7 @@ class FilletInputs:
 
 def _worst_load(_asked: FilletInputs, upstream: Upstream, _work: Work) -> FilletCurves:
     (table,) = upstream.values()
-    return FilletCurves(table, float(table.radius[int(np.argmax(table.root_tension))]))
+    return FilletCurves(table, float(table.radius[int(first_of_largest(table.root_tension))]))
 
 
 def _present_curves(found: FilletCurves, asked: FilletInputs) -> Outcome:

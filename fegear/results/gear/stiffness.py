@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
 from fegear.case.built.rated_duty import bore_remarks
 from fegear.case.built.tooth_influence import (
@@ -91,7 +92,7 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
         ):
             words = f"{meaning}, load on the pitch circle"
             found.append(value_of(t, key, name, off.item(), si=c.item(), name=f"{key}_at_pitch", meaning=words))
-    for key, largest in zip(_SIDES, (np.argmax(t.root_tension), np.argmin(t.root_compression)), strict=True):
+    for key, largest in zip(_SIDES, map(first_of_largest, (t.root_tension, -t.root_compression)), strict=True):
         words = f"per line load, load at radius {t.radius[largest] * 1e3:.6g} mm"
         error, value = float(t.errors[key][largest]), getattr(t, key)[largest]
         found.append(value_of(t, key, name, error, si=value, name=f"largest_{key}", meaning=words))
@@ -214,7 +215,7 @@ def stiffness_figures(name: str, t: StiffnessTable) -> tuple[Figure, ...]:
     width = f"{t.half_width.min() * 1e3:.4g}"
     if t.half_width.max() > 1.0001 * t.half_width.min():
         width += f" to {t.half_width.max() * 1e3:.4g}"
-    i = int(np.argmax(t.root_tension))
+    i = int(first_of_largest(t.root_tension))
     worst = float(np.max(np.abs(t.errors["c_self"] / t.c_self)))
     return (
         Figure(

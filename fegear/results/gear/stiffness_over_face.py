@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.case.built.rated_duty import bore_remarks
@@ -99,14 +100,14 @@ def _table(name: str, t: SolidTable) -> Table:
 
 def _values(name: str, t: SolidTable) -> tuple[Value, ...]:
     found = []
-    for key, owner, attribute, error, pick in (
-        ("largest_band_c_self", t, "c_self", "c_self", np.argmax),
-        ("smallest_band_c_self", t, "c_self", "c_self", np.argmin),
-        ("largest_band_root_tension", t.root["tension"], "value", "root_tension", np.argmax),
-        ("largest_band_root_compression", t.root["compression"], "value", "root_compression", np.argmin),
+    for key, owner, attribute, error, sign in (
+        ("largest_band_c_self", t, "c_self", "c_self", 1.0),
+        ("smallest_band_c_self", t, "c_self", "c_self", -1.0),
+        ("largest_band_root_tension", t.root["tension"], "value", "root_tension", 1.0),
+        ("largest_band_root_compression", t.root["compression"], "value", "root_compression", -1.0),
     ):
         values = getattr(owner, attribute)
-        i, j = np.unravel_index(int(pick(values)), values.shape)
+        i, j = np.unravel_index(int(first_of_largest(sign * values)), values.shape)
         where = f"per force on a band at radius {t.radius[i] * 1e3:.6g} mm, face position {t.position[j] * 1e3:.6g} mm"
         off = float(t.errors[error][i, j])
         found.append(value_of(owner, attribute, name, off, si=values[i, j], name=key, meaning=where))
@@ -266,7 +267,7 @@ def worst_band(t: SolidTable) -> tuple[int, int]:
     """
     full = t.pressed_half_width >= 0.999 * t.pressed_half_width.max()
     tension = np.where(full[:, None], t.root["tension"].value, -np.inf)
-    i, j = np.unravel_index(int(np.argmax(tension)), tension.shape)
+    i, j = np.unravel_index(int(first_of_largest(tension)), tension.shape)
     return int(i), int(j)
 
 

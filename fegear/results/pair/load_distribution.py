@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import FLANK_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
@@ -130,7 +131,7 @@ def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
     name, found, i = inputs.name, data.found, data.at
     stated, lines = data.stated, data.over.found.lines
     inner = np.where(lines.at_edge, 0.0, data.over.found.pressure[:, :, i])
-    p, s = np.unravel_index(int(inner.argmax()), inner.shape)
+    p, s = np.unravel_index(int(first_of_largest(inner)), inner.shape)
     cells = found.cells.size - 1
     where = f", at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
     averaged = (

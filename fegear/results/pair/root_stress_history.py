@@ -288,10 +288,8 @@ def _stress_values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[V
 
 
 def _places(over: Mapping[Side, StressOverFace]) -> tuple[Column, ...]:
-    tension = over["tension"]
-    pull, press = tension.largest(1.0)[1], over["compression"].largest(-1.0)[1]
-    at = np.argmax(tension.value, axis=1)
-    radius, along = tension.radius[np.arange(at.size), at], "where stress is largest along the face, from its middle"
+    tension, along = over["tension"], "where stress is largest along the face, from its middle"
+    (_, pull, radius), (_, press, _) = tension.largest(1.0), over["compression"].largest(-1.0)
     return (
         column_of(tension, "z", pull, name="stress_face_position", meaning=along),
         column_of(tension, "radius", radius, name="stress_radius", meaning="and its distance from the axis"),

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import ReadOnlyArrays, first_of_largest
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, root_stress_source
 from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import citing
@@ -182,7 +182,7 @@ def _largest(
         values, arc = known.fine.fillet_curve("tension", m).largest(
             along.reshape(-1, along.shape[2]).T, touched[member].ravel()
         )
-        most = int(values.argmax())
+        most = int(first_of_largest(values))
         p, tooth = divmod(most, pairs.size)
         place = np.array([np.interp(arc[most], fillet.arc * m, axis) for axis in one.places["tension"][tooth]])
         radius = float(np.interp(arc[most], fillet.arc * m, fillet.radius * m))
@@ -280,7 +280,7 @@ def _largest_over_face(rooted: RootedLines, force: Array, z: Array, moments: _Mo
     """As ``root-stress-history`` finds it, and where it stands in the picture."""
     pair, member, fillet = rooted.pair, rooted.member, rooted.solution.fillets["tension"]
     one = rooted.stress("tension", force, z)
-    tooth, place = (int(i) for i in np.unravel_index(int(one.value.argmax()), one.value.shape))
+    tooth, place = (int(i) for i in np.unravel_index(int(first_of_largest(one.value)), one.value.shape))
     position, number = rooted.teeth[tooth].tolist()
     shown = int(np.flatnonzero(moments.position == position)[0])
     number -= int(moments.on[shown])
