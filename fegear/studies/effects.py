@@ -17,7 +17,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.tally import tallying
-from fegear.case.effects import EffectsPart
+from fegear.case.effects import EFFECTS, EffectsPart
 from fegear.case.part import nearest
 from fegear.case.reading import build_scene, case_text, read_document
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -96,17 +96,13 @@ def felt_effects(scene: Scene) -> tuple[str, ...]:
     """Effects that the stages of a scene's plan know, on or off."""
     steps = make_plan(scene, STAGES).steps
     known = {effect for step in steps for effect in step.stage.effects_on(scene, step.task.subject)}
-    return tuple(effect for effect in EffectsPart.model_fields if effect in known)
+    return tuple(effect for effect in EFFECTS if effect in known)
 
 
 def switch(document: Document, effect: str, *, on: bool) -> Document:
     """A case's document with an effect switched; data that have a meaning only with it go when it is switched off."""
-    effects = dict(document.get("effects", {}))
-    if effect == "hertz":
-        effects[effect] = "load-dependent" if on else "none"
-    else:
-        effects[effect] = on
-    changed = {**document, "effects": effects}
+    state = EFFECTS[effect].on if on else EffectsPart.model_fields[effect].default
+    changed = {**document, "effects": {**document.get("effects", {}), effect: state}}
     if effect == "misalignment" and not on:
         changed["pair"] = _without(document["pair"], "misalignment")
     if effect == "contact_loss" and not on and "train" in document:
@@ -184,67 +180,6 @@ def effect_study(
     return scene, switched, fixed
 
 
-@dataclass(frozen=True, slots=True)
-class EffectFact:
-    """What there is to know of an effect.
-
-    Parameters
-    ----------
-    changes : str
-        What it changes.
-    needs : str
-        What it needs.
-    kernels : tuple of str
-        Kernels of `fegear.base.tally.KERNELS` that run only with it, in scenes where nothing else calls for them.
-    """
-
-    changes: str
-    needs: str
-    kernels: tuple[str, ...]
-
-
-FACTS: dict[str, EffectFact] = {
-    "neighbour_coupling": EffectFact(
-        "a loaded tooth deflects its neighbours and stresses their roots",
-        'compliance source "fe" of plane teeth',
-        ("neighbours",),
-    ),
-    "hertz": EffectFact(
-        "contacts widen with their load (`linear`: as wide as under the nominal load)",
-        "a source with a contact of its own: no table",
-        ("nonlinear steps",),
-    ),
-    "relief": EffectFact(
-        "flanks are modified",
-        "`relief` on a gear; for pairs with a width also `lead`, `bias`, `topography`, and `modification` of the pair",
-        ("reliefs",),
-    ),
-    "spacing_errors": EffectFact("teeth stand unevenly", "`spacing_errors` on a gear", ("spacing errors",)),
-    "corner_contact": EffectFact(
-        "tip corners touch before and after the path of contact",
-        "no `friction`",
-        ("corner searches", "corner contacts"),
-    ),
-    "contact_loss": EffectFact(
-        "teeth part where they would be pulled, and meet off their turn", "results in time", ("changes of contact",)
-    ),
-    "friction": EffectFact(
-        "teeth that slide put a torque on both gears",
-        "`parametric` where it moves, no `neighbour_coupling`, no `corner_contact`",
-        ("friction fits",),
-    ),
-    "parametric": EffectFact(
-        "tooth pairs come and go: the stiffness varies in time", "results in time", ("springs in time",)
-    ),
-    "misalignment": EffectFact(
-        "gears run with errors of axes, lead, profile and centre distance; a gap over the face counts",
-        "`misalignment` of a helical pair or of one with a width, `line_error` of one with a width, or shafts that "
-        "carry both its gears",
-        ("misaligned flanks",),
-    ),
-}
-
-
 def _table(heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)])
@@ -258,7 +193,7 @@ def felt_by(scenes: Iterable[Scene]) -> dict[str, set[str]]:
     scenes : iterable of Scene
         Cases that ask for the results, for which stages of others a stage needs depends on the scene.
     """
-    found: dict[str, set[str]] = {effect: set() for effect in EffectsPart.model_fields}
+    found: dict[str, set[str]] = {effect: set() for effect in EFFECTS}
     for scene in scenes:
         for result in scene.case.results:
             case = scene.case.model_copy(update={"results": [result]})
@@ -270,12 +205,12 @@ def felt_by(scenes: Iterable[Scene]) -> dict[str, set[str]]:
 def stage_table(scenes: Iterable[Scene]) -> str:
     """Effects against the stages that know them, in Markdown, from the stages' own words."""
     rows, felt = [], felt_by(scenes)
-    for effect in EffectsPart.model_fields:
+    for effect, fact in EFFECTS.items():
         stages = [f"`{stage.name}`" for stage in STAGES if effect in stage.effects]
-        fact = FACTS[effect]
         results = ", ".join(f"`{result}`" for result in sorted(felt[effect])) or "none"
-        rows.append((f"`{effect}`", fact.changes, fact.needs, ", ".join(stages) or "none", results))
-    return _table(("effect", "what it changes", "what it needs", "stages that know it", "results it may change"), rows)
+        about = EffectsPart.model_fields[effect].description or ""
+        rows.append((f"`{effect}`", about, fact.needs, ", ".join(stages) or "none", results))
+    return _table(("effect", "what it is", "what it needs", "stages that know it", "results it may change"), rows)
 
 
 def kernel_table() -> str:
@@ -284,7 +219,7 @@ def kernel_table() -> str:
 
     rows = [
         (f"`{effect}`", "; ".join(f"{kernel} ({KERNELS[kernel]})" for kernel in fact.kernels) or "none")
-        for effect, fact in FACTS.items()
+        for effect, fact in EFFECTS.items()
     ]
     return _table(("effect", "kernels that run with it and not without it"), rows)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.geometry import gear as geometry
-    from fegear.workbench.given import GearKeys, Length
+    from fegear.workbench.given import Length
     from fegear.workbench.results import Results
 
 
@@ -54,7 +54,7 @@ class Gear:
     >>> pinion = fegear.Gear(23, "3 mm", profile_shift=0.3, bore_radius="15 mm", face_width="10 mm", name="pinion")
     """
 
-    def __init__(self, teeth: int, module: Length | None = None, *, name: str = "a", **keys: Unpack[GearKeys]) -> None:
+    def __init__(self, teeth: int, module: Length | None = None, *, name: str = "a", **keys: Any) -> None:
         self.name = name_of(name)
         given = {"teeth": teeth, **({} if module is None else {"module": module}), **keys}
         self._keys: dict[str, Any] = taken(given, f"gear.{self.name}")

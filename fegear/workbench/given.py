@@ -11,7 +11,7 @@ import os
 import reprlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -21,8 +21,6 @@ from fegear.base.units import as_text, to_si
 from fegear.case.text_file import named_path
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pint
 
 
@@ -195,64 +193,6 @@ Force: TypeAlias = Quantity
 
 
 Speed: TypeAlias = Quantity
-
-
-class GearKeys(TypedDict, total=False):
-    """Keys of ``[gear.NAME]`` of a case file besides ``teeth`` and ``module``; lists and tables as there."""
-
-    diametral_pitch: Quantity
-    pressure_angle: Quantity
-    profile_shift: float
-    rack: str | Mapping[str, Any]
-    thickness_allowance: Quantity
-    tip_diameter: Quantity
-    tip_radius_rounding: Quantity
-    tip_chamfer: Quantity
-    internal: bool
-    cutter: Mapping[str, Any]
-    bore_radius: Quantity
-    outer_radius: Quantity
-    rim_thickness: Quantity
-    web_thickness: Quantity
-    body: Mapping[str, Any]
-    face_width: Quantity
-    ball_diameter: Quantity
-    plane: Literal["strain", "stress", "auto"]
-    material: Mapping[str, Any]
-    strength: Mapping[str, Any]
-    roughness: Mapping[str, Any]
-    flank_treatment: str
-    tooth_mesh: str
-    tooth_mesh_fillet: Literal["rack", "own"]
-    relief: Mapping[str, Any]
-    lead: Mapping[str, Any]
-    bias: Quantity | Mapping[str, Any]
-    topography: Mapping[str, Any]
-    spacing_errors: Sequence[Quantity] | Mapping[str, Any]
-    tolerance_class: int
-    deviations: Mapping[str, Any]
-    measured: Mapping[str, Any]
-    helix_angle: Quantity
-    hand: Literal["left", "right", "spur"]
-    normal_module: Quantity
-    normal_diametral_pitch: Quantity
-
-
-class PairKeys(TypedDict, total=False):
-    """Keys of ``[pair.NAME]`` of a case file besides its gears, its load, the centre distance and the compliance."""
-
-    speed: Quantity
-    width: Literal["plane", "slices", "solid"]
-    root_stress: Mapping[str, Any]
-    misalignment: Mapping[str, Any]
-    line_error: Mapping[str, Any]
-    modification: Mapping[str, Any]
-    axial_offset: Quantity
-    iso_6336: Mapping[str, Any]
-    lubricant: Mapping[str, Any]
-    friction: Mapping[str, Any]
-    operation: Mapping[str, Any]
-    shafts: Mapping[str, Any]
 
 
 _brief = reprlib.Repr()

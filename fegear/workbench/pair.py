@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Unpack
+from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.geometry.pair import GearPair, Member
-    from fegear.workbench.given import Length, PairKeys
+    from fegear.workbench.given import Length
     from fegear.workbench.results import Results
 
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
@@ -65,7 +65,7 @@ class Pair:
         *,
         compliance: str | Mapping[str, Any] = "fe",
         name: str = "I",
-        **keys: Unpack[PairKeys],
+        **keys: Any,
     ) -> None:
         for role, gear in (("driver", driver), ("driven", driven)):
             if not isinstance(gear, Gear):

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.errors import InputError, shown
+from fegear.case.effects import Described, called_for
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
@@ -27,11 +28,6 @@ if TYPE_CHECKING:
 
 #: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
 DAMPING_RATIO = 0.1
-
-
-#: Keys of gears and pairs with a width that call for the effects relief and misalignment.
-_RELIEFS = ("lead", "bias", "topography", "modification")
-_MISALIGNMENTS = ("misalignment", "line_error")
 
 
 #: What each result is called in the title of its case.
@@ -66,17 +62,7 @@ def ask_of_pair(
     cache: SolutionCache | None,
 ) -> Results:
     """Run the case with the effects that the description calls for and the result knows, and with those given."""
-    keys = [*pair.driver.keys, *pair.driven.keys]
-    called = {
-        "hertz": "load-dependent",
-        "corner_contact": True,
-        "neighbour_coupling": pair.keys["compliance"].get("source", "fe") == "fe",
-        "relief": "relief" in keys or (pair.is_wide and bool({*_RELIEFS} & {*keys, *pair.keys})),
-        "spacing_errors": "spacing_errors" in keys,
-        "misalignment": pair.is_wide and bool({*_MISALIGNMENTS} & {*pair.keys}),
-        "parametric": True,
-        "contact_loss": True,
-    }
+    called = called_for(Described({*pair.driver.keys, *pair.driven.keys}, pair.keys, pair.is_wide))
     given = table(effects, "effects")
     known = cache_of(cache, pair.known)
     scene = _scene(wanted, {**document, "effects": {**called, **given}}, tolerance)
@@ -86,10 +72,8 @@ def ask_of_pair(
     return run_scene(scene, progress=progress, cache=known)
 
 
-def _loaded(
-    pair: Pair, torque: Torque | Iterable[Torque] | None, load: Force | Iterable[Force] | None
-) -> dict[str, Any]:
-    """The pair's document under its load or loads, along the line of action."""
+def _one_load(pair: Pair, torque: object, load: object) -> None:
+    """Refuse what is no pair, and both loads or none."""
     if not isinstance(pair, Pair):
         raise InputError("pair", shown(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
     if (torque is None) == (load is None):
@@ -97,6 +81,13 @@ def _loaded(
             "torque", "(not given)" if torque is None else "(given)", "must be given, or load instead",
             'write torque="90 N*m" on the driver, or load="3 kN" along the line of action',
         )  # fmt: skip
+
+
+def _loaded(
+    pair: Pair, torque: Torque | Iterable[Torque] | None, load: Force | Iterable[Force] | None
+) -> dict[str, Any]:
+    """The pair's document under its load or loads, along the line of action."""
+    _one_load(pair, torque, load)
     given, dimension = (load, "force") if torque is None else (torque, "torque")
     key = "load" if torque is None else "torque"
     several = listed(given, key)
@@ -398,13 +389,7 @@ def rating(
     Results
         Tables ``rating_<pair>``, ``rating_safety_<pair>``, values ``<pair>.driver.S_H``, ``<pair>.driver.S_F``, ...
     """
-    if not isinstance(pair, Pair):
-        raise InputError("pair", shown(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
-    if (torque is None) == (load is None):
-        raise InputError(
-            "torque", "(not given)" if torque is None else "(given)", "must be given, or load instead",
-            'write torque="90 N*m" on the driver, or load="3 kN" along the line of action',
-        )  # fmt: skip
+    _one_load(pair, torque, load)
     given: dict[str, Any] = {"torque": torque, "load": load, "speed": speed, "operation": operation}
     document = pair.document(**{key: value for key, value in given.items() if value is not None})
     document["rating"] = {"beside": texts(beside, "beside")}

@@ -267,16 +267,6 @@ def test_a_helical_pair_is_described_and_refused_where_no_case_file_could_ask():
         spur.flanks  # noqa: B018
 
 
-def test_type_checkers_know_the_keys_of_the_case():
-    from fegear.case.gear import GearPart
-    from fegear.case.pair import PairPart
-    from fegear.workbench.given import GearKeys, PairKeys
-
-    assert set(GearKeys.__annotations__) | {"teeth", "module"} == set(GearPart.model_fields)
-    own = {"driver", "driven", "centre_distance", "compliance", "load", "loads", "torque"}
-    assert set(PairKeys.__annotations__) | own == set(PairPart.model_fields)
-
-
 def outline(path) -> np.ndarray:
     """Corners of the drawn tooth [mm]."""
     ezdxf = pytest.importorskip("ezdxf")

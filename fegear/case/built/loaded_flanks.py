@@ -13,7 +13,6 @@ from fegear.case.built.loaded_pair import build_relief
 from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_flanks, gear_name
 from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear
-from fegear.case.effects import EffectsPart
 from fegear.case.part import at
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_load
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from fegear.case.built.flank_errors import FlankErrors
     from fegear.case.built.flank_modifications import FaceModifications
     from fegear.case.built.pair_inputs import Flanks
+    from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.shaft_gaps import ShaftGaps
@@ -139,7 +139,7 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
-    own = EffectsPart(**{effect: getattr(effects, effect) for effect in FLANK_EFFECTS})
+    own = effects.only(FLANK_EFFECTS)
     faces = gear_face(scene, first.gear), gear_face(scene, second.gear)
     errors = flank_errors(scene, name)
     nominal = part.normal_load(pair) or math.nan

@@ -13,7 +13,6 @@ import numpy as np
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.rated_duty import bore_remarks, width_remarks
-from fegear.case.effects import EffectsPart
 from fegear.case.part import at
 from fegear.case.relief import ReliefPart
 from fegear.case.text_file import read_columns
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.base.arrays import Array
+    from fegear.case.effects import EffectsPart
     from fegear.case.pair import CompliancePart
     from fegear.case.reading import Scene
     from fegear.case.relief import ReliefTablePart
@@ -143,7 +143,7 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
-    own = EffectsPart(**{effect: getattr(effects, effect) for effect in EFFECTS})
+    own = effects.only(EFFECTS)
     table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
     nominal = part.normal_load(pair) or math.nan
     assumed = effect_remarks(scene, name)
