@@ -38,6 +38,11 @@ class Effect:
         Kernels of `fegear.base.tally.KERNELS` that run only with it, in scenes where nothing else calls for them.
     called : callable
         Whether a question about a pair, asked without a case file, calls for it.
+    of : {"teeth", "flanks", "motion"}
+        Whether it is about how teeth give way and touch, about modifications and errors that their flanks have, or
+        about how a train moves.
+    plane : bool
+        Whether plane teeth know it, as those with a width do.
     on : bool or str
         Value that switches it on.
     """
@@ -45,6 +50,8 @@ class Effect:
     needs: str
     kernels: tuple[str, ...]
     called: Callable[[Described], bool]
+    of: Literal["teeth", "flanks", "motion"] = "teeth"
+    plane: bool = True
     on: bool | str = True
 
 
@@ -55,6 +62,9 @@ def _always(_pair: Described) -> bool:
 class EffectsPart(Part):
     """Physical effects by name."""
 
+    corner_contact: Annotated[bool, Effect("no `friction`", ("corner searches", "corner contacts"), _always)] = Field(
+        default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
+    )
     neighbour_coupling: Annotated[
         bool,
         Effect(
@@ -76,25 +86,24 @@ class EffectsPart(Part):
             "pair",
             ("reliefs",),
             lambda pair: pair.has("relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())),
+            of="flanks",
         ),
     ] = Field(default=False, description="Whether profile and flank modifications count.")
     spacing_errors: Annotated[
-        bool, Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors"))
+        bool,
+        Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors"), of="flanks"),
     ] = Field(default=False, description="Whether spacing errors of the teeth count.")
-    corner_contact: Annotated[bool, Effect("no `friction`", ("corner searches", "corner contacts"), _always)] = Field(
-        default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
-    )
-    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _always)] = Field(
+    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _always, of="motion")] = Field(
         default=False, description="Loss of contact and impacts in motion."
     )
     friction: Annotated[
         bool,
         Effect(
             "`parametric` where it moves, no `neighbour_coupling`, no `corner_contact`", ("friction fits",),
-            lambda _pair: False,
+            lambda _pair: False, of="motion",
         ),
     ] = Field(default=False, description="Sliding friction between the teeth.")  # fmt: skip
-    parametric: Annotated[bool, Effect("results in time", ("springs in time",), _always)] = Field(
+    parametric: Annotated[bool, Effect("results in time", ("springs in time",), _always, of="motion")] = Field(
         default=False, description="Whether the mesh stiffness varies in time."
     )
     misalignment: Annotated[
@@ -104,6 +113,8 @@ class EffectsPart(Part):
             "carry both its gears",
             ("misaligned flanks",),
             lambda pair: pair.wide and pair.has("misalignment", "line_error"),
+            of="flanks",
+            plane=False,
         ),
     ] = Field(default=False, description="Whether misalignment and line errors of a pair count.")
 
@@ -129,6 +140,15 @@ EFFECTS: dict[str, Effect] = {
     name: next(one for one in field.metadata if isinstance(one, Effect))
     for name, field in EffectsPart.model_fields.items()
 }
+
+
+#: Effects that change loaded pairs: those with a width, and those of plane teeth.
+WIDE_EFFECTS = tuple(name for name, effect in EFFECTS.items() if effect.of != "motion")
+PLANE_EFFECTS = tuple(name for name in WIDE_EFFECTS if EFFECTS[name].plane)
+#: Those of plane teeth that a pair without modifications and errors has.
+AT_REST = tuple(name for name in PLANE_EFFECTS if EFFECTS[name].of == "teeth")
+#: Those of wide pairs by which their flanks leave gaps.
+GAPS = tuple(name for name in WIDE_EFFECTS if EFFECTS[name].of == "flanks")
 
 
 def called_for(pair: Described) -> dict[str, bool | str]:

@@ -10,9 +10,10 @@ from fegear.base.errors import InputError
 from fegear.case.built.flank_errors import cutter_modification, flank_errors
 from fegear.case.built.flank_modifications import gear_face
 from fegear.case.built.loaded_pair import build_relief
-from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_flanks, gear_name
+from fegear.case.built.pair_inputs import gear_flanks, gear_name
 from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear
+from fegear.case.effects import WIDE_EFFECTS
 from fegear.case.part import at
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_load
@@ -40,7 +41,7 @@ class FlanksToLoad:
     ----------
     pair : GearPair
     effects : EffectsPart
-        `FLANK_EFFECTS`; all others are off.
+        `WIDE_EFFECTS`; all others are off.
     flanks : tuple of (Flanks, Flanks)
         Of driver and driven.
     faces : tuple of (FaceModifications, FaceModifications)
@@ -139,7 +140,7 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
-    own = effects.only(FLANK_EFFECTS)
+    own = effects.only(WIDE_EFFECTS)
     faces = gear_face(scene, first.gear), gear_face(scene, second.gear)
     errors = flank_errors(scene, name)
     nominal = part.normal_load(pair) or math.nan

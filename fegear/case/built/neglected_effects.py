@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.errors import FegearError, InputError
 from fegear.base.tally import tallying
 from fegear.case.built.loaded_pair import relieved, spaced
-from fegear.case.built.pair_inputs import EFFECTS
+from fegear.case.effects import AT_REST, PLANE_EFFECTS
 from fegear.contact.loaded_teeth import Neglected
 from fegear.geometry.pair import MEMBERS
 
@@ -128,7 +128,7 @@ def neglected_effects(
     others: dict[str, Engagement] = {}
     wrong: dict[str, InputError] = {}
     with tallying():  # what the estimate runs is no part of the case's own work
-        for effect in _off(asked.effects, EFFECTS):
+        for effect in _off(asked.effects, PLANE_EFFECTS):
             try:
                 other = with_effect(asked, pair.engagement, effect)
             except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
@@ -188,7 +188,7 @@ def neglected_in_design(
 
     found: dict[str, tuple[str, ...]] = {}
     with tallying():
-        for effect in _off(asked.effects, ("corner_contact", "neighbour_coupling", "hertz")):
+        for effect in _off(asked.effects, AT_REST):
             other = with_effect(asked, designed, effect)
             if other is None:
                 continue

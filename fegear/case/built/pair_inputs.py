@@ -13,6 +13,7 @@ import numpy as np
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.rated_duty import bore_remarks, width_remarks
+from fegear.case.effects import PLANE_EFFECTS
 from fegear.case.part import at
 from fegear.case.relief import ReliefPart
 from fegear.case.text_file import read_columns
@@ -34,12 +35,6 @@ if TYPE_CHECKING:
     from fegear.fem.plane.gear import GearInfluence
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
-
-
-#: Effects that change a pair of plane teeth, in the order in which they are reported.
-EFFECTS = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
-#: Effects that change a pair with a width.
-FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
 
 
 #: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.
@@ -143,7 +138,7 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
-    own = effects.only(EFFECTS)
+    own = effects.only(PLANE_EFFECTS)
     table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
     nominal = part.normal_load(pair) or math.nan
     assumed = effect_remarks(scene, name)

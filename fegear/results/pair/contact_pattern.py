@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.case.built.pair_inputs import FLANK_EFFECTS
+from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
@@ -125,7 +125,7 @@ CONTACT_PATTERN = Stage(
     compute=_compute,
     present=_present,
     needs=needs_flanks,
-    effects=FLANK_EFFECTS,
+    effects=WIDE_EFFECTS,
     cites=citing(Citation("iso-21771", "contact lines in the plane of action", "5.4")),
     forecast=lambda _scene, _name: forecasts.constant(0.1),
 )

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import EFFECTS
+from fegear.case.effects import PLANE_EFFECTS
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task
@@ -134,7 +134,7 @@ DEFORMED_IN_MESH = Stage(
     compute=_deformed,
     present=lambda data, _inputs: Outcome(data),
     check=_check_compliance,
-    effects=EFFECTS,
+    effects=PLANE_EFFECTS,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.05),
     internal=True,

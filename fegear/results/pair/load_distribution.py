@@ -13,7 +13,7 @@ import numpy as np
 
 from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import FLANK_EFFECTS
+from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, error_column, value_of
@@ -324,7 +324,7 @@ LOAD_DISTRIBUTION = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=FLANK_EFFECTS,
+    effects=WIDE_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
 )

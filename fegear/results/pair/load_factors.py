@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
-from fegear.case.built.pair_inputs import FLANK_EFFECTS
+from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, error_column, value_of
@@ -176,7 +176,7 @@ FLANK_LOAD_FACTORS = Stage(
     compute=_compute,
     present=_present,
     needs=_needs,
-    effects=FLANK_EFFECTS,
+    effects=WIDE_EFFECTS,
     cites=citing(*RING, Citation("iso-6336-1", "face and transverse load factors", "clauses 7 to 9")),
     forecast=_forecast,
 )

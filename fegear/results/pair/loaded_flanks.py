@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
 from fegear.case.built.neglected_effects import neglected_remarks
-from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_name
+from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import on_shafts
+from fegear.case.effects import GAPS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import Change, Neglected
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
 
 #: Where the shafts of a case come from (`fegear.results.shafts.loaded_shafts`).
 _SHAFTS = Task("loaded-shafts", "all")
-#: Effects that keep flanks apart.
-_OF_GAPS = ("relief", "spacing_errors", "misalignment")
 #: Share of the mean transmission error that gaps may be off by without a remark.
 _UNREMARKED = 0.02
 #: How often contact lines may be continued farther along tip edges that turn out to be loaded.
@@ -89,7 +88,7 @@ def load_flanks(
         asked.pair, bodies, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
         usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, cache,
     )  # fmt: skip
-    gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in _OF_GAPS})
+    gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in GAPS})
     found = flanks.solve(asked.loads, gaps, flanks.compliance(asked.nominal))
     for _ in range(_LONGER_EDGES):
         if not found.reaches_the_last_edges:
@@ -121,7 +120,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
         effect: _with_edges(asked, flanks, gaps, over.stated)
         if effect == "corner_contact"
         else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
-        for effect in FLANK_EFFECTS
+        for effect in WIDE_EFFECTS
         if not effects.is_on(effect) and asked.has_data(effect)
     }
     stated, i = over.stated, asked.loads.index(asked.nominal)
@@ -165,7 +164,7 @@ def _with(
     elif effect == "hertz":
         known = replace(known, fixed_half_width=None)
     else:
-        gaps = asked.gaps(**{one: asked.effects.is_on(one) or one == effect for one in _OF_GAPS})
+        gaps = asked.gaps(**{one: asked.effects.is_on(one) or one == effect for one in GAPS})
         if effect == "misalignment" and asked.misaligned != flanks.pair:
             flanks = replace(flanks, pair=asked.misaligned)
             known = flanks.compliance(asked.nominal)
@@ -259,7 +258,7 @@ LOADED_FLANKS = Stage(
     present=_present,
     needs=_needs,
     check=check_flanks_to_load,
-    effects=FLANK_EFFECTS,
+    effects=WIDE_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
 )

@@ -14,7 +14,8 @@ from fegear.case.built.loaded_pair import (
     shifted_sources,
 )
 from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks, whole_ratio_remarks
-from fegear.case.built.pair_inputs import EFFECTS, pair_inputs
+from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.effects import AT_REST, PLANE_EFFECTS
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
@@ -100,7 +101,7 @@ def _at_rest(asked: PairInputs, upstream: Upstream, work: Work) -> Engagement:
     effects = asked.effects
     key = content_key(
         "pair at rest", asked.pair, asked.compliance, asked.table,
-        [effects.neighbour_coupling, effects.hertz, effects.corner_contact],
+        effects.only(AT_REST),
         asked.nominal if effects.hertz == "linear" else None,
         # what is kept holds them, so that no other can have their identity
         [id(influences[gear]) for gear in asked.gears] if influences else [],
@@ -122,9 +123,7 @@ def _present(pair: LoadedPair, inputs: LoadedPairInputs) -> Outcome:
     asked = inputs.asked
     settings: dict[str, object] = {
         "compliance": "; ".join(pair.sources),
-        "hertz": asked.effects.hertz,
-        "neighbour_coupling": asked.effects.neighbour_coupling,
-        "corner_contact": asked.effects.corner_contact,
+        **{effect: getattr(asked.effects, effect) for effect in AT_REST},
         "face_width": pair.engagement.compliance.face_width,
         "nominal_load": pair.nominal,
         "loads": list(pair.loads),
@@ -157,7 +156,7 @@ LOADED_PAIR = Stage(
     compute=_compute,
     present=_present,
     check=check_pair,
-    effects=EFFECTS,
+    effects=PLANE_EFFECTS,
     cites=_cites,
     forecast=_forecast,
     internal=True,

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import EFFECTS, FLANK_EFFECTS, gear_name
+from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.solid_influence import flank_pairs
+from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis
@@ -77,8 +78,8 @@ class Kind:
     check: Callable[[Scene, str], None] = _fine
 
 
-PLANE = Kind("loaded-pair", EFFECTS, needs_solution, check_relief)
-WIDE = Kind("loaded-flanks", FLANK_EFFECTS, needs_solid_solution)
+PLANE = Kind("loaded-pair", PLANE_EFFECTS, needs_solution, check_relief)
+WIDE = Kind("loaded-flanks", WIDE_EFFECTS, needs_solid_solution)
 #: Effects that change a loaded pair of any kind.
 TEETH_EFFECTS = tuple(dict.fromkeys((*PLANE.effects, *WIDE.effects)))
 

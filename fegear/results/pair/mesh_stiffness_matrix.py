@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.case.built.pair_inputs import FLANK_EFFECTS
+from fegear.case.effects import WIDE_EFFECTS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -354,7 +354,7 @@ MESH_STIFFNESS_MATRIX = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=FLANK_EFFECTS,
+    effects=WIDE_EFFECTS,
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
     forecast=lambda _scene, _name: Forecast({}, 0.1),
 )

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
+from fegear.case.effects import PLANE_EFFECTS
 from fegear.case.planetary import set_pair
 from fegear.dynamics.planetary.planet_loads import MeshedSet, force_on, planet_loads
 from fegear.dynamics.planetary.planet_set import CENTRALS
@@ -109,7 +109,7 @@ MESHED_SET = Stage(
     compute=_meshed,
     present=_present_meshed,
     check=_check,
-    effects=EFFECTS,
+    effects=PLANE_EFFECTS,
     cites=citing(Citation("mark", "tooth pairs as springs about the mean load", "section 2")),
     forecast=lambda _scene, _name: forecasts.constant(_TEETH),
     internal=True,

@@ -17,6 +17,7 @@ from fegear.base.errors import InputError, RangeError
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
 from fegear.case.built.pair_inputs import gear_name, pair_inputs
 from fegear.case.design import DesignPart
+from fegear.case.effects import AT_REST
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
@@ -54,10 +55,6 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.engine.table import Table
     from fegear.geometry.pair import GearPair, Member
-
-
-#: What the design knows of the effects; the gears' own reliefs are what it replaces.
-DESIGN_EFFECTS = ("neighbour_coupling", "hertz", "corner_contact")
 
 
 @dataclass(frozen=True)
@@ -424,7 +421,7 @@ RELIEF = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=DESIGN_EFFECTS,
+    effects=AT_REST,
     cites=citing(
         Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.16, 5.4"),
         Citation("lin-townsend-oswald", "linear and parabolic tip relief"),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import declared
+from fegear.case.effects import AT_REST
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
@@ -18,7 +19,7 @@ from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import needs_teeth
-from fegear.results.relief.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
+from fegear.results.relief.relief import ReliefData, design_pairs, design_part
 from fegear.results.relief.relief_tables import tip_values
 
 if TYPE_CHECKING:
@@ -309,7 +310,7 @@ RELIEF_CHART = Stage(
     inputs=_chart_inputs,
     compute=_compute_chart,
     present=_present_chart,
-    effects=DESIGN_EFFECTS,
+    effects=AT_REST,
     cites=_CITES,
     forecast=_chart_forecast,
 )
@@ -321,7 +322,7 @@ ROBUSTNESS = Stage(
     inputs=_robustness_inputs,
     compute=_compute_robustness,
     present=_present_robustness,
-    effects=DESIGN_EFFECTS,
+    effects=AT_REST,
     cites=_CITES,
     forecast=_robustness_forecast,
 )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.case.effects import AT_REST
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, column_over, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -18,7 +19,7 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import needs_teeth
-from fegear.results.relief.relief import DESIGN_EFFECTS, design_pairs, design_part
+from fegear.results.relief.relief import design_pairs, design_part
 
 if TYPE_CHECKING:
     from fegear.case.design import ChartPart
@@ -211,7 +212,7 @@ RELIEF_CURVES = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=DESIGN_EFFECTS,
+    effects=AT_REST,
     cites=citing(Citation("lin-townsend-oswald", "tip reliefs by amount over Delta and length L_n", "Figs. 3 to 6")),
     forecast=_forecast,
 )

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
-from fegear.case.built.pair_inputs import FLANK_EFFECTS, gear_name
+from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of
+from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
 from fegear.engine.citation import Citation, citing
@@ -152,8 +153,8 @@ LOADED_SHAFTS = Stage(
     present=_present,
     needs=_needs,
     check=_check,
-    effects=FLANK_EFFECTS,
-    effects_of=lambda scene, _name: FLANK_EFFECTS if _fed(scene) else ("misalignment",),
+    effects=WIDE_EFFECTS,
+    effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else ("misalignment",),
     forecast=_forecast,
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     internal=True,
