@@ -11,7 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -131,3 +131,25 @@ Complex = NDArray[np.complex128]
 
 #: What holds and what does not.
 Mask = NDArray[np.bool_]
+
+
+def distinct(*places: ArrayLike, within: float = 1e-9) -> Array:
+    """Places in ascending order, once each: of those that only round-off distinguishes the one given first.
+
+    An even grid that meets a given place in all but its last digit has one place there, whatever that digit is.
+
+    Parameters
+    ----------
+    *places : array_like, shapes (n,)
+        The exact ones first.
+    within : float
+        Over the extent of all: nearer ones are the same.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+    """
+    x = np.concatenate([np.atleast_1d(np.asarray(some, dtype=float)) for some in places])
+    order = np.argsort(x, kind="stable")
+    starts = np.flatnonzero(np.append(True, np.diff(x[order]) > within * np.ptp(x)))
+    return x[np.minimum.reduceat(order, starts)]

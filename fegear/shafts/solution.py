@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import distinct
 from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.shown import shown
 from fegear.shafts.beam import carry
@@ -193,7 +194,7 @@ class Deflection:
     def line(self) -> ShaftLine:
         """The whole axis, bearings, steps and forces among its places."""
         shaft, (at, _) = self.loaded.shaft, self._all
-        z = np.unique(np.concatenate([np.linspace(0.0, shaft.length, _PLACES), shaft.steps, at]))
+        z = distinct(shaft.steps, at, np.linspace(0.0, shaft.length, _PLACES))
         return ShaftLine(z, *self.at(z).T)
 
     def bearing_loads(self, lives: tuple[LifeRating | None, ...]) -> BearingLoads:

@@ -366,3 +366,16 @@ def test_the_dynamic_factor_is_smooth_where_a_relief_lets_two_pairs_begin_to_bea
     table = found.tables["dynamic_factor_I"]
     assert table["dynamic_factor"][0] == pytest.approx(1.8887, abs=4e-4)
     assert table["dynamic_factor"][0] <= table["mesh_force_factor"][0]
+
+
+@pytest.mark.last_bit
+def test_forces_where_a_piece_of_a_stiffness_ends_are_those_before_or_behind_it():
+    """At a moment when a tooth takes the number of the next one the force was zero or 600 N by the last bit."""
+    # one tooth after the other: from .3 base pitches on in the first slot, then up to .3 in the second
+    ends = [0.0, 0.3, 0.3, 1.0]
+    bears = tuple(Periodic.through_points(ends, of) for of in ([0.0, 0.0, K, K], [K, K, 0.0, 0.0]))
+    excitation = MeshExcitation(bears, (cosine(5e-8), cosine(5e-8)), slotted=True)
+    found = simulate(MotionModel(two_discs(), (excitation,), 0.8 * NATURAL / 30), 40 * 2 * math.pi / NATURAL)
+    knots, short = found.passage.times * found.packed.time_unit, 1e-7 / NATURAL
+    forces, before, behind = (found.mesh_forces(knots[1:-1] + d)[:, 0] for d in (0.0, -short, short))
+    assert np.minimum(np.abs(forces - before), np.abs(forces - behind)).max() < 1e-4 * 500.0

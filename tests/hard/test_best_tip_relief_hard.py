@@ -163,7 +163,7 @@ def test_no_brute_force_finds_less(z1, z2, addendum, shift, shape, metric):
     # Two independent searches came to the same, or it is said how far they are apart: one may miss the deepest valley.
     assert 0.0 < found.objective_error <= found.least_error
     # What the search costs, by its count of exact load sharings: a tenth of a millisecond each where many go together.
-    assert found.evaluations < 1500
+    assert found.evaluations < 2500  # 16 ends of bands among them
     assert found.objective <= 1.0001 * found.before[0]
 
 

@@ -17,7 +17,7 @@ from fegear.case.built.train import motion_inputs, motion_model
 from fegear.dynamics.motion.motion import simulate
 from fegear.engine.stage import Task
 
-SPEED = 2000.0 * math.pi / 30.0
+SPEED = 8000.0 * math.pi / 30.0
 CASE = {
     "title": "A mesh in another program",
     "results": ["natural-modes"],
@@ -112,7 +112,7 @@ def test_fmpy_turns_it_through_the_teeth_under_both_interfaces(made, kind):
 
 
 def test_one_revolution_moves_as_in_fegear(made):
-    """Bodies that the FMU drives against fegear's own motion, as teeth part and meet again (asked: 1e-3; found: 3e-8).
+    """Bodies that the FMU drives against fegear's own motion, as teeth part and meet again (asked: 1e-3; found: 3e-6).
 
     fegear takes the phase from the mean turning, the FMU from the driver's momentary angle; its parameter `phase` makes
     up for the difference of some 3e-4 base pitches.
@@ -148,10 +148,11 @@ def test_one_revolution_moves_as_in_fegear(made):
         y = found.sol(time)
         forces = np.array([answer("mesh_force", t, one) for t, one in zip(time, y.T, strict=True)])
     expected, carried = own.approach(time)[:, 0], own.mesh_forces(time)[:, 0]
-    assert (carried == 0.0).any(), "teeth part"
-    assert np.abs(r1 * y[0] - r2 * y[1] - expected).max() < 1e-6 * expected.mean()
+    assert 0.2 < np.mean(carried == 0.0) < 0.4, "teeth part"
+    # the integrator of this test knows nothing of the moments at which they do
+    assert np.abs(r1 * y[0] - r2 * y[1] - expected).max() < 1e-5 * expected.mean()
     # at the steps of the force, where a pair enters stiff, a place within round-off of one is of either side
-    assert np.sort(np.abs(forces - carried))[-3] < 1e-6 * force
+    assert np.sort(np.abs(forces - carried))[-3] < 1e-5 * force
 
 
 def test_its_state_is_kept_and_its_inputs_are_checked(made):

@@ -122,6 +122,18 @@ def test_ends_that_meet_are_refused(flanks):
         loading(flanks.pair, ends=0.51 * WIDTH)
 
 
+@pytest.mark.last_bit
+def test_no_last_digit_chooses_the_stations_of_a_node(flanks, exact):
+    """Of stations at one distance it did: 3e-4 of the removal."""
+    _, found = exact
+    x, z = table_nodes(found, flanks.pair)
+    removal = tabulated(found, flanks.pair, x, z)
+    for seed in range(3):
+        noise = 1.0 + 1e-13 * np.random.default_rng(seed).uniform(-1.0, 1.0, found.lines.x.shape)
+        moved = replace(found, lines=replace(found.lines, x=found.lines.x * noise))
+        np.testing.assert_allclose(tabulated(moved, flanks.pair, x, z), removal, rtol=0, atol=1e-9 * np.ptp(removal))
+
+
 def test_the_exact_topography_leaves_no_transmission_error(flanks, check, exact):
     """Less than 1 % at positions that it has not seen, and half the step leaves a third or less."""
     bare = ripple(check, np.zeros(check.lines.x.shape))

@@ -84,9 +84,11 @@ def test_errors_are_looked_for_once_for_tolerance_and_table(monkeypatch):
     radii = [1.1e-2, 1.15e-2, 1.2e-2]
     table = stiffness_table(known.gear, radii, 2e-5, influence=known)
     assert [one is known.coarse for one in asked] == [True]
-    np.testing.assert_array_equal(table.c_self, known.self_compliance(radii, 2e-5))
+    # to round-off: a processor may add up one radius otherwise than three
+    np.testing.assert_allclose(table.c_self, known.self_compliance(radii, 2e-5), rtol=1e-13)
     assert (table.errors["c_self"] >= known.self_error(radii, 2e-5)).all()
-    np.testing.assert_array_equal(table.errors["root_tension"], known.root_stress_error(0, "tension", radii, 2e-5))
+    off = known.root_stress_error(0, "tension", radii, 2e-5)
+    np.testing.assert_allclose(table.errors["root_tension"], off, rtol=1e-9)
 
 
 def test_a_gear_without_a_second_solution_knows_no_error():

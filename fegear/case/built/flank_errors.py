@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.base.arrays import distinct
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of, on_shafts
@@ -144,7 +145,7 @@ def _line_gap(scene: Scene, name: str) -> tuple[Array, Array]:
             raise InputError(
                 key, f'"{part.file}"', f"must cover the face, from {-half * 1e3:.6g} to {half * 1e3:.6g} mm"
             )
-        z, old = np.union1d(z, columns["z"]), z
+        z, old = distinct(z, columns["z"]), z
         gap = np.interp(z, old, gap) + np.interp(z, columns["z"], columns["gap"])
     return z, gap
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.base.arrays import distinct
 from fegear.base.errors import InputError
 from fegear.case.relief import MeasuredPart
 from fegear.case.text_file import read_columns
@@ -199,7 +200,7 @@ def _traces(
     low, high = max(x[0] for x, _ in each), min(x[-1] for x, _ in each)
     if not low < high:
         raise InputError(key, "(traces)", "have no part of the flank in common", "measure all teeth alike")
-    common = np.unique(np.concatenate([np.linspace(low, high, _PLACES), np.clip(ends, low, high)]))
+    common = distinct(np.clip(ends, low, high), np.linspace(low, high, _PLACES))
     deviation = np.array([np.interp(common, x, y) for x, y in each])
     found = Traces(kind, common, deviation, tuple(int(one) for one in numbers), ends, wavelength)
     try:

@@ -26,7 +26,7 @@ _STEP = 3e-6
 _NEAR = 0.12
 #: Rounds at most, the step over the relief that ends them, for the next would be of its square, the region of trust
 #: that does, steps of each, and reliefs nearer than this, in their units, that have met.
-_ROUNDS, _END, _END_OF_TRUST, _STEPS, _MET = 12, 1e-7, 1e-8, 60, 1e-4
+_ROUNDS, _END, _END_OF_TRUST, _STEPS, _MET = 12, 3e-9, 1e-9, 60, 1e-4
 #: To what the problem of a round is solved, on the way and where steps are below the last of these.
 _ON_THE_WAY, _AT_THE_END, _NEAR_THE_END = 1e-8, 1e-12, 3e-3
 #: Steps after which a smooth problem that has not ended is taken to go toward an edge: there another goes on.

@@ -81,13 +81,15 @@ _BESIDE = (0.04, 0.14, 0.35)
 _WORK = 4.0
 
 
-def scan(trials: Trials, limits: Limits) -> tuple[Floats, int]:
+def scan(trials: Trials, limits: Limits, *, like: bool = False) -> tuple[Floats, int]:
     """Try every combination of amounts and lengths on a grid; amounts go to four mean transmission errors.
 
     Parameters
     ----------
     trials : Trials
     limits : Limits
+    like : bool
+        Whether driver and driven gear may change places: of two combinations that are each other's mirror one counts.
 
     Returns
     -------
@@ -124,7 +126,7 @@ def scan(trials: Trials, limits: Limits) -> tuple[Floats, int]:
             there = least[..., s.states]
             np.minimum(there, (one[part] + s.base)[:, None] + two, out=there)
         values[part] = trials.left(trials.seen(least.reshape(*least.shape[:2], -1, count)))
-    flat = values.ravel()
+    flat = (np.where(np.tri(values.shape[0], dtype=bool), values, np.inf) if like else values).ravel()
     best = np.argpartition(flat, min(_BEST, flat.size - 1))[:_BEST]
     best = best[np.argsort(flat[best], kind="stable")]
     places = np.stack(np.unravel_index(best, (side,) * 4), axis=1)
@@ -197,7 +199,8 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]),
         np.array([scale, 1.0, scale, 1.0]),
     )  # fmt: skip
-    p, candidates = scan(coarse, limits)
+    like = _are_like(pair, engagement.compliance)
+    p, candidates = scan(coarse, limits, like=like)
     starts, solved = p.shape[0], 0
     values, of = np.arange(float(starts)), np.eye(2, dtype=bool)[np.arange(starts) % 2]
     valleys, trials, now = p, coarse, -1
@@ -208,7 +211,6 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
         solved += count if step else 0
         valleys = valleys if step else p[values < _AGREED * values.min() + 1e-6 * scale]
-    like = _are_like(pair, engagement.compliance)
     p, valleys = (_driver_deeper(p), _driver_deeper(valleys)) if like else (p, valleys)
     deep = [i for i in _apart(p, values, limits, _GROUNDS) if values[i] < _HOPELESS * values.min()]
     deep += [i for i in (int(np.where(one, values, np.inf).argmin()) for one in of.T) if i not in deep]
@@ -285,7 +287,9 @@ def _among_equals(
     """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
 
     The least removal is a search of its own: the valley with the least removal need not be among the deepest. It and
-    the ends of the band are led to all their digits: they have the same place wherever the search came from.
+    the ends of the band are led to all their digits: they have the same place wherever the search came from. The ends
+    are looked for twice, from halves of what is known, and how far both are apart is part of their error: equally good
+    reliefs may lie apart, and no search of one end tells of another.
 
     Parameters
     ----------
@@ -312,20 +316,28 @@ def _among_equals(
     ])  # fmt: skip
     aim = Aim(np.tile(_RULE, (starts.shape[0], 1)), allowed)
     p, values, solved = descend(trials.exact, trials, starts, limits, 0.1, 7, aim)
-    known = np.concatenate([p[values - p / unit @ _RULE < _WITHIN], equals])
-    known = _driver_deeper(known) if like else known
+    held = values - p / unit @ _RULE < _WITHIN
+    # The ends are looked for twice, from every other of what is known each time.
+    each = [np.concatenate([p[i::2][held[i::2]], equals[i::2]]) for i in (0, 1)]
+    each = [_driver_deeper(some) if like else some for some in each]
+    known = np.concatenate(each)
     fewest = known[_apart(known, known / unit @ _RULE, limits, _CHOSEN)]
-    known = np.concatenate([known, _mirrored(known)]) if like else known
     # The band is looked for from what lies farthest out already.
     outward = np.concatenate([-np.eye(4), np.eye(4)])
-    ends = known[(known / unit @ outward.T).argmax(axis=0)]
-    along = np.concatenate([np.tile(_RULE, (fewest.shape[0], 1)), -outward])
-    p, left, ended, count = refine(trials, np.concatenate([fewest, ends]), limits, Aim(along, allowed))
+    begun = []
+    for some in (one if one.size else known for one in each):
+        both = np.concatenate([some, _mirrored(some)]) if like else some
+        begun.append(both[(both / unit @ outward.T).argmax(axis=0)])
+    starts = np.concatenate([fewest, *begun])
+    along = np.concatenate([np.tile(_RULE, (fewest.shape[0], 1)), -outward, -outward])
+    p, left, ended, count = refine(trials, starts, limits, Aim(along, allowed))
     solved += count
+    p, ends = p[: fewest.shape[0]], p[fewest.shape[0] :].reshape(2, 8, 4)
+    left, ended = left[: fewest.shape[0]], ended[fewest.shape[0] :].reshape(2, 8)
     # An end that was still on its way may go on by twice as far again.
-    moved = 2.0 * np.abs(p[-8:] - ends)[range(8), [0, 1, 2, 3] * 2]
-    doubt = np.maximum(np.where(ended[-8:], 0.0, moved).reshape(2, 4), _WITHIN * unit)
-    (p, ends), left = np.split(p, [-8]), left[:-8]
+    own = np.arange(8), np.tile(np.arange(4), 2)
+    moved = np.array([2.0 * np.abs(one - first)[own] for one, first in zip(ends, begun, strict=True)])
+    doubt = np.maximum(np.where(ended, 0.0, moved).max(axis=0).reshape(2, 4), _WITHIN * unit)
     removal = p / unit @ _RULE
     if (removal < removal.min() + _EQUAL).sum() == 1:
         # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
@@ -334,10 +346,12 @@ def _among_equals(
         removal = p / unit @ _RULE
     p = _driver_deeper(p) if like else p
     best = int(np.where(removal < removal.min() + _EQUAL, p[:, 0], -np.inf).argmax())
-    ends = np.concatenate([ends, p[[best]]])
-    ends = np.concatenate([ends, _mirrored(ends)]) if like else ends
-    error = np.maximum(doubt, _mirrored(doubt)) if like else doubt
-    return _Choice(p[best], float(left[best]), np.array([ends.min(axis=0), ends.max(axis=0)]), error), solved
+    each = [np.concatenate([one, p[[best]]]) for one in ends]
+    each = [np.concatenate([some, _mirrored(some)]) if like else some for some in each]
+    low, high = (np.array([of(some, axis=0) for some in each]) for of in (np.min, np.max))
+    apart = np.array([np.ptp(low, axis=0), np.ptp(high, axis=0)])
+    error = np.maximum(np.maximum(doubt, _mirrored(doubt)) if like else doubt, apart)
+    return _Choice(p[best], float(left[best]), np.array([low.min(axis=0), high.max(axis=0)]), error), solved
 
 
 def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:

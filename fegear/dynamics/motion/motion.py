@@ -204,13 +204,18 @@ class Trajectory:
         p = self.packed
         value, step = self._at(time)
         t = np.asarray(time, dtype=float) / p.time_unit
+        # A step ends where a piece of a stiffness does. At such a moment both are those before it or those behind it:
+        # its last digit must not choose the piece of one side for the contacts of the other.
+        knots = self.passage.times
+        middle = 0.5 * (knots[step] + knots[step + 1])
         k = np.empty((*t.shape, p.springs))
         e = np.empty((*t.shape, p.springs))
         for s in range(p.springs):
-            u = p.rate[s] * t + p.phase[s]
-            u = u + 1e-13 - np.floor(u + 1e-13)
+            inside = p.rate[s] * middle + p.phase[s]
+            turns = np.floor(inside)
             cuts = p.cuts[p.first[s] + s : p.first[s + 1] + s + 1]
-            piece = np.clip(np.searchsorted(cuts, u, side="right") - 1, 0, cuts.size - 2)
+            piece = np.clip(np.searchsorted(cuts, inside - turns, side="right") - 1, 0, cuts.size - 2)
+            u = p.rate[s] * t + p.phase[s] - turns
             v = ((u - cuts[piece]) - (cuts[piece + 1] - u)) / (cuts[piece + 1] - cuts[piece])
             rows = p.poly[p.first[s] + piece]
             k[..., s] = np.polynomial.polynomial.polyval(v, np.moveaxis(rows[..., 0, :], -1, 0), tensor=False)
