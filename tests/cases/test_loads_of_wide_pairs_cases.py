@@ -200,6 +200,18 @@ def test_factors_are_one_where_nothing_is_uneven(results):
     assert iso_face_load_factor(perfect.pair, FlankGaps(), 3600.0) == 1.0
 
 
+def test_no_last_digit_tells_whether_a_place_near_an_end_of_the_face_counts(results):
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    found, perfect = loaded.found, loaded.flanks.solve([3600.0], None, loaded.known)
+    rooted = rooted_lines(found.pair, "driver", found.lines, loaded.flanks.gears["driver"], coupling=True)
+    end = found.lines.high - 0.5 * found.pair.driver.module
+    some = [
+        root_factors(found, perfect, rooted, np.array([-end, 0.0, end]) * (1.0 + noise), 0).face
+        for noise in (-1e-13, 0.0, 1e-13)
+    ]
+    np.testing.assert_allclose(some, some[0], rtol=1e-9)
+
+
 def test_the_contact_pattern_grows_with_load_and_coat_and_is_the_gap_of_rigid_flanks_without_load(results):
     rows = columns(results, "contact_pattern_I")
     np.testing.assert_allclose(rows["load [N]"], [36.0, 900.0, 3600.0, 7200.0])

@@ -20,7 +20,6 @@ the coordinates of the plane of action, x = x_0 + j p_bt - z tan(beta_b), with a
 
 from __future__ import annotations
 
-import heapq
 import itertools
 import math
 from dataclasses import dataclass, field
@@ -227,6 +226,8 @@ def _limits(
 
 #: Points on a piece, at least; pieces shorter than this share of a base pitch have none of their own.
 _FEWEST, _SHORTEST = 3, 5e-3
+#: Pieces whose points stand equally far apart to this share are alike.
+_ALIKE = 1e-9
 
 
 #: How far beside the end of a piece its outermost points stand, as a share of a base pitch.
@@ -282,14 +283,13 @@ def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 
 
 def _shared(lengths: list[float], count: int) -> list[int]:
     """Points on each piece, so that they stand equally dense."""
-    points = [_FEWEST] * len(lengths)
-    queue = [(-length / (_FEWEST - 1), i) for i, length in enumerate(lengths)]
-    heapq.heapify(queue)
-    for _ in range(count - sum(points)):
-        _, i = queue[0]
-        points[i] += 1
-        heapq.heapreplace(queue, (-lengths[i] / (points[i] - 1), i))
-    return points
+    points = np.full(len(lengths), _FEWEST)
+    for _ in range(count - _FEWEST * len(lengths)):
+        apart = np.array(lengths) / (points - 1)
+        # The first of pieces that are alike: no last digit chooses between them.
+        points[np.argmax(apart > (1.0 - _ALIKE) * apart.max())] += 1
+    found: list[int] = points.tolist()
+    return found
 
 
 def _lobatto(count: int) -> tuple[Array, Array]:

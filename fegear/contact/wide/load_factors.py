@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 _FREE_END, _SHORTEST = 0.5, 1.0
 
 
+#: Places nearer to each other than this share of the face are one.
+_BESIDE = 1e-9
 #: Places along the face at which the gap is read for its straight part.
 _READ = 101
 
@@ -89,7 +91,9 @@ def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines
     helical, m, lines = found.pair.driver.helix_angle != 0.0, found.pair.driver.module, found.lines
     shortest = min(_SHORTEST * m, 0.5 * (lines.high - lines.low)) if helical else 0.0
     loads = solved, even_along_the_lines(lines, solved, shortest), even_along_the_lines(lines, ideal, shortest)
-    inside = (z >= lines.low + _FREE_END * m) & (z <= lines.high - _FREE_END * m)
+    # A place that stands at such an end, in all but its last digit, counts.
+    free = _FREE_END * m - _BESIDE * (lines.high - lines.low)
+    inside = (z >= lines.low + free) & (z <= lines.high - free)
     places = z[inside] if helical and inside.any() else z
     largest, even, best = (rooted.largest("tension", force, places, across=True) for force in loads)
     return RootFactors(largest / even, even / best, largest)
