@@ -342,6 +342,21 @@ def test_formulas_out_of_their_range_name_the_pair():
         run("rating_spur", ALONE, "gear.pinion.rim_thickness='3 mm'")
 
 
+def test_a_pair_that_no_formula_rates_takes_no_other_rating_with_it():
+    """And the other pair's is what it is without that one."""
+    strength = "strength={material='case-hardened-steel'}"
+    thin = f"gear.idler={{teeth=40, module='4 mm', face_width='40 mm', rim_thickness='3 mm', {strength}}}"
+    second = "pair.II={driver='pinion', driven='idler', torque='100 N*m', speed='1450 rpm'}"
+    scene = read_scene(CASES / "rating_spur.toml", ["results=['rating']", ALONE, thin, second])
+    done = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+    one, two = (done.outcomes[task] for task in sorted(done.outcomes, key=lambda task: task.subject))
+    assert values(one).keys() == values(run("rating_spur", ALONE)).keys()
+    (said,) = two.remarks
+    assert said.startswith("Pair II is not rated: pair.II.rim thickness / tooth height")
+    assert not two.values
+    assert not two.tables
+
+
 def test_levels_beyond_static_strength_are_said_and_leave_no_infinite_value():
     outcome = run(
         "rating_spur", ALONE, "pair.I.operation={life='1000 h', spectrum=[{load_factor=9, share=0.1}, "

@@ -72,12 +72,22 @@ class RatingInputs:
         Whether load distribution and root stress are computed.
     said : tuple of str
         What AGMA 2101 assumes, or why there is nothing of it.
+    alone : bool
+        Whether no other pair of the case is rated.
     """
 
     asked: PairToRate
     agma: AgmaInputs | None
     computed: bool
     said: tuple[str, ...]
+    alone: bool
+
+
+@dataclass(frozen=True)
+class NotRated:
+    """A pair beyond what a formula is made for, in the formula's own words; other pairs of the case are rated."""
+
+    why: str
 
 
 @dataclass(frozen=True)
@@ -117,7 +127,7 @@ def _inputs(scene: Scene, name: str) -> RatingInputs:
     asked = pair_to_rate(scene, name)
     beside = scene.case.rating.beside
     agma, said = agma_inputs(scene, asked) if "agma-2101" in beside else (None, ())
-    return RatingInputs(asked, agma, "computed" in beside, said)
+    return RatingInputs(asked, agma, "computed" in beside, said, len(rated_pairs(scene)) == 1)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -163,11 +173,14 @@ def given(asked: PairToRate) -> Replacement:
     return Replacement(K_v=k_v, K_Halpha=across, K_Falpha=None if across is None else (across, across))
 
 
-def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingData:
+def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingData | NotRated:
     try:
         return _rate(inputs, upstream)
     except RangeError as error:  # a formula's own words, under the name of the pair
-        raise at(f"pair.{inputs.asked.name}", error) from None
+        named = at(f"pair.{inputs.asked.name}", error)
+        if inputs.alone:
+            raise named from None
+        return NotRated(str(named))
 
 
 def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
@@ -266,7 +279,9 @@ def _with_misses(found: Computed, asked: PairToRate) -> Computed:
     )  # fmt: skip
 
 
-def _present(data: RatingData, inputs: RatingInputs) -> Outcome:
+def _present(data: RatingData | NotRated, inputs: RatingInputs) -> Outcome:
+    if isinstance(data, NotRated):
+        return Outcome(data, remarks=(f"Pair {inputs.asked.name} is not rated: {data.why}",))
     tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
     if data.agma is not None:
         tables.append(agma_table(data.agma, inputs.asked))
