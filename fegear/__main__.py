@@ -1,6 +1,7 @@
 """Where the program starts, as ``fegear`` and as ``python -m fegear``: light, so that Ctrl-C has its answer at once."""
 
 import gc
+import os
 
 #: So many new objects are made before Python looks for cycles among them (its default is 700). What a command loads and
 #: computes stays until it ends: looking through it two hundred times, and at the end, took a tenth of a short run.
@@ -10,6 +11,8 @@ _YOUNG = 100_000
 def main() -> None:
     """Load the command line and run it; an interrupt while it is still loading is reported like any other."""
     gc.set_threshold(_YOUNG)
+    # pydantic would look through every installed package for plugins, which fegear has no use for.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         from fegear.base.streams import open_streams
 

@@ -14,6 +14,7 @@ from fegear.case.part import (
     PositiveNumber,
     PositiveSpeed,
     PositiveViscosity,
+    Table,
     at_most,
     quantity,
     refuse,
@@ -151,7 +152,7 @@ class DynamicsPart(Part):
     speed: PositiveSpeed | None = Field(
         default=None, description="Speed of histories and spectra; without it the only one of `speeds`."
     )
-    speeds: SpeedsPart | None = Field(
+    speeds: Table[SpeedsPart] | None = Field(
         default=None, description="Speeds of sweeps: a list, or a range; without it `speed`."
     )
     speed_of: str | None = Field(default=None, description="Body whose speed that is; without it the first.")
@@ -159,7 +160,7 @@ class DynamicsPart(Part):
         default=64, description="Harmonics of each mesh; tooth forces take at least 256."
     )
     lines: Annotated[int, Field(ge=1, le=50)] = Field(default=3, description="Mesh harmonics in the Campbell diagram.")
-    frequencies: FrequenciesPart = Field(
+    frequencies: Table[FrequenciesPart] = Field(
         default_factory=FrequenciesPart, description="Frequencies of the dynamic increments."
     )
     positions: Annotated[int, Field(ge=3, le=100_000)] = Field(
@@ -173,7 +174,7 @@ class DynamicsPart(Part):
     tolerance: Annotated[Number, Field(gt=1e-12, le=1e-2)] = Field(
         default=5e-4, description="Relative error of the dynamic factor where the motion repeats."
     )
-    friction: FrictionPart = Field(
+    friction: Table[FrictionPart] = Field(
         default_factory=FrictionPart, description="Friction between the teeth; it needs the effect `friction`."
     )
     loss_taken_by: str | None = Field(
@@ -181,7 +182,9 @@ class DynamicsPart(Part):
         description="Body whose torque makes up for the friction loss; without it that of `balance`, else of the "
         "last torque.",
     )
-    chart: DesignChartPart | None = Field(default=None, description="Tip reliefs that are tried, for `design-chart`.")
+    chart: Table[DesignChartPart] | None = Field(
+        default=None, description="Tip reliefs that are tried, for `design-chart`."
+    )
 
     @property
     def speed_values(self) -> NDArray[np.float64]:

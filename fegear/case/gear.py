@@ -20,6 +20,7 @@ from fegear.case.part import (
     PositiveInverseLength,
     PositiveLength,
     PositivePressure,
+    Table,
     at,
     refuse,
 )
@@ -80,7 +81,7 @@ class GearPart(Part):
     profile_shift: Number = Field(
         default=0.0, description="Profile shift coefficient x: how far the rack is moved outward, in modules."
     )
-    rack: RackPart = Field(
+    rack: Table[RackPart] = Field(
         default_factory=RackPart,
         description="The basic rack that cuts the gear: a profile of ISO 53 by name, or a table in modules; without "
         "it ISO 53 C.",
@@ -107,7 +108,7 @@ class GearPart(Part):
         description="Whether the gear is a ring gear, whose teeth point toward its centre; it wants a `cutter`. A "
         "positive `profile_shift` moves its teeth toward their tips (ISO 21771), so that its diameters shrink.",
     )
-    cutter: CutterPart | None = Field(
+    cutter: Table[CutterPart] | None = Field(
         default=None, description="The pinion-type cutter that cuts an internal gear, in the place of `rack`."
     )
     outer_radius: PositiveLength | None = Field(
@@ -125,7 +126,7 @@ class GearPart(Part):
         description="Thickness b_s of the web that carries the rim, for C_R of ISO 6336-1, at most twice the face; "
         "`bore_radius` is then the inside of the rim. Without it the body is a disc as wide as the face.",
     )
-    body: GearBodyPart | None = Field(
+    body: Table[GearBodyPart] | None = Field(
         default=None,
         description="Rim, web and hub of a gear that is solved with its width, its bore held over the hub; without it "
         "the body is a disc as wide as the face.",
@@ -143,10 +144,10 @@ class GearPart(Part):
         description="Plane strain, plane stress, or `auto`: strain where the face is at least five tooth thicknesses "
         "wide.",
     )
-    material: MaterialPart = Field(
+    material: Table[MaterialPart] = Field(
         default_factory=MaterialPart, description="Elasticity and density of the gear; without it steel."
     )
-    strength: StrengthPart | None = Field(
+    strength: Table[StrengthPart] | None = Field(
         default=None,
         description="Strength of the material (allowable stress numbers), for the result rating: kind, quality and "
         "hardness.",
@@ -160,34 +161,34 @@ class GearPart(Part):
         description="Whether the fillet of `tooth_mesh` is compared with the one that the rack cuts, or is your own "
         "(optimised, ground).",
     )
-    relief: ReliefPart | None = Field(
+    relief: Table[ReliefPart] | None = Field(
         default=None,
         description="Profile modification of every tooth; its parts add up, and it needs the effect `relief`.",
     )
-    lead: LeadPart | None = Field(
+    lead: Table[LeadPart] | None = Field(
         default=None,
         description="Modification of every flank over the face, the same at every height; it needs the effect "
         "`relief`.",
     )
-    bias: BiasPart | None = Field(
+    bias: Table[BiasPart] | None = Field(
         default=None,
         description="Twist S_alpha: the profile slope at end II less that at end I; it needs the effect `relief`.",
     )
-    topography: TopographyPart | None = Field(
+    topography: Table[TopographyPart] | None = Field(
         default=None,
         description="Modification of every flank by a table over roll angle and face; it needs the effect `relief`.",
     )
-    measured: MeasuredPart | None = Field(
+    measured: Table[MeasuredPart] | None = Field(
         default=None,
         description="Measured profiles, helices or flanks in the place of those that are drawn; they need the effect "
         "`relief`.",
     )
-    spacing_errors: SpacingErrorsPart | None = Field(
+    spacing_errors: Table[SpacingErrorsPart] | None = Field(
         default=None,
         description="One accumulated error for each tooth in the order of meshing, positive where the flank lies "
         "back; it needs the effect `spacing_errors`.",
     )
-    roughness: RoughnessPart | None = Field(
+    roughness: Table[RoughnessPart] | None = Field(
         default=None, description="of flanks and root fillets, for scuffing, micropitting, friction and rating"
     )
     flank_treatment: FlankTreatment | None = Field(
@@ -197,7 +198,7 @@ class GearPart(Part):
         default=None,
         description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11; it wants a `face_width`.",
     )
-    deviations: DeviationsPart | None = Field(
+    deviations: Table[DeviationsPart] | None = Field(
         default=None,
         description="Own deviations of the flanks, in the place of those by `tolerance_class` in a rating and in "
         "`robustness`; a gear outside the sizes of ISO 1328-1 has no others.",

@@ -19,6 +19,7 @@ from fegear.case.part import (
     PositiveLength,
     PositiveSpeed,
     PositiveTorque,
+    Table,
     at,
     at_most,
     refuse,
@@ -153,18 +154,20 @@ class PairPart(Part):
         description="How wide the loaded teeth are: one plane section, coupled slices of it, or solid gears; without "
         "it plane for spur and solid for helical gears.",
     )
-    compliance: CompliancePart = Field(
+    compliance: Table[CompliancePart] = Field(
         default_factory=CompliancePart, description="Where the tooth compliances come from."
     )
-    root_stress: RootStressPart = Field(default_factory=RootStressPart, description="Where root stresses come from.")
-    misalignment: MisalignmentPart | None = Field(
+    root_stress: Table[RootStressPart] = Field(
+        default_factory=RootStressPart, description="Where root stresses come from."
+    )
+    misalignment: Table[MisalignmentPart] | None = Field(
         default=None, description="How the shafts and the pinion's flank deviate; it needs the effect `misalignment`."
     )
-    line_error: LineErrorPart | None = Field(
+    line_error: Table[LineErrorPart] | None = Field(
         default=None,
         description="What keeps the unloaded flanks apart over the face; it needs the effect `misalignment`.",
     )
-    modification: ModificationPart | None = Field(
+    modification: Table[ModificationPart] | None = Field(
         default=None,
         description="How the pinion's flank is localised for tooth contact analysis; loaded flanks count it with the "
         "effect `relief`.",
@@ -174,19 +177,19 @@ class PairPart(Part):
         description="Height of the driven gear's mid face above the driver's, toward end I; only the common face "
         "bears.",
     )
-    iso_6336: IsoPart = Field(
+    iso_6336: Table[IsoPart] = Field(
         default_factory=IsoPart, description="Choices that ISO 6336 leaves: edition, methods, and own factors."
     )
-    lubricant: LubricantPart | None = Field(
+    lubricant: Table[LubricantPart] | None = Field(
         default=None, description="the oil of the pair, for film thickness, scuffing, micropitting and friction"
     )
-    friction: PairFrictionPart | None = Field(
+    friction: Table[PairFrictionPart] | None = Field(
         default=None, description="friction law of tooth-loss; Schlenk's where the lubricant is known"
     )
-    operation: OperationPart = Field(
+    operation: Table[OperationPart] = Field(
         default_factory=OperationPart, description="Loads, life and required safeties that the result rating is for."
     )
-    shafts: ShaftsPart | None = Field(
+    shafts: Table[ShaftsPart] | None = Field(
         default=None,
         description="What carries the pinion, for the face load factor of ISO 6336-1 in the result rating.",
     )

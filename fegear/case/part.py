@@ -9,16 +9,20 @@ from __future__ import annotations
 
 import difflib
 import math
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
+from pydantic_core.core_schema import definitions_schema, with_info_plain_validator_function
 
 from fegear.base.errors import FegearError, InputError, shown
 from fegear.base.units import as_text, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator
+
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic_core import CoreSchema
 
     from fegear.case.model import Case
     from fegear.case.reading import Scene
@@ -41,8 +45,35 @@ class Part(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid", strict=True, frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True,
-        defer_build=True,  # the whole case is built once when the first is read, not every part of it besides
+        defer_build=True,  # each part is compiled when the first case has it
     )  # fmt: skip
+
+    @classmethod
+    def read(cls, value: object, info: ValidationInfo) -> Self:
+        """The table from what the case has for it."""
+        return cls.model_validate(value, context=info.context)
+
+
+class OnDemand:
+    """Marks a table whose rules are compiled when the first case has it, not with every case.
+
+    Compiling the rules of all tables takes longer than reading a case.
+    """
+
+    def __get_pydantic_core_schema__(self, part: type[Part], _handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Let the table check itself; its errors come back under its key."""
+        return with_info_plain_validator_function(part.read)
+
+    def __get_pydantic_json_schema__(self, rules: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """As if it were not marked: named, and stated once."""
+        part: type[Part] = rules["function"]["function"].__self__
+        part.model_rebuild()
+        named: Any = {**part.__pydantic_core_schema__, "ref": f"{part.__module__}.{part.__qualname__}:{id(part)}"}
+        return handler(definitions_schema(named, []))
+
+
+#: A part of the case that is compiled on demand.
+Table = Annotated[T, OnDemand()]
 
 
 def refuse(rule: str, remedy: str = "", *, value: object = None, key: str = "") -> PydanticCustomError:
