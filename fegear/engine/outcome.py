@@ -198,8 +198,11 @@ def with_least_errors(values: Iterable[Value]) -> tuple[Value, ...]:
     found = []
     for value in every:
         least = ROUND_OFF * (largest.get(value.unit, 0.0) if value.unit else abs(value.si))
-        below = value.si_error is not None and 0.0 < value.si_error < least
-        found.append(replace(value, si_error=least) if below else value)
+        if value.si_error is not None and not value.si_error >= least:
+            # what is not a number nobody has estimated
+            error = None if np.isnan(value.si_error) else least if value.si_error > 0.0 else value.si_error
+            value = replace(value, si_error=error)  # noqa: PLW2901
+        found.append(value)
     return tuple(found)
 
 

@@ -162,6 +162,10 @@ def end(process: BaseProcess) -> None:
 _Content = dict[str, Any]
 
 
+#: What stands for all of a figure that is to stay as it is.
+SAME = {"same": True}
+
+
 class Sent:
     """What was sent last, by task; a figure that is the same again travels as its key alone."""
 
@@ -185,10 +189,17 @@ class Sent:
             self._empty.discard(content["task"])
         figures = []
         for one in content["figures"]:
+            if one.get("same"):
+                figures.append(one)
+                continue
             place, text = (content["task"], one["key"]), json.dumps(one)
-            figures.append({"key": one["key"], "same": True} if self._figures.get(place) == text else one)
+            figures.append({"key": one["key"], **SAME} if self._figures.get(place) == text else one)
             self._figures[place] = text
         return {**content, "figures": figures}
+
+    def knows(self, task: str, figure: str) -> bool:
+        """Whether a figure was sent before."""
+        return (task, figure) in self._figures
 
     def forget_others(self, tasks: list[str]) -> None:
         """Forget what is on the page no longer."""

@@ -65,6 +65,11 @@ NUMBERS = {
 _ALWAYS = ("transmission-error", "load-sharing", "root-stress-history")
 
 
+def keys_of(pictures: tuple[str, ...]) -> set[str]:
+    """Keys of the figures that the small pictures are made of, without the pair's name, by names of `PICTURES`."""
+    return {PICTURES[one].key for one in pictures or (*USUAL, *USUAL_WIDE) if one in PICTURES}
+
+
 def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
     """What has to be computed for the numbers and the small pictures, as far as the case can have it.
 

@@ -47,7 +47,9 @@ class Ordered(NamedTuple):
     at_once: int
 
 
-def in_order(plan: Plan, scene: Scene, sight: Collection[str], seconds: Mapping[str, float]) -> Ordered:
+def in_order(
+    plan: Plan, scene: Scene, sight: Collection[str], seconds: Mapping[str, float], beside: Collection[Task] = ()
+) -> Ordered:
     """Put the answers first, then what is in sight, then the rest.
 
     Parameters
@@ -58,6 +60,8 @@ def in_order(plan: Plan, scene: Scene, sight: Collection[str], seconds: Mapping[
         Tasks whose results are in sight on a page.
     seconds : mapping of str to float
         What tasks took before.
+    beside : collection of Task
+        Those of the small pictures, which are always in sight: answers, too.
 
     Returns
     -------
@@ -74,7 +78,7 @@ def in_order(plan: Plan, scene: Scene, sight: Collection[str], seconds: Mapping[
                 order[task] = None
 
     seen = [task for task in steps if str(task) in sight]
-    answers = [task for task in steps if task.stage in ANSWERS]
+    answers = [task for task in steps if task.stage in ANSWERS or task in beside]
     add(answers or seen or steps)
     add(task for task in seen if seconds.get(str(task), _QUICK + 1.0) <= _QUICK)
     at_once = len(order)

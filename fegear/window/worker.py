@@ -15,10 +15,10 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
 from fegear.results.pair.loaded_teeth import teeth_of
-from fegear.window.computing import Sent
+from fegear.window.computing import SAME, Sent
 from fegear.window.designs import design_asked, designed, draft_of
 from fegear.window.drag_handles import hands_of
-from fegear.window.glance import field_tasks, glance_tasks, numbers_of, plan_with
+from fegear.window.glance import field_tasks, glance_tasks, keys_of, numbers_of, plan_with
 from fegear.window.job_queue import Compare, Compute, Design, Export, Inbox, Said, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
 from fegear.window.order import HarrisMaps, in_order, load_now_of
@@ -185,7 +185,7 @@ class Worker:
             self._say("plan", tasks=tasks)
             self._sent.forget_others(tasks)
             on_gears = dict.fromkeys(map(str, more), 0.0)  # what is switched on there follows a value that moves
-            plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears})
+            plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears}, beside)
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
             self._later.append(lambda: self._tell_hands(scene))
             if not asked.moving:
@@ -258,7 +258,9 @@ class Worker:
             "title": f"{title}: {task.subject}" if task.subject else title,
             "values": fragment([values]) if outcome.values else "",
             "figures": [
-                {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)} for one in figures
+                SAME | {"key": one.key} if self._waits(task, one.key)
+                else {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)}
+                for one in figures
             ],
             "darker": darker(figures),
             "draft": draft,
@@ -274,6 +276,14 @@ class Worker:
         if self._on_gears.get(task) is not outcome.data and (shown := on_the_gears(task, outcome.data)) is not None:
             self._on_gears[task] = outcome.data  # what is recalled is on the page already
             self._say("meshed", **shown)
+
+    def _waits(self, task: Task, figure: str) -> bool:
+        """Whether a figure is drawn when all is at rest: out of sight while a value moves, and known of before."""
+        asked = self._asked
+        if asked is None or not asked.moving or asked.pictures is None or str(task) in asked.sight:
+            return False
+        small = {f"{key}{task.subject}" for key in keys_of(asked.pictures)}
+        return figure not in small and self._sent.knows(str(task), figure)
 
     def _pictures(self, results: Results) -> None:
         """Draw what a page cannot draw itself, after all numbers are there."""

@@ -42,7 +42,7 @@ from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper
 from fegear.window.bench import Bench
 from fegear.window.case_text import value_at
-from fegear.window.computing import Computing, whole
+from fegear.window.computing import SAME, Computing, Sent, whole
 from fegear.window.designs import draft_of
 from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
@@ -912,6 +912,9 @@ def test_answers_come_before_what_is_in_sight_and_that_before_the_rest(tmp_path)
     assert order(("geometry",))[1][0] == "geometry"
     assert order(("geometry",), {"geometry": 0.01})[0] == ["loaded-pair", "load-sharing", "geometry"]
     assert order(("geometry",), {"geometry": 1.0})[0] == ["loaded-pair", "load-sharing"]
+    # what small pictures show is always in sight, however long it takes
+    pictured = in_order(plan, scene, (), {"geometry": 1.0}, [Task("geometry", "")])
+    assert [step.task.stage for step in pictured.plan.steps[: pictured.at_once]].count("geometry") == 1
     scene = scene_of(Asked(TEXT.replace('["load-sharing"]', '["geometry", "relief-curves"]'), "c", str(tmp_path)))
     plan = make_plan(scene, STAGES)
     assert order(("geometry",))[0] == ["geometry"]
@@ -1156,3 +1159,17 @@ def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
     made.ask(Compute(41, Asked(TEXT, "c", str(tmp_path))))
     heard.until(41, "done")
     assert made.pid != pid
+
+
+def test_a_figure_out_of_sight_stays_as_it_is_until_all_is_at_rest():
+    sent = Sent()
+    content = {"task": "t", "values": "", "loads": None, "figures": [{"key": "k", "data": 1}]}
+    assert not sent.knows("t", "k")
+    assert sent.news(content) == content
+    assert sent.knows("t", "k")
+    waiting = {**content, "figures": [{"key": "k", **SAME}]}
+    assert sent.news(waiting) == waiting
+    assert whole(waiting, content) == content
+    moved = {**content, "figures": [{"key": "k", "data": 2}]}
+    assert sent.news(moved) == moved
+    assert sent.news(content) == content  # back where it was, which no page has any more

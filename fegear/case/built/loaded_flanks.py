@@ -60,6 +60,8 @@ class FlanksToLoad:
         Of the pair.
     tolerance : float
         That the changes by neglected effects are compared with.
+    estimates : bool
+        Whether errors and the changes by neglected effects are estimated, some three fifths of the time.
     """
 
     pair: GearPair
@@ -76,6 +78,7 @@ class FlanksToLoad:
     base_pitch: int = 0
     name: str = field(default="", compare=False)
     tolerance: float = field(default=0.0, compare=False)
+    estimates: bool = True
 
     @property
     def gears(self) -> tuple[str, str]:
@@ -151,7 +154,7 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
         pair = _placed(pair, errors.apart, name)
     return FlanksToLoad(
         pair, own, (first, second), faces, cutter_modification(scene, name), errors, part.all_loads(pair), nominal,
-        asked.positions, panels, width, asked.base_pitch, name, scene.case.accuracy.tolerance,
+        asked.positions, panels, width, asked.base_pitch, name, scene.case.accuracy.tolerance, scene.estimates,
     )  # fmt: skip
 
 

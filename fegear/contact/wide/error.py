@@ -107,6 +107,13 @@ def flank_error(
     return FlankError(np.asarray(te), _SHARES * np.asarray(share), other, *sums)
 
 
+def no_estimate(found: LoadedFlanks) -> FlankError:
+    """Errors that nobody estimated: none is a number, and the coarser solution is the solution itself."""
+    unknown = np.full(found.load.size, np.nan)
+    te, share = np.full(found.transmission_error.shape, np.nan), np.full(found.share.shape, np.nan)
+    return FlankError(te, share, found, *[unknown] * len(Stated._fields))
+
+
 def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:
     """Changes from one solution to another of it at the same roll positions."""
     te, again = found.transmission_error, other.transmission_error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -108,6 +109,16 @@ class LoadedWidePair:
         return self.flanks.coupling
 
     @property
+    def estimated(self) -> bool:
+        """Whether errors were estimated."""
+        return self.error.coarse is not self.found
+
+    @property
+    def _missed(self) -> float:
+        """Share by which compliances are known to be off, not a number where no error is estimated."""
+        return self.missed if self.estimated else math.nan
+
+    @property
     def about(self) -> str:
         """What the gears are solved as."""
         return f"Gears with their width, {'coupled slices' if self.missed else 'solid'}."
@@ -126,7 +137,7 @@ class LoadedWidePair:
 
     def history(self) -> LoadHistory:
         """See `LoadedTeeth`; errors are the change by the coarser solution, and what slices miss."""
-        coarse, i, missed = self.error.coarse, self.at, self.missed
+        coarse, i, missed = self.error.coarse, self.at, self._missed
         found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines, self.found.load))
         again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines, coarse.load))
         largest, other = (one.hertz_pressure[:, i].max() for one in (found, again))
@@ -153,7 +164,7 @@ class LoadedWidePair:
         perfect = replace(self.flanks, positions=over.found.lines.roll.size).solve(
             [self.nominal], None, over.found.known
         )
-        shift = _missed_too(flank_transmission_error_shift(each[i], curves[i], again[i]), each[i], self.missed)
+        shift = _missed_too(flank_transmission_error_shift(each[i], curves[i], again[i]), each[i], self._missed)
         # What is stated of the whole base pitch is stated once.
         shift = replace(shift, mean=float(self.error.mean[i]), peak_to_peak=float(self.error.peak_to_peak[i]))
         uneven = bool(self.gaps.driver_spacing.size or self.gaps.driven_spacing.size)
@@ -217,9 +228,9 @@ class LoadedWidePair:
     ) -> ToothStress:
         """Largest over the face under every load; what it is all over the face at the nominal one goes to the map."""
         coarse, z, member = self.error.coarse, self.places_along, rooted.member
-        again = influence.coarse and rooted_lines(
-            self.pair, member, coarse.lines, influence.coarse, coupling=self.coupling
-        )
+        again = None
+        if self.estimated and influence.coarse:
+            again = rooted_lines(self.pair, member, coarse.lines, influence.coarse, coupling=self.coupling)
         largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
         off: dict[Side, list[Array]] = {"tension": [], "compression": []}
         for i in range(self.found.load.size):

@@ -97,7 +97,9 @@ class OverPitch(ReadOnlyArrays):
         )  # fmt: skip
 
 
-def over_pitch(flanks: FlankPair, found: LoadedFlanks, gaps: FlankGaps, about: float) -> OverPitch:
+def over_pitch(
+    flanks: FlankPair, found: LoadedFlanks, gaps: FlankGaps, about: float, *, peaks: bool = True
+) -> OverPitch:
     """Load flanks at as many roll positions as numbers of the whole base pitch need.
 
     Parameters
@@ -108,6 +110,8 @@ def over_pitch(flanks: FlankPair, found: LoadedFlanks, gaps: FlankGaps, about: f
     gaps : FlankGaps
     about : float
         Load about which compliances are made, see `FlankPair.compliance` [N].
+    peaks : bool
+        Whether the largest and smallest transmission error are looked for between positions.
     """
     if flanks.positions < POSITIONS:
         flanks = replace(flanks, positions=POSITIONS)
@@ -115,14 +119,14 @@ def over_pitch(flanks: FlankPair, found: LoadedFlanks, gaps: FlankGaps, about: f
     points = flanks.points
     roll, te = points.x, found.transmission_error
     for turn in range(_ROUNDS + 1):
-        peaks = [likely_peaks(roll, sign * te, points.period) for sign in (-1.0, 1.0)]
-        new = _worth_a_look(roll, peaks, points.period)
-        if turn == _ROUNDS or not new.size:
+        likely = [likely_peaks(roll, sign * te, points.period) for sign in (-1.0, 1.0)]
+        new = _worth_a_look(roll, likely, points.period)
+        if not peaks or turn == _ROUNDS or not new.size:
             break
         more = flanks.solve(found.load, gaps, flanks.compliance(about, new)).transmission_error
         order = np.argsort(np.concatenate([roll, new]), kind="stable")
         roll, te = np.concatenate([roll, new])[order], np.concatenate([te, more])[order]
-    beyond = np.sum([np.maximum(height.max(axis=0), 0.0) for _, height in peaks], axis=0)
+    beyond = np.sum([np.maximum(height.max(axis=0), 0.0) for _, height in likely], axis=0)
     return OverPitch(found, points, np.stack([te.min(axis=0), te.max(axis=0)]), beyond)
 
 

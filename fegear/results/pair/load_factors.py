@@ -88,29 +88,31 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
     found, coarse, i = loaded.found, loaded.error.coarse, loaded.at
     pair, coupling, z = found.pair, loaded.coupling, loaded.places_along
     # Perfect flanks on the same lines, each with its own compliances.
-    perfect, perfect_coarse = (loaded.flanks.solve(found.load, None, one.known) for one in (found, coarse))
+    perfect = loaded.flanks.solve(found.load, None, found.known)
+    perfect_coarse = loaded.flanks.solve(found.load, None, coarse.known) if loaded.estimated else perfect
     root: dict[Member, RootFactors] = {}
     root_coarse: dict[Member, RootFactors | None] = {}
     for member, gear in inputs.gears.items():
         influence = solid_solution_of(upstream, gear)
         rooted = rooted_lines(pair, member, found.lines, influence.fine, coupling=coupling)
         root[member], root_coarse[member] = root_factors(found, perfect, rooted, z, i), None
-        if influence.coarse is not None:
+        if loaded.estimated and influence.coarse is not None:
             again = rooted_lines(pair, member, coarse.lines, influence.coarse, coupling=coupling)
             root_coarse[member] = root_factors(coarse, perfect_coarse, again, z, i)
     transverse = transverse_load_factor(found, perfect)
+    off = _apart(transverse, transverse_load_factor(coarse, perfect_coarse) if loaded.estimated else np.nan)
     by_iso, why_not = np.empty(0), ""
     try:
         by_iso = np.array([iso_face_load_factor(pair, loaded.gaps, load) for load in found.load.tolist()])
     except RangeError as error:
         why_not = str(error)
     return FlankLoadFactorsData(
-        loaded, _apart(transverse, transverse_load_factor(coarse, perfect_coarse)), root, root_coarse,
+        loaded, off, root, root_coarse,
         by_iso, why_not, straight_gap(pair, loaded.gaps.under(loaded.nominal)), iso_root_exponent(pair), transverse,
     )  # fmt: skip
 
 
-def _apart(factor: Array, other: Array) -> Array:
+def _apart(factor: Array, other: Array | float) -> Array:
     """Difference of two solutions; never zero, which means exact, where both agree to the last digit by chance."""
     return np.asarray(np.maximum(np.abs(other - factor), np.spacing(factor)))
 

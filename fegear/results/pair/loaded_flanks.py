@@ -99,7 +99,7 @@ def load_flanks(
 
 
 def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWidePair:
-    from fegear.contact.wide.error import flank_error, with_misses
+    from fegear.contact.wide.error import flank_error, no_estimate, with_misses
     from fegear.contact.wide.gaps import beside_the_lines, unloaded_error
     from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
     from fegear.contact.wide.over_pitch import over_pitch
@@ -114,14 +114,16 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     flanks, gaps, found = load_flanks(asked, fine, work.cache)
     known = found.known
     missed = missed_by_slices(asked.pair.driver.twist)["contact"] if asked.width == "slices" else 0.0
-    over = over_pitch(flanks, found, gaps, asked.nominal)
-    error = with_misses(flank_error(flanks, found, coarse, gaps, over, asked.nominal), found, missed)
+    over = over_pitch(flanks, found, gaps, asked.nominal, peaks=asked.estimates)
+    error = no_estimate(found)
+    if asked.estimates:
+        error = with_misses(flank_error(flanks, found, coarse, gaps, over, asked.nominal), found, missed)
     neglected = {
         effect: _with_edges(asked, flanks, gaps, over.stated)
         if effect == "corner_contact"
         else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
         for effect in WIDE_EFFECTS
-        if not effects.is_on(effect) and asked.has_data(effect)
+        if asked.estimates and not effects.is_on(effect) and asked.has_data(effect)
     }
     stated, i = over.stated, asked.loads.index(asked.nominal)
     changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}
