@@ -23,7 +23,42 @@ if TYPE_CHECKING:
     from fegear.workbench.results import Results
 
 
-class Gear:
+class Described:
+    """A part of a case by its keys, with what has been solved for it; it never changes."""
+
+    name: str
+    known: SolutionCache
+    _keys: dict[str, Any]
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What it was described by; a copy, for it never changes."""
+        return copy.deepcopy(self._keys)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What travels to another process: all but what has been solved."""
+        return {name: value for name, value in self.__dict__.items() if name != "known"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Come from another process, with nothing solved."""
+        self.__dict__.update(state, known=SolutionCache())
+
+    @cached_property
+    def _scene(self) -> Scene:
+        document = {"results": ["geometry"], **self.document()}
+        return build_scene(document, self.name, working_folder(), bare_si=True)
+
+    def document(self) -> dict[str, Any]:
+        """It as the tables of a case file."""
+        raise NotImplementedError
+
+    @cached_property
+    def data(self) -> Results:
+        """What a drawing of it carries: diameters, span; of a pair also contact ratio and centre distance."""
+        return run_scene(self._scene, progress=False)
+
+
+class Gear(Described):
     """A gear by the keys of ``[gear.NAME]`` of a case file; it never changes.
 
     Quantities are texts with their unit (``"3 mm"``), quantities of pint, or numbers in SI.
@@ -69,28 +104,14 @@ class Gear:
             raise InputError("teeth", "(not given)", "is required", "write for example teeth=20")
         return cls(**given)
 
-    @property
-    def keys(self) -> dict[str, Any]:
-        """What it was described by; a copy, for the gear never changes."""
-        return copy.deepcopy(self._keys)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """What travels to another process: all but what has been solved."""
-        return {name: value for name, value in self.__dict__.items() if name != "known"}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Come from another process, with nothing solved."""
-        self.__dict__.update(state, known=SolutionCache())
-
     def changed(self, **keys: Any) -> Gear:
         """A gear with other keys; None takes one away."""
         name = keys.pop("name", self.name)
         return Gear.of(name, {key: value for key, value in {**self.keys, **keys}.items() if value is not None})
 
-    @cached_property
-    def _scene(self) -> Scene:
-        document = {"results": ["geometry"], "gear": {self.name: self._keys}}
-        return build_scene(document, self.name, working_folder(), bare_si=True)
+    def document(self) -> dict[str, Any]:
+        """It as the tables of a case file."""
+        return {"gear": {self.name: self.keys}}
 
     @property
     def is_spur(self) -> bool:
@@ -101,11 +122,6 @@ class Gear:
     def geometry(self) -> geometry.Gear:
         """The gear of the geometry package, spur or helical, in SI throughout."""
         return self._scene.gears[self.name]
-
-    @cached_property
-    def data(self) -> Results:
-        """What a drawing of it carries: diameters, span."""
-        return run_scene(self._scene, progress=False)
 
     def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
         """Write drawings and meshes, as ``fegear export`` does; see `Results.export`.

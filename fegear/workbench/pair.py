@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import copy
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.reading import build_scene
 from fegear.results.pair.root_stress_history import table_names
-from fegear.workbench.gear import Gear
-from fegear.workbench.given import brief, name_of, table, taken, working_folder
-from fegear.workbench.run import run_scene
+from fegear.workbench.gear import Described, Gear
+from fegear.workbench.given import brief, name_of, table, taken
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
     from pathlib import Path
 
-    from fegear.case.reading import Scene
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.geometry.pair import GearPair, Member
     from fegear.workbench.given import Length
@@ -28,7 +23,7 @@ if TYPE_CHECKING:
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
 
 
-class Pair:
+class Pair(Described):
     """Two gears in mesh by the keys of ``[pair.NAME]`` of a case file, without their load; it never changes.
 
     Parameters
@@ -79,19 +74,6 @@ class Pair:
         self._scene  # noqa: B018  (a pair that cannot be is refused where it is described)
 
     @property
-    def keys(self) -> dict[str, Any]:
-        """What it was described by; a copy, for the pair never changes."""
-        return copy.deepcopy(self._keys)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """What travels to another process: all but what has been solved."""
-        return {name: value for name, value in self.__dict__.items() if name != "known"}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Come from another process, with nothing solved."""
-        self.__dict__.update(state, known=SolutionCache())
-
-    @property
     def names(self) -> tuple[str, str]:
         """Names of driver and driven in the results; different gears of one name are called driver and driven."""
         if self.driver.name == self.driven.name and self.driver != self.driven:
@@ -107,10 +89,6 @@ class Pair:
         if wide and pair["compliance"] == {"source": "fe"}:
             del pair["compliance"]  # gears with a width are solved so, and know no other source
         return {"gear": gears, "pair": {self.name: pair}}
-
-    @cached_property
-    def _scene(self) -> Scene:
-        return build_scene({"results": ["geometry"], **self.document()}, self.name, working_folder(), bare_si=True)
 
     @property
     def is_spur(self) -> bool:
@@ -142,11 +120,6 @@ class Pair:
                 'describe both gears with normal_module, helix_angle = "0 deg" and hand = "spur"',
             )  # fmt: skip
         return self._scene.helical_pairs[self.name]
-
-    @cached_property
-    def data(self) -> Results:
-        """What a drawing of it carries: contact ratio, centre distance, diameters, span."""
-        return run_scene(self._scene, progress=False)
 
     def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
         """Write drawings and meshes of both gears, as ``fegear export`` does; see `Results.export`."""

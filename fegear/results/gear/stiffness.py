@@ -99,8 +99,18 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
     return tuple(found)
 
 
+def tolerance_remarks(who: str, label: str, relative: Array, radius: Array, tolerance: float, of: str) -> list[str]:
+    """Where the estimated relative errors of a quantity over the radius [m] miss the tolerance, if anywhere."""
+    i = int(np.argmax(relative))
+    said = (
+        f"{who}: the estimated error of {label} reaches {relative[i]:.1e} (tolerance {tolerance:.0e}), at radius "
+        f"{radius[i] * 1e3:.6g} mm; at {np.mean(relative <= tolerance):.0%} of the {of} it is within the tolerance."
+    )
+    return [said] if relative[i] > tolerance else []
+
+
 def _remarks(asked: StiffnessInputs, t: StiffnessTable) -> tuple[str, ...]:
-    name, tolerance, remarks = asked.name, asked.tolerance, []
+    remarks: list[str] = []
     # The neighbour's deflection is small beside the loaded tooth's, to which it is added: that is its scale.
     for label, value, error in (
         ("c_self", t.c_self, t.errors["c_self"]),
@@ -109,13 +119,7 @@ def _remarks(asked: StiffnessInputs, t: StiffnessTable) -> tuple[str, ...]:
         ("root compression", t.root_compression, t.errors["root_compression"]),
     ):
         relative = np.abs(error / value)
-        i = int(np.argmax(relative))
-        if relative[i] > tolerance:
-            remarks.append(
-                f"Gear {name}: the estimated error of {label} reaches {relative[i]:.1e} (tolerance {tolerance:.0e}), "
-                f"at radius {t.radius[i] * 1e3:.6g} mm; at {np.mean(relative <= tolerance):.0%} of the positions it is "
-                "within the tolerance."
-            )
+        remarks += tolerance_remarks(f"Gear {asked.name}", label, relative, t.radius, asked.tolerance, "positions")
     return (*remarks, *asked.assumed)
 
 

@@ -42,7 +42,13 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Table
 from fegear.results.forecasts import RING
-from fegear.results.gear.stiffness import USUAL_HALF_WIDTH, check_contacts_of, contact_half_width, load_radii
+from fegear.results.gear.stiffness import (
+    USUAL_HALF_WIDTH,
+    check_contacts_of,
+    contact_half_width,
+    load_radii,
+    tolerance_remarks,
+)
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
@@ -190,24 +196,15 @@ def _sliced(table: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
     return (f"Gear {asked.name} over its face: {said}.",)
 
 
-def _missed(t: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
+def _missed(t: SolidTable, asked: SolidTableInputs) -> list[str]:
     """Say where the tolerance is missed."""
-    told = []
-    for label, value in (
-        ("c_self", t.c_self),
-        ("root_tension", t.root["tension"].value),
-        ("root_compression", t.root["compression"].value),
-    ):
-        relative = np.abs(t.errors[label] / value).max(axis=1)
-        i = int(np.argmax(relative))
-        if relative[i] > asked.tolerance:
-            within = float(np.mean(relative <= asked.tolerance))
-            told.append(
-                f"Gear {asked.name} over its face: the estimated error of {label} reaches {relative[i]:.1e} (tolerance "
-                f"{asked.tolerance:.0e}), at radius {t.radius[i] * 1e3:.6g} mm; at {within:.0%} of the radii it is "
-                "within the tolerance."
-            )
-    return tuple(told)
+    values = {"c_self": t.c_self, **{f"root_{side}": found.value for side, found in t.root.items()}}
+    relative = {label: np.abs(t.errors[label] / value).max(axis=1) for label, value in values.items()}
+    who = f"Gear {asked.name} over its face"
+    return [
+        remark for label, one in relative.items()
+        for remark in tolerance_remarks(who, label, one, t.radius, asked.tolerance, "radii")
+    ]  # fmt: skip
 
 
 def _check(scene: Scene, name: str) -> None:
