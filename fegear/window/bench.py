@@ -76,6 +76,7 @@ class Bench:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._held: asyncio.TimerHandle | None = None
         self._number = self._first = self._laid = self._comparing = 0
+        self._busy = False
         self._sight: tuple[str, ...] = ()
         self._shows: tuple[tuple[str, str], ...] = ()
         self._meshed: dict[tuple[str, str], _Content] = {}
@@ -131,7 +132,8 @@ class Bench:
         told += [
             ("meshed", content) for key, content in self._meshed.items() if key[1] == "pressure" or key in self._shows
         ]
-        return [*told, *((what, self._last[what]) for what in ("done", "designed", "compared") if what in self._last)]
+        told += [(what, self._last[what]) for what in ("done", "designed", "compared") if what in self._last]
+        return [*told, ("asked", {"number": self._number, "moving": False})] if self._busy else told
 
     # ---- the case ------------------------------------------------------------------------------------------------
 
@@ -188,7 +190,7 @@ class Bench:
         """Ask for the case as it is now, unless it is refused already."""
         if self.desk is None or self._computing is None or self.desk.refusal is not None:
             return
-        self._number = next(self._numbers)
+        self._number, self._busy = next(self._numbers), True
         self.tell("asked", {"number": self._number, "moving": moving})
         asked = self.asked()._replace(
             moving=moving, sight=self._sight, shows=self._shows, laid=self._laid,
@@ -320,8 +322,10 @@ class Bench:
         if said.number < self._first:  # of the case that lay here before
             return
         # While a value is being moved, the answer to an earlier place of it is what there is; it ends nothing.
-        if what in ("refused", "done") and said.number != self._number:
-            return
+        if what in ("refused", "done"):
+            if said.number != self._number:
+                return
+            self._busy = False
         if what == "done":
             content["level"] = "" if self.level == "normal" else f" ({self.level}, not the case's own)"
         self._keep(what, content)

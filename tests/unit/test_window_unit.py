@@ -477,6 +477,10 @@ def test_a_comparison_with_what_is_pinned_no_longer_is_not_shown(tmp_path):
     bench._hear(Said(asked[-1].number, "compared", {"sections": []}))
     assert told[-1] == "compared"
     assert bench.shown_now()[-1][0] == "compared"
+    bench.changed()  # a page that opens now shows that more is to come
+    assert bench.shown_now()[-1] == ("asked", {"number": asked[-1].number, "moving": False})
+    bench._hear(Said(asked[-1].number, "refused", {"sentence": "", "key": ""}))
+    assert bench.shown_now()[-1][0] == "compared"
 
 
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
