@@ -322,10 +322,8 @@ class Bench:
         if said.number < self._first:  # of the case that lay here before
             return
         # While a value is being moved, the answer to an earlier place of it is what there is; it ends nothing.
-        if what in ("refused", "done"):
-            if said.number != self._number:
-                return
-            self._busy = False
+        if what in ("refused", "done") and said.number != self._number:
+            return
         if what == "done":
             content["level"] = "" if self.level == "normal" else f" ({self.level}, not the case's own)"
         self._keep(what, content)
@@ -347,6 +345,7 @@ class Bench:
 
     def _keep(self, what: str, content: _Content) -> None:
         """Remember what a page that opens later has to be told."""
+        self._busy &= what not in ("refused", "done")
         if what == "plan":
             self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
             for key in [key for key in self._meshed if key[1] == "pressure"]:
