@@ -81,18 +81,18 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     reasons: dict[Task, list[str]] = {}
     order: list[Task] = []
 
-    def require(task: Task, reason: str) -> None:
+    def require(task: Task, reason: str, result: str = "") -> None:
         if task in reasons:
             if reason not in reasons[task]:
                 reasons[task].append(reason)
             return
         stage = known.called(task.stage)
         _require_effects(scene, stage)
-        _refuse_internal(scene, stage, task.subject)
+        _refuse_internal(scene, stage, task.subject, result)
         stage.check(scene, task.subject)
         reasons[task] = [reason]
         for need in stage.needs(scene, task.subject):
-            require(need, f"needed by {task}")
+            require(need, f"needed by {task}", result)
         order.append(task)
 
     for result in scene.case.results:
@@ -108,7 +108,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
                 "add the gear, pair or train that it is about" + _straight(scene),
             )
         for stage, subject in wanted:
-            require(Task(stage.name, subject), f'requested by results = ["{result}"]')
+            require(Task(stage.name, subject), f'requested by results = ["{result}"]', result)
 
     for task in more:
         require(task, ON_REQUEST)
@@ -148,8 +148,8 @@ def _require_effects(scene: Scene, stage: Stage) -> None:
         )
 
 
-def _refuse_internal(scene: Scene, stage: Stage, subject: str) -> None:
-    """Refuse internal gears and pairs where a stage is made for external ones."""
+def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> None:
+    """Refuse internal gears and pairs where a stage is made for external ones, by the name of what was asked for."""
     if stage.internal:
         return
     one = subject in scene.pairs or subject in scene.gears
@@ -157,9 +157,10 @@ def _refuse_internal(scene: Scene, stage: Stage, subject: str) -> None:
     alone = subject == "" or (one and subject not in scene.pairs)
     gears = [name for name, gear in scene.gears.items() if gear.tooth.internal and alone and subject in (name, "")]
     for key in (*(f"pair.{name}" for name in pairs), *(f"gear.{name}" for name in gears)):
-        named = stage.results[0] if stage.results else stage.name
+        named = result or (stage.results[0] if stage.results else stage.name)
+        wide = " where gears are helical or have a width" if subject in scene.wide_pairs else ""
         raise InputError(
-            key, "internal", f'is not taken by "{named}", which is computed for external gears alone',
+            key, "internal", f'is not taken by "{named}", which is computed for external gears alone{wide}',
             "do not ask for it, or describe the external gears in a case of their own",
         )  # fmt: skip
 

@@ -240,6 +240,17 @@ def test_what_an_internal_pair_is_not_computed_for_is_refused_in_one_sentence(ov
     assert words in str(refused.value)
 
 
+@pytest.mark.parametrize("result", ["load-sharing", "transmission-error", "load-distribution"])
+def test_a_helical_internal_pair_is_refused_by_the_name_of_what_was_asked_for(result):
+    """And not by that of a stage which nobody knows."""
+    document = copy.deepcopy(MESHING) | {"results": [result]}
+    for gear in document["gear"].values():
+        gear |= {"helix_angle": "5 deg", "hand": "right", "normal_module": gear.pop("module")}
+    with pytest.raises(InputError) as refused:
+        make_plan(build_scene(document, "pair", Path()), STAGES)
+    assert f'is not taken by "{result}", which is computed for external gears alone where gears' in str(refused.value)
+
+
 def test_relief_of_a_ring_is_drawn_where_it_is_ground():
     """Points of the relieved outline lie off the generated flank by the removal."""
     gear = ring()

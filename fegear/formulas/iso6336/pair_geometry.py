@@ -146,7 +146,8 @@ class PairGeometry:
         if not 0.0 <= self.helix_angle < math.pi / 2:
             raise RangeError("helix angle", self.helix_angle, "must lie between 0 and 90 deg, without the hand's sign")
         if self.internal and self.helix_angle:
-            raise RangeError("helix angle", self.helix_angle, "must be 0: of internal pairs only spur ones are rated")
+            given = f"{math.degrees(self.helix_angle):.6g} deg"
+            raise RangeError("helix angle", given, "must be 0: of internal pairs only spur ones are rated")
         if math.isnan(self.face_width):
             object.__setattr__(self, "face_width", min(g.face_width for g in self.gears))
         if not self.centre_distance > 0.5 * abs(sum(self.base_diameters)):

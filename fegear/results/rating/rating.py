@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fegear.base.errors import RangeError
+from fegear.base.errors import InputError, RangeError
 from fegear.case.built.loaded_flanks import check_flanks_to_load
 from fegear.case.effects import WIDE_EFFECTS
 from fegear.case.part import at
@@ -176,7 +176,7 @@ def given(asked: PairToRate) -> Replacement:
 def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingData | NotRated:
     try:
         return _rate(inputs, upstream)
-    except RangeError as error:  # a formula's own words, under the name of the pair
+    except InputError as error:  # a formula's own words, under the name of the pair
         named = at(f"pair.{inputs.asked.name}", error)
         if inputs.alone:
             raise named from None
