@@ -146,7 +146,7 @@ class Bench:
         self._last.clear()
         self._shows = ()
         self._meshed.clear()
-        self._settled = None
+        self._settled, self._busy = None, False
         if desk is not None:
             self.view = read_view(desk.path)
         self._first = next(self._numbers)

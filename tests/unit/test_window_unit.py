@@ -481,6 +481,10 @@ def test_a_comparison_with_what_is_pinned_no_longer_is_not_shown(tmp_path):
     assert bench.shown_now()[-1] == ("asked", {"number": asked[-1].number, "moving": False})
     bench._hear(Said(asked[-1].number, "refused", {"sentence": "", "key": ""}))
     assert bench.shown_now()[-1][0] == "compared"
+    bench.changed()  # nothing is computed any more for a case that is taken off the desk
+    bench.lay(None)
+    bench._hear(Said(asked[-1].number, "done", {"moving": False}))
+    assert bench.shown_now() == []
 
 
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
