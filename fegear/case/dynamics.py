@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from fegear.case.part import (
@@ -21,9 +22,6 @@ from fegear.case.part import (
     refuse_more,
     spelt_also,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 Frequency = Annotated[float, quantity("frequency", positive=True)]
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from fegear.case.part import Angle, Number, Part, PositiveStiffness, at_most, refuse
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 _Count = Annotated[int, Field(ge=2, le=10_000)]
 _MOST = at_most(24, "responses")

@@ -15,20 +15,16 @@ import re
 import stat
 import tempfile
 import unicodedata
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.base.errors import PATH, InputError, shown
 from fegear.base.unit_text import plain_number
 from fegear.base.units import unit_size
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
 
 #: Largest file that is read [bytes]; a table of a million lines is smaller.
 _LARGEST = 100_000_000

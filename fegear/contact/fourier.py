@@ -10,16 +10,12 @@ import functools
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,20 +17,15 @@ amplitude over the deflection under the design load is 2 pi f |F(f)| / W_d, whic
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import NamedTuple, overload
 
 from fegear.engine.stage import Stage
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
 
 
 class Entry(NamedTuple):

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.shown import declared
 from fegear.base.units import from_si
 from fegear.engine.figure.figure import Axis
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from fegear.base.arrays import Array
 
 
 def _class(owner: object) -> type:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import absent, install
-
-if TYPE_CHECKING:
-    from fegear.engine.plan import Plan
+from fegear.engine.plan import Plan
 
 #: Without them a run goes on, and says what it did not draw.
 _PICTURES = ("space",)

@@ -6,19 +6,14 @@ A plan in words, for ``fegear plan``: what runs and why, with which settings, fo
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.part import nearest
+from fegear.case.reading import Scene
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage, Task
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.case.reading import Scene
-
 
 #: Why a task runs that no result of the case asks for.
 ON_REQUEST = "shown on request"

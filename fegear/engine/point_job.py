@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from fegear.base.errors import FegearError, MissingLibraryError
 from fegear.base.one_thread import one_thread
 from fegear.base.plain import code_version, pack, unpack
 from fegear.base.solution_cache import SolutionCache, cache_on_disk
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 #: One point at a time in a process: gmsh keeps its model in global variables.
 _alone = threading.Lock()

@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from fegear.base.arrays import Alike
 from fegear.base.errors import InputError
 from fegear.base.plain import content_key
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import Scene
 from fegear.engine.executor import Executor
 from fegear.engine.extras import require
-from fegear.engine.outcome import Named
-from fegear.engine.plan import ON_REQUEST
-from fegear.engine.stage import Work
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from fegear.case.reading import Scene
-    from fegear.engine.figure.figure import DeferredFigure, Figure
-    from fegear.engine.outcome import Outcome, Value
-    from fegear.engine.plan import Plan, Step
-    from fegear.engine.stage import Task
-    from fegear.engine.table import Table
+from fegear.engine.figure.figure import DeferredFigure, Figure
+from fegear.engine.outcome import Named, Outcome, Value
+from fegear.engine.plan import ON_REQUEST, Plan, Step
+from fegear.engine.stage import Task, Work
+from fegear.engine.table import Table
 
 
 class Watcher(Protocol):

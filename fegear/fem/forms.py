@@ -8,15 +8,14 @@ equation itself, evaluated for unit displacement gradients (`coefficients`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from skfem import BilinearForm
 from skfem.element import DiscreteField
 from skfem.helpers import ddot, div, sym_grad
 
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array
 
 
 class _Dotted(BilinearForm):  # type: ignore[misc]  # scikit-fem has no types

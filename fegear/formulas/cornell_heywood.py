@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
 from fegear.formulas.root_section import (
@@ -27,12 +28,7 @@ from fegear.formulas.root_section import (
     sharpest_fillet_radius,
     tangent_range,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.tooth import Tooth
+from fegear.geometry.tooth import Tooth
 
 
 @dataclass(frozen=True, slots=True)

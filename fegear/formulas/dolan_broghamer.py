@@ -9,19 +9,15 @@ radius, h the height of the load above the section; the nominal stress subtracts
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
 from fegear.formulas.root_section import lewis_section, sharpest_fillet_radius
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.tooth import Tooth
+from fegear.geometry.tooth import Tooth
 
 #: Pressure angle [deg]: constant, exponent of t/r, exponent of t/h.
 CONSTANTS = {14.5: (0.22, 0.20, 0.40), 20.0: (0.18, 0.15, 0.45)}

@@ -11,19 +11,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown, shows
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.pair import GearPair
-
+from fegear.geometry.pair import GearPair
 
 #: Constant of the standard. Blok's integral over a semi-elliptical source gives 0.623 (tests hold it).
 _BLOK = 0.62

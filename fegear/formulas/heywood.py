@@ -14,20 +14,16 @@ changing fillet to apply it: here it is applied all along the true fillet, and t
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Chebyshev
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
 from fegear.formulas.root_section import fillet_point, fillet_radii, load_line
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.tooth import Tooth
+from fegear.geometry.tooth import Tooth
 
 #: Of the polynomial through the stress beside its largest value, over a 64th of the fillet.
 _DEGREE = 8

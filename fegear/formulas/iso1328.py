@@ -10,12 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from decimal import ROUND_HALF_UP, Decimal
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
-
-if TYPE_CHECKING:
-    from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear
 
 #: Flank tolerance classes of the standard, and the one that its formulas are written for.
 CLASSES = range(1, 12)

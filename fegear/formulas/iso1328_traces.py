@@ -12,18 +12,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Literal
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.formulas.iso1328 import CLASSES, FlankTolerances, tolerances_of
-
-if TYPE_CHECKING:
-    from typing import Literal
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear
 
 #: Evaluation length over cut-off wavelength, and the shortest cut-off [m].
 _LENGTH_OVER_CUTOFF, _SHORTEST_CUTOFF = 30.0, 25e-6

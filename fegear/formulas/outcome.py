@@ -12,21 +12,16 @@ What every root-stress formula returns: the stress and where it sits.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
-from fegear.base.arrays import ReadOnlyArrays
+from numpy.typing import ArrayLike
+
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError, FegearError, InputError, RangeError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.tooth import Tooth
-
+from fegear.geometry.gear import Gear
+from fegear.geometry.tooth import Tooth
 
 T = TypeVar("T")
 

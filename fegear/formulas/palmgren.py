@@ -8,14 +8,11 @@ deflection of one tooth per unit load. A fit to steel rollers: it knows neither 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.errors import RangeError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 
 def approach(line_load: ArrayLike, face_width: float, young_modulus: float) -> NDArray[np.float64]:

@@ -26,20 +26,16 @@ with Young's modulus E alone; it is used here as printed, without a plane-strain
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas import beam, hertz
 from fegear.formulas.outcome import ComplianceSource, ToothCompliance
 from fegear.formulas.root_section import load_line
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear
 
 
 def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> ToothCompliance:

@@ -20,19 +20,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.curves import Trochoid
-    from fegear.geometry.tooth import Tooth
-
+from fegear.geometry.curves import Trochoid
+from fegear.geometry.tooth import Tooth
 
 #: A fillet sharper than this [modules] is a corner.
 SHARPEST = 1e-6

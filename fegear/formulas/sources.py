@@ -13,26 +13,19 @@ from __future__ import annotations
 import difflib
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError, RangeError
 from fegear.formulas import cornell as cornell_compliance
 from fegear.formulas import cornell_heywood, dolan_broghamer, hertz, heywood, potential_energy, weber_banaschek
 from fegear.formulas.agma import agma908
 from fegear.formulas.iso6336 import part3_root_stress
-from fegear.formulas.outcome import Outcome, attempt
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.outcome import ComplianceSource, RootStress, RootStressSource
-    from fegear.geometry.pair import GearPair
-    from fegear.geometry.tooth import Tooth
-
+from fegear.formulas.outcome import ComplianceSource, Outcome, RootStress, RootStressSource, attempt
+from fegear.geometry.pair import GearPair
+from fegear.geometry.tooth import Tooth
 
 SOURCES: dict[str, ComplianceSource] = {
     s.name: s for s in (cornell_compliance.SOURCE, weber_banaschek.SOURCE, potential_energy.SOURCE)

@@ -6,13 +6,10 @@ method. Tables, values and figures of the results take unit and meaning from her
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from fegear.base.shown import Shown
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 
 def _table(rows: dict[str, tuple[str, str]]) -> Mapping[str, Shown]:

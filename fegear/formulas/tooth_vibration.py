@@ -8,17 +8,14 @@ mass of each section moves and turns (S. P. Timoshenko, Phil. Mag. 41 (1921) 744
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.formulas import beam
 from fegear.formulas.cornell import FOUNDATION_TANGENT, foundation_compliance
 from fegear.formulas.root_section import fillet_parameter, load_line, tangent_range
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear
 
 #: Gauss nodes on fillet and involute; 48 leave 2e-5 of the frequency.
 _NODES = 48

@@ -16,20 +16,16 @@ circle (s_f is the chord there).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.formulas import beam, hertz
+from fegear.formulas.hertz import Plane
 from fegear.formulas.outcome import ComplianceSource, ToothCompliance
 from fegear.formulas.root_section import load_line
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.hertz import Plane
-    from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear
 
 
 def coefficients(poisson_ratio: float, plane: Plane) -> dict[str, float]:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from fegear.geometry.gear import Gear
 from fegear.geometry.interference import interference
-from fegear.geometry.pair import MEMBERS
-
-if TYPE_CHECKING:
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair
+from fegear.geometry.pair import MEMBERS, GearPair
 
 #: Least normal tooth thickness at the tip circle in modules; case-hardened teeth want 0.4.
 LEAST_TIP_THICKNESS = 0.2

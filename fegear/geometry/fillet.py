@@ -12,20 +12,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
-from fegear.geometry.rack import transverse_angle
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.rack import BasicRack
+from fegear.geometry.rack import BasicRack, transverse_angle
 
 #: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
 _SLIGHT_UNDERCUT = 1e-4

@@ -10,17 +10,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
 
 FaceEnd = Literal["I", "II", "both"]
 

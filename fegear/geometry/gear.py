@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.shown import shown, shows
 from fegear.geometry.gear_body import GearBody, moments
+from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 from fegear.geometry.tooth import Tooth
-
-if TYPE_CHECKING:
-    from fegear.geometry.involute_tooth import InvoluteTooth
 
 Plane = Literal["strain", "stress"]
 Hand = Literal["left", "right", "spur"]

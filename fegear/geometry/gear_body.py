@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import GeometryError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 #: Outer and inner radius, and the two ends along the axis.
 Cylinder = tuple[float, float, float, float]

@@ -7,13 +7,11 @@ between them.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from fegear.base.errors import GeometryError
+from fegear.geometry.gear import Gear
 from fegear.geometry.involute import pressure_angle_of_inv
-
-if TYPE_CHECKING:
-    from fegear.geometry.gear import Gear
 
 
 def span(gear: Gear, teeth: int) -> float:

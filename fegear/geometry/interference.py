@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True, slots=True)

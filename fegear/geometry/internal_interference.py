@@ -6,23 +6,18 @@ Every check is geometry of the two teeth in the section across the axes, lengths
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
-from fegear.geometry.curves import Arc
-from fegear.geometry.internal_tooth import leaving_margin
+from fegear.geometry.curves import Arc, Curve
+from fegear.geometry.internal_tooth import InternalTooth, leaving_margin
 from fegear.geometry.involute import inv
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.curves import Curve
-    from fegear.geometry.internal_tooth import InternalTooth
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet.
 _TURNS, _CLOSER, _FILLET = 257, 4, 1025

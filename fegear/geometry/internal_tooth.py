@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Involute, PinionTipFillet
 from fegear.geometry.involute import inv, pressure_angle_of_inv, roll_of_polar_angle
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import transverse_angle
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
 
 #: Fewest teeth by which a ring exceeds its cutter: with less, cutter and ring hardly roll on each other.
 _FEWEST_MORE = 3

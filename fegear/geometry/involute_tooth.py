@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Involute, Line
 from fegear.geometry.involute import inv, polar_angle
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
 
 #: Largest helix angle on the pitch cylinder [rad].
 LARGEST_HELIX_ANGLE = math.radians(60.0)

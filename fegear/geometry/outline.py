@@ -10,28 +10,22 @@ fillet, as a grinding wheel leaves it.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.geometry.curves import Arc, Line
+from fegear.geometry.curves import Arc, Involute, Line
+from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.relief import Relief
 from fegear.geometry.tooth import Tooth
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.curves import Involute
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.involute_tooth import InvoluteTooth
-    from fegear.geometry.relief import Relief
-
 
 _LARGEST_COUNT = 1 << 14
 

@@ -8,23 +8,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.base.shown import shown, shows
-from fegear.geometry.internal_interference import internal_checks
+from fegear.geometry.gear import Gear
+from fegear.geometry.internal_interference import InternalCheck, internal_checks
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.internal_interference import InternalCheck
-
 
 Member = Literal["driver", "driven"]
 

@@ -8,17 +8,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import GeometryError, InputError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True)

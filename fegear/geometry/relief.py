@@ -9,25 +9,20 @@ The profile chart (K-chart) of a relieved flank: few points, and straight lines 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.base.tally import note
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
-
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair, Member
 
 Shape = Literal["linear", "parabolic"]
 

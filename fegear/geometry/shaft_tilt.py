@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.pair import GearPair
+from fegear.geometry.pair import GearPair
 
 #: Largest deviation for which the gap is linear in it [rad].
 LARGEST_TILT = math.radians(0.5)

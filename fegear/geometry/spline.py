@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.geometry.fillet import ProtuberanceFillet
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.outline import Drawn
+from fegear.geometry.outline import Drawn
 
 DEGREE = 5
 _FEWEST, _MOST = 9, 4096

@@ -16,12 +16,9 @@ import stat
 import tempfile
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
+from typing import TextIO
 
 #: Who is at work; locked while he is, by a lock that the system releases when he dies.
 HOLDER = "holder.json"

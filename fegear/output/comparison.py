@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import json
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 import fegear
 from fegear.base.errors import InputError
@@ -18,15 +19,8 @@ from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.tables import write_json, write_table
-from fegear.studies.comparison.compare import Side
+from fegear.studies.comparison.compare import Comparison, Side
 from fegear.studies.comparison.joined import comparison_figures
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from fegear.studies.comparison.compare import Comparison
 
 _HEAD = re.compile(r"(.*?)(?: \[(.*)\])?")
 

@@ -6,25 +6,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import fegear
 from fegear.base.units import from_si
+from fegear.engine.figure.figure import Figure
 from fegear.output.folder import SUMMARY, files_in
-from fegear.output.report.blocks import DataTable, Facts, Grid, Notes, Paragraph, Plot
+from fegear.output.report.blocks import Block, DataTable, Facts, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.tables import write_json, write_table
-from fegear.studies.cost.result import ALL, TOLERANCES
+from fegear.studies.cost.result import ALL, TOLERANCES, CostResults
 from fegear.studies.cost.tables import cost_figures, tables
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from fegear.engine.figure.figure import Figure
-    from fegear.output.report.blocks import Block
-    from fegear.studies.cost.result import CostResults
 
 
 def write_cost(results: CostResults, folder: Path, *, plots: bool = True) -> None:

@@ -5,19 +5,16 @@ from __future__ import annotations
 import ctypes.util
 import os
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import install
 from fegear.engine.figure.items import Skin, Spot, Surface
 from fegear.output.numbers import SEQUENTIAL, shade
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
 
 _SIZE = (1400, 900)
 #: How far a body moves to the left for the scale of colours, of half the picture's width.

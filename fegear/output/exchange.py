@@ -7,13 +7,10 @@ import hashlib
 import json
 import os
 import shutil
+from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
 
 import fegear
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
 
 #: What fegear wrote into a folder, with a digest of each file: what differs from it is somebody else's.
 RECORD = ".fegear-files.json"

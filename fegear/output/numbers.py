@@ -6,14 +6,11 @@ Shades of the colours by which figures call them, on light and on dark ground.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple
 
 from fegear.engine.colours import look
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from fegear.engine.outcome import Value
+from fegear.engine.outcome import Value
 
 _SIGNS = (("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
 

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.fem.plane.gear_section import gear_section, uneven_section
 from fegear.fem.plane.imported_mesh import write_solid_file
-from fegear.fem.solid.extruded import extruded, graded_stations, pressed_band
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.solid.extruded import SolidMesh, extruded, graded_stations, pressed_band
+from fegear.geometry.gear import Gear
 from fegear.output.dxf import AS_GENERATED
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.solid.extruded import SolidMesh
-    from fegear.geometry.gear import Gear
 
 _MM = 1e3
 #: Abaqus' names of the elements.

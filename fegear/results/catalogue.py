@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import copyreg
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 # fmt: off
 #: Every stage by the subject of its results, in the order in which plans list those that they skip.

@@ -10,18 +10,13 @@ Sources that several results share.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
+from fegear.case.reading import Scene
 from fegear.engine.citation import Citation
 from fegear.engine.stage import Forecast
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from fegear.case.reading import Scene
-
 
 #: Importing mesher and solvers, once in a process.
 LIBRARIES = 0.2

@@ -12,9 +12,10 @@ import math
 import re
 import time
 import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,14 +27,9 @@ from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
 from fegear.engine.point_job import Failure
 from fegear.engine.run import run_plan
+from fegear.engine.stage import Progress
 from fegear.engine.table import Column, Table
 from fegear.results.catalogue import STAGES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from fegear.engine.stage import Progress
-
 
 #: Points of a sweep beyond which its results do not fit into memory: some 10 GB.
 _MOST_POINTS = 100_000

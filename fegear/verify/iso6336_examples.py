@@ -7,20 +7,16 @@ and ``[judgement]``, why a factor does not fall within half a unit of its last d
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fegear.base.units import registry
-from fegear.formulas.iso6336.conditions import Conditions, Replacement
+from fegear.formulas.iso6336.conditions import Conditions, Factor, Replacement
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
 from fegear.formulas.iso6336.part1_face_load import Alignment
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
 from fegear.formulas.iso6336.safety import rate_pair
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from fegear.formulas.iso6336.conditions import Factor
 
 #: Printed units in SI.
 UNITS = {

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.dynamics.planetary.phases import mesh_phases
 from fegear.dynamics.planetary.planet_loads import MeshedSet
-from fegear.dynamics.planetary.planet_set import PlanetarySet, even_angles
+from fegear.dynamics.planetary.planet_set import Central, PlanetarySet, even_angles
 from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.geometry.involute import inv
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.dynamics.planetary.planet_set import Central
 
 
 def unshifted(

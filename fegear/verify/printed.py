@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.geometry.gear import Gear, Hand
+from fegear.geometry.pair import GearPair
 from fegear.verify.iso6336_examples import rows as example_rows
 from fegear.verify.kept import examples, kept
 from fegear.verify.row import Compared, Row, Rows, near, printed
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from fegear.geometry.gear import Gear, Hand
-    from fegear.geometry.pair import GearPair
 
 ROWS = Rows()
 INCH, PSI = 0.0254, 6894.757

@@ -7,23 +7,20 @@ integrator that it is compared with.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
+from fegear.base.arrays import Array
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import SteadyState, steady_state
 from fegear.dynamics.train.charts import FourInertia
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Array
 
 R = 0.04177
 JUMPS = (0.32, 0.68, 1.0)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.geometry.internal_tooth import InternalTooth
+from fegear.base.arrays import Array
+from fegear.geometry.internal_tooth import InternalTooth
 
 
 def outside(tooth: InternalTooth, x: Array, y: Array) -> Array:

@@ -7,15 +7,11 @@ Nothing of a row's other side may come from fegear: it is printed, another progr
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-
-    from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike
 
 #: What a number can be compared with, in the order of the page.
 AGAINST = {

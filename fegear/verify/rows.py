@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.verify import calculix, own, printed, programs
-from fegear.verify.row import AGAINST
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.verify.row import Outcome, Row
+from fegear.verify.row import AGAINST, Outcome, Row
 
 #: In the order of the page: printed numbers first.
 ALL: tuple[Row, ...] = (*printed.ROWS.all, *calculix.ROWS.all, *programs.ROWS.all, *own.ROWS.all)

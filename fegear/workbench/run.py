@@ -5,28 +5,22 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fegear.base.errors import InputError, shown
 from fegear.base.one_thread import one_thread
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.reading import build_scene, case_text, parse_document, read_document, set_key
+from fegear.case.reading import Scene, build_scene, case_text, parse_document, read_document, set_key
 from fegear.case.text_file import named_path
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
-from fegear.engine.run import Silence, run_plan
+from fegear.engine.run import Silence, Watcher, run_plan
 from fegear.output.terminal import watcher
 from fegear.results.catalogue import STAGES
 from fegear.workbench.given import cache_of, table, taken, texts, working_folder
 from fegear.workbench.results import Results
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from fegear.case.reading import Scene
-    from fegear.engine.run import Watcher
 
 
 def run(

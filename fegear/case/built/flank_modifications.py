@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import build_relief
 from fegear.case.built.measured_flanks import measured_gear
 from fegear.case.built.pair_inputs import gear_flanks, gear_name
 from fegear.case.part import at
+from fegear.case.reading import Scene
+from fegear.case.relief import BiasPart, LeadPart, TopographyPart
 from fegear.case.text_file import read_columns
 from fegear.geometry.flank_modification import (
     Bias,
@@ -26,17 +28,10 @@ from fegear.geometry.flank_modification import (
     LeadTable,
     Topography,
 )
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible import DEEPEST_RELIEF
-from fegear.geometry.relief import roll_of_radius
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.case.relief import BiasPart, LeadPart, TopographyPart
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.relief import Relief
+from fegear.geometry.relief import Relief, roll_of_radius
 
 
 @dataclass(frozen=True)

@@ -4,29 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.part import at
+from fegear.case.reading import Scene
 from fegear.case.text_file import read_columns
-from fegear.dynamics.helical_pair.mesh_parameters import partial_face_mu
-from fegear.dynamics.helical_pair.model import HelicalPairModel
+from fegear.case.transmissibility import TransmissibilityPart
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
+from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
 from fegear.dynamics.train.modes import undamped_modes
-from fegear.geometry.pair import MEMBERS
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.case.transmissibility import TransmissibilityPart
-    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
-    from fegear.dynamics.helical_pair.model import ReducedPairModel
-    from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 #: Columns of a load distribution file.
 _DISTRIBUTION = {"z": "length", "load": "line_load", "deflection": "length"}

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
-from fegear.base.arrays import distinct
+from fegear.base.arrays import Array, distinct
 from fegear.base.errors import InputError
+from fegear.case.reading import Scene
 from fegear.case.relief import MeasuredPart
 from fegear.case.text_file import read_columns
-from fegear.formulas.iso1328_traces import cutoff, evaluate, filtered, helix_range, profile_range
+from fegear.formulas.iso1328_traces import TraceDeviations, cutoff, evaluate, filtered, helix_range, profile_range
 from fegear.geometry.flank_modification import LeadTable, Topography
+from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.formulas.iso1328_traces import TraceDeviations
-    from fegear.geometry.gear import Gear
 
 Kind = Literal["profile", "helix"]
 #: Places of a mean trace that pairs feel, two for the shortest wave that the filter leaves and more; of a topography.

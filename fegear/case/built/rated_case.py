@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from fegear.base.errors import InputError, RangeError
 from fegear.case.part import at
-from fegear.formulas.hardened_case import HardenedCase, depth_of
+from fegear.case.reading import Scene
+from fegear.formulas.hardened_case import HardenedCase, Profile, depth_of
 from fegear.formulas.iso6336.part5_materials import usual_hardness
-
-if TYPE_CHECKING:
-    from fegear.case.reading import Scene
-    from fegear.formulas.hardened_case import Profile
 
 #: Materials whose hardness falls from the surface to the core.
 _SURFACE_HARDENED = ("case-hardened", "induction-hardened", "nitrided", "nitrocarburized")

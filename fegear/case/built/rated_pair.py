@@ -12,16 +12,28 @@ What the material of a gear bears in a rating by ISO 6336: stress numbers by nam
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
-from fegear.case.built.flank_errors import gear_deviations
+from fegear.case.built.flank_errors import Deviation, gear_deviations
 from fegear.case.built.pair_inputs import gear_name
-from fegear.case.built.rated_duty import assumed_of_pair, in_order, load_cycles, mates_of, refuse_fast, spectrum_levels
+from fegear.case.built.rated_duty import (
+    Level,
+    assumed_of_pair,
+    in_order,
+    load_cycles,
+    mates_of,
+    refuse_fast,
+    spectrum_levels,
+)
 from fegear.case.built.shafts import gearbox_of, on_shafts
+from fegear.case.gear import GearPart
+from fegear.case.operation import HelixModification
+from fegear.case.pair import Width
 from fegear.case.part import at
 from fegear.case.planetary import set_of_pair, set_pair, set_that_shares
+from fegear.case.reading import Scene
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.conditions import Conditions
@@ -30,23 +42,10 @@ from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.formulas.iso6336.part1_stiffness import pair_blank_factor
 from fegear.formulas.iso6336.part3_root_stress import LEAST_RIM, SOLID_RIM
 from fegear.formulas.iso6336.part5_materials import BRINELL, MATERIALS, SOFT_IRON, TOUGH_IRON, allowable, usual_hardness
-from fegear.formulas.iso6336.rated import Duty, Quality, Strength
-from fegear.geometry.pair import MEMBERS
+from fegear.formulas.iso6336.rated import Both, Duty, Quality, Strength
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.shafts.mesh import straight_slope
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from fegear.case.built.flank_errors import Deviation
-    from fegear.case.built.rated_duty import Level
-    from fegear.case.gear import GearPart
-    from fegear.case.operation import HelixModification
-    from fegear.case.pair import Width
-    from fegear.case.reading import Scene
-    from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
-
 
 #: nu_40 of ISO VG 220, which is taken where a case names no oil [m^2/s].
 USUAL_VISCOSITY = 220e-6

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.part import at, nearest
+from fegear.case.reading import Scene
 from fegear.shafts.gearbox import Gearbox
 from fegear.shafts.mesh import MeshPlace
 from fegear.shafts.solution import LoadedShaft, Seat, refuse_torque
-
-if TYPE_CHECKING:
-    from fegear.case.reading import Scene
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6

@@ -8,22 +8,19 @@ From ``[accuracy]`` to the settings of the finite-element part.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fegear.base.errors import RangeError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.accuracy import AccuracyPart
 from fegear.case.part import at
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.solution_cache import SolutionCache
-    from fegear.case.accuracy import AccuracyPart
-    from fegear.case.reading import Scene
-    from fegear.fem.plane.gear import GearInfluence
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.gear import Gear
+from fegear.case.reading import Scene
+from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.settings import MeshSettings
+from fegear.geometry.gear import Gear
 
 
 def needed_reach(scene: Scene, name: str) -> int:

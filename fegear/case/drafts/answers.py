@@ -7,18 +7,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from fegear.base.errors import InputError
 from fegear.base.units import to_si
 from fegear.case.part import nearest
 from fegear.geometry.rack import BasicRack
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
 
 #: Line load that is assumed where no torque is given [N/m]: what case-hardened gears carry for ever.
 _LINE_LOAD = 200e3

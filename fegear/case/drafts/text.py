@@ -5,19 +5,14 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Mapping
 from functools import partial
 from importlib.resources import files
 from string import Template
-from typing import TYPE_CHECKING
 
 from fegear.base.units import from_si
-from fegear.case.drafts.answers import KINDS
+from fegear.case.drafts.answers import KINDS, Answers
 from fegear.geometry.gear import USUAL_RING_RIM
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.case.drafts.answers import Answers
 
 _HEAD = """\
 # {about}.

@@ -6,31 +6,23 @@ loaded, per unit line load (secant, not local slope). Formulas outside their ran
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.shown import shown, shows
+from fegear.fem.plane.gear import GearInfluence
 from fegear.formulas import hertz
-from fegear.formulas.outcome import attempt
+from fegear.formulas.outcome import ComplianceSource, attempt
 from fegear.formulas.root_section import load_line
 from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES, pair_compliance
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.gear import GearInfluence
-    from fegear.formulas.outcome import ComplianceSource
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.tooth import Tooth
-
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.tooth import Tooth
 
 _REASON = "why the formula gives nothing; empty where it does"
 

@@ -7,18 +7,14 @@ that fits by chance does not pass for a finding.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array
 
 #: A formula is near where it is within this of the finite elements, and so many of the points there have to be.
 NEAR, SURE = 0.10, 0.95

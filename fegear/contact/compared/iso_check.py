@@ -8,26 +8,22 @@ The wheels with the whole numbers of teeth below and above are solved, and their
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.solution_cache import SolutionCache
+from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
 from fegear.formulas.iso6336 import part3_pair as rating
 from fegear.formulas.iso6336.part1_stiffness import Stiffness, pair_stiffness
 from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
 from fegear.formulas.outcome import Outcome, attempt
 from fegear.geometry.gear import Gear
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.solution_cache import SolutionCache
-    from fegear.fem.plane.gear import GearInfluence
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True, slots=True)

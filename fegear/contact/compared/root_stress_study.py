@@ -6,26 +6,20 @@ Gears drawn evenly over ranges of their numbers, and where they are loaded: a po
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import FegearError, InputError
+from fegear.base.solution_cache import SolutionCache
 from fegear.contact.compared.crosscheck import RootStressAnswers, root_stress_answers
+from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.gear import Gear
 from fegear.geometry.tooth import Tooth
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.base.solution_cache import SolutionCache
-    from fegear.fem.plane.settings import MeshSettings
-
 
 #: Half-width of the band that counts as agreement: what Cornell's abstract claims.
 BAND = 0.05

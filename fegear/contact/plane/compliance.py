@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.root_stress import FilletCurve
+from fegear.base.arrays import Array
+from fegear.fem.plane.root_stress import FilletCurve
 
 Side = Literal["tension", "compression"]
 

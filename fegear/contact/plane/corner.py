@@ -20,20 +20,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.tally import tallied
 from fegear.contact.plane.fe_compliance import Spline, spline
+from fegear.geometry.gear import Gear
 from fegear.geometry.involute import polar_angle
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True)

@@ -15,17 +15,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array, Mask
 from fegear.base.errors import ConvergenceError, InputError, RangeError
 from fegear.base.tally import note, tallied
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array, Mask
 
 #: Share below which the logarithm is continued by its tangent: W ln W has an infinite slope at zero. Its effect on any
 #: share is below its own size.

@@ -5,19 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.contact.plane.corner import corner_contact
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.corner import CornerContact
-    from fegear.geometry.pair import GearPair
+from fegear.contact.plane.corner import CornerContact, corner_contact
+from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True, slots=True)

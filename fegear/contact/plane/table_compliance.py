@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.contact.plane.compliance import OneTooth, Rigid
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.compliance import GearCompliance
-    from fegear.geometry.pair import GearPair, Member
+from fegear.contact.plane.compliance import GearCompliance, OneTooth, Rigid
+from fegear.geometry.pair import GearPair, Member
 
 Fit = Literal["linear", "cubic"]
 

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

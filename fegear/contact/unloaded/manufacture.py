@@ -10,21 +10,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
+from fegear.geometry.gear import Gear, Hand
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.geometry.involute import polar_angle
 from fegear.geometry.rack_cutter import RackFlank
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear, Hand
 
 
 def as_cut(gear: Gear, *, profile_angle: float = 0.0, lead_angle: float = 0.0) -> Gear:

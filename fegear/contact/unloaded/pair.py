@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import GeometryError, InputError, RangeError
 from fegear.contact.unloaded.manufacture import as_cut
+from fegear.geometry.gear import Gear
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack_cutter import RackFlank
-
-if TYPE_CHECKING:
-    from fegear.geometry.gear import Gear
 
 #: Largest error angle for which the contact analysis is meant [rad]; beyond it a drive is a crossed-axis drive.
 LARGEST_ERROR = math.radians(3.0)

@@ -24,22 +24,16 @@ import itertools
 import math
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.fourier import Panels
 from fegear.contact.plane.meshing import Meshing
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array, Mask
-    from fegear.geometry.pair import GearPair, Member
-
+from fegear.geometry.pair import GearPair, Member
 
 #: A contact line shorter than this is left out [modules]: it is no longer long beside its Hertzian width.
 SHORTEST_LINE = 0.15

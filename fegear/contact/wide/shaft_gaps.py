@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import ReadOnlyArrays
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array, ReadOnlyArrays
 
 
 @dataclass(frozen=True)

@@ -6,21 +6,16 @@ The modifications that are tried: lists of amounts and lengths, and the families
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.base.shown import shown
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Index
-    from fegear.geometry.pair import GearPair
+from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,22 +7,16 @@ least of the grid is thereby known, not guessed. From the best few, a descent wi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.design.flanks.descent import descend
-from fegear.design.flanks.forms import FAMILIES, GROUPS, GroundRelief
-from fegear.design.flanks.trials import quick_flanks
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Array
-    from fegear.design.flanks.forms import Family, ReliefGrid
-    from fegear.design.flanks.trials import FlankTrials, QuickFlanks, Tried
+from fegear.design.flanks.forms import FAMILIES, GROUPS, Family, GroundRelief, ReliefGrid
+from fegear.design.flanks.trials import FlankTrials, QuickFlanks, Tried, quick_flanks
 
 #: Candidates loaded exactly, at least and at most; those from which a descent starts; coarse panels over the face.
 _LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 24, 240, 6, 5

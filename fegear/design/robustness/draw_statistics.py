@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array
 
 #: Confidence of the intervals of percentiles.
 CONFIDENCE = 0.95

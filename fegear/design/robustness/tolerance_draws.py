@@ -10,14 +10,12 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array
 
 Sequence = Literal["sobol", "halton", "random"]
 Distribution = Literal["normal", "uniform"]

@@ -11,14 +11,11 @@ J. E. Kelley, The cutting-plane method for solving convex programs, J. SIAM 8 (1
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Floats
+from fegear.base.arrays import Floats
 
 _ROUND_OFF = 1e-10
 

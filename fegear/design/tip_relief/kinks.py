@@ -9,16 +9,14 @@ load sharing alone, whatever its law.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Floats, Index, Mask
+from fegear.base.arrays import Floats, Index, Mask
 
 #: Neighbouring positions that are closer, over the period, stand on both sides of a change of pairs.
 _CHANGE = 1e-6

@@ -14,19 +14,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.dynamics.motion.motion import Passage, propagate, starting_state
-from fegear.dynamics.motion.motion_model import pack
+from fegear.dynamics.motion.motion_model import Moving, Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, close, moving
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.motion.motion_model import Moving, Packed
-
 
 #: Shares of more damping from which motions are continued, and how much of it is taken away at a time.
 FROM, STEP = (3.0, 9.0), 3.0**-0.25

@@ -5,14 +5,12 @@ from __future__ import annotations
 import hashlib
 import logging
 import pickle
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numba
 from numba.core.caching import IndexDataCacheFile
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _DIGEST = 32
 

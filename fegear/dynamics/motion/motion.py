@@ -9,21 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.tally import note, tallied
 from fegear.dynamics.motion import kernel
-from fegear.dynamics.motion.motion_model import Packed, pack
+from fegear.dynamics.motion.motion_model import Moving, Packed, pack
 from fegear.dynamics.motion.radau import radau
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.motion.motion_model import Moving
 
 #: Order of the Taylor series; high, because a longer step costs less than a second one.
 ORDER = 20

@@ -9,11 +9,12 @@ reported. What comes near none is followed until it spreads no further, and meas
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import RangeError
 from fegear.base.tally import tallied
 from fegear.dynamics.motion.coexisting import (
@@ -30,14 +31,8 @@ from fegear.dynamics.motion.coexisting import (
     stable_motions,
 )
 from fegear.dynamics.motion.motion import Trajectory, propagate, starting_state
-from fegear.dynamics.motion.motion_model import Packed, pack
+from fegear.dynamics.motion.motion_model import Moving, Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, close, leads_to, leap, moving
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.motion.motion_model import Moving
 
 #: Most periods of excitation that one period of the motion may take.
 LONGEST_MULTIPLE = 32

@@ -6,27 +6,20 @@ The four-inertia model: motor, two gears, load, two shafts (TM-100180, Eqs. 1 to
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import SteadyState, speed_sweep
-from fegear.dynamics.train.excitation import effective_error
-from fegear.dynamics.train.train import Body, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.excitation import MeshExcitation
-    from fegear.dynamics.train.train import DampingLaw
-
+from fegear.dynamics.train.excitation import MeshExcitation, effective_error
+from fegear.dynamics.train.train import Body, DampingLaw, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
 
 Direction = Literal["up", "down", "static", "rest"]
 

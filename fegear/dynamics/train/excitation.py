@@ -7,21 +7,16 @@ lives longer than one base pitch; its life is cut into slots of one pitch, and e
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.dynamics.train.periodic import Periodic, combine
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True)

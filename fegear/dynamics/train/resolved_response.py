@@ -6,16 +6,12 @@ intervals are halved until the logarithm of each amplitude runs straight in them
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array
 
 #: How far the logarithm of an amplitude may lie beside the drawn line (1 % of the amplitude).
 BEND = 0.01

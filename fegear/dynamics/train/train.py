@@ -9,20 +9,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from fegear.base.arrays import Array
-
 
 #: Largest unbalanced torque, as a share of the torques applied.
 TORQUE_TOLERANCE = 1e-6

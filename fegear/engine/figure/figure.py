@@ -8,12 +8,14 @@ Axes of a panel: what they show, in which unit, on which scale.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from fegear.base.arrays import Alike
+from fegear.base.arrays import Alike, Array
 from fegear.engine.figure.items import (
     Bars,
     Curve,
@@ -28,13 +30,6 @@ from fegear.engine.figure.items import (
     Zone,
     fixed,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,20 +5,14 @@ Lines of drawings and members of families.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from fegear.base.arrays import Alike
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-
+from fegear.base.arrays import Alike, Array
 
 #: Curves with no more points than this show them.
 _FEW = 15

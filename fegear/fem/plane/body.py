@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.fem.plane.mesh import SectorMesh
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.geometry.gear_body import GearBody
+from fegear.geometry.gear_body import GearBody
 
 #: How near to a circle a vertex lies on it, as a share of the radius.
 _NEAR = 1e-9

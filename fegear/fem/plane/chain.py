@@ -6,12 +6,9 @@ tridiagonal, so one sweep from either end leaves the two sides of the loaded sec
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+from fegear.base.arrays import Array
 
 
 def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, Array], dict[int, Array]]:

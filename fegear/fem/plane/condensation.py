@@ -10,15 +10,13 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.elasticity import SectorElasticity
+from fegear.fem.plane.elasticity import SectorElasticity
 
 #: Unknowns that a smallest part has about, with its elements' own ones gone: fewer cost calls, more cost arithmetic.
 _SMALLEST_PART = 160

@@ -6,17 +6,12 @@ What a corner of the outline does to a contact near it: the exact wedge, and how
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.errors import RangeError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.geometry.involute_tooth import InvoluteTooth
-
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: A contact's usual half-width [modules], at which what depends on it is reported.
 REFERENCE_HALF_WIDTH = 0.02

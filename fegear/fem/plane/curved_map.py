@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from skfem import MappingIsoparametric
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array, Index
 
 
 class CurvedMap(MappingIsoparametric):  # type: ignore[misc]  # scikit-fem has no types

@@ -6,17 +6,13 @@ Shape functions, quadrature, numbering and maps are scikit-fem's, and it integra
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.plane.elements import one_order_higher, sector_elements
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.elements import SectorElements
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.gear import Plane
+from fegear.base.arrays import Array, Index
+from fegear.fem.plane.elements import SectorElements, one_order_higher, sector_elements
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.geometry.gear import Plane
 
 
 @dataclass(frozen=True)

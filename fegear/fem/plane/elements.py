@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.mesh import SectorMesh
 
 #: An edge that leaves its chord by no more than this share of it is straight.
 _STRAIGHT = 1e-12

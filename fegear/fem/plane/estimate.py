@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.plain import read_only
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import SIDES, Influence, Side
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array
 
 #: What errors are estimated of.
 QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.fem.plane.body import with_body
 from fegear.fem.plane.boundary import sector_boundary
+from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.sector import mesh_inside
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.whole_gear import SIDES
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.outline import turned
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Two triangles become a quadrilateral whose corners are at least so square: the sine of its most oblique angle.
 _SQUAREST = 0.55

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.base.one_thread import one_thread
 from fegear.fem.plane.elasticity import assemble, lame
 from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring import close_ring
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.influence import Influence
-    from fegear.fem.plane.mesh import SectorMesh
 
 #: Places of the contact along the flank, evenly over its arc length: closer to each other than the pressure is wide.
 _PLACES = 21

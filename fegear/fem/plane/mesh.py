@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array, Index
 
 #: Where fegear's own meshes come from.
 GENERATED = "generated"

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Index
 from fegear.base.one_thread import one_thread
 from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring import close_ring
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.influence import Influence
-    from fegear.fem.plane.mesh import SectorMesh
 
 #: Boundaries of a sector that are no outline of a tooth.
 _INNER = ("side_a", "side_b", "bore")

@@ -15,18 +15,16 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError
 from fegear.fem.plane.chain import chain_coupling
 from fegear.fem.plane.condensation import Condensed, condense
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.elasticity import SectorElasticity
-    from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.elasticity import SectorElasticity
+from fegear.fem.plane.mesh import SectorMesh
 
 #: Inverses of this many complex numbers are held at once while the harmonics are summed.
 _BATCH = 2_000_000

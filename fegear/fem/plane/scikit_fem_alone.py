@@ -7,8 +7,9 @@ shorter ones below the pressures, which are as wide as the contacts themselves: 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.sparse.linalg import splu
@@ -27,22 +28,17 @@ from skfem import (
 from skfem.helpers import dot
 from skfem.models.elasticity import linear_elasticity  # the equation is not fegear's either
 
+from fegear.base.arrays import Array, Index
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.root_stress import CLEARANCE, search_end
 from fegear.fem.plane.sector import mesh_inside, mesh_sector
-from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.geometry.gear import Plane
+from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.outline import turned
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.gear import Plane
-    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Edges of tooth 0, as a share of those that the gear was solved with; those of other teeth are longer by as much, but
 #: no longer than those of this level.

@@ -7,23 +7,19 @@ import math
 import signal
 import threading
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.base.errors import FegearError, InputError, MissingLibraryError, lacks_memory
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.fem.plane.settings import MeshSettings
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: What gmsh's wheel needs from the system, for the error message.
 SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"

@@ -7,28 +7,23 @@ The whole gear under one load on tooth 0: displacement and stress at every node,
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.fem.plane.elasticity import assemble, lame
 from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring import close_ring
 from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.trace import loaded_flank
+from fegear.geometry.gear import Gear, Plane
+from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.outline import turned
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.gear import Gear, Plane
-    from fegear.geometry.involute_tooth import InvoluteTooth
-
 
 #: Boundaries that vanish when the sectors are joined.
 SIDES = ("side_a", "side_b")

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
@@ -30,12 +29,9 @@ from fegear.formulas.root_section import (
     touching_section,
 )
 from fegear.geometry.curves import Trochoid
-
-if TYPE_CHECKING:
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.tooth import Tooth
-
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.tooth import Tooth
 
 #: Axial contact ratios so far from 1 are taken for the two sides of the jump of J.
 _BESIDE_ONE = 1e-9

@@ -8,16 +8,12 @@ unit face width, N/(m m) = Pa; 1 N/(mm um) = 1e9 Pa.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
 from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from fegear.geometry.pair import GearPair
+from fegear.geometry.pair import GearPair
 
 #: Table 9 of the standard: q' in mm um/N.
 _C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)

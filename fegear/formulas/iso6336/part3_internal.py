@@ -9,16 +9,13 @@ external teeth the same steps give the numbers of the formulas.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from fegear.base.errors import RangeError
 from fegear.formulas.iso6336.part3_root_stress import RootForm, stress_correction_factor
-
-if TYPE_CHECKING:
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Angle of the tangent to the tooth's centre line at the critical section [rad].
 EXTERNAL_TANGENT, INTERNAL_TANGENT = math.radians(30.0), math.radians(60.0)

@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
 from fegear.formulas.iso6336 import part3_root_stress as root
 from fegear.formulas.root_section import refuse_helix
-
-if TYPE_CHECKING:
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,16 +12,12 @@ the depth of the half-width on.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.formulas.hertz import stresses_below
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
 
 #: K_tau,per: shear strength of the material over its Vickers hardness [Pa per HV].
 HARDNESS_FACTOR = 0.4e6

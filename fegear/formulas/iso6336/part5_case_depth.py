@@ -6,10 +6,8 @@ All numbers of this module are recalled: printed papers name both standards' rul
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from fegear.geometry.pair import GearPair
+from fegear.geometry.pair import GearPair
 
 #: Usual case depths at 550 HV of finished flanks, and the largest one, in normal modules; that is at most 6 mm.
 USUAL, LARGEST, DEEPEST = (0.15, 0.25), 0.4, 6e-3

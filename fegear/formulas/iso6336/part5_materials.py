@@ -9,17 +9,14 @@ ISO 6336-5: the groups of materials, by the standard's own letters; parts 1, 2 a
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from fegear.base.errors import RangeError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
 
 Quality = Literal["ML", "MQ", "ME"]
 

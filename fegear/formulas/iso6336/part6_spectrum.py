@@ -9,16 +9,12 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas.iso6336.life import Knots
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Array
 
 #: Halvings of the interval of the safety: to round-off.
 _HALVINGS = 200

@@ -6,7 +6,7 @@ A figure as plotly's data and layout.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,10 +14,6 @@ from fegear.engine.figure.figure import FEW_DECADES, Axis, Figure, Panel
 from fegear.engine.figure.items import HeatMap, Mark, Which
 from fegear.output.draw_plotly.traces import Spec, anchor, one_entry_each, rich, shared, titled, traces
 from fegear.output.numbers import DARK, LIGHT, pretty_unit, shade
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
 
 #: Pixels: a panel alone, panels above each other, the room between them and around them.
 _ALONE, _STACKED, _GAP, _TITLED = 350, 240, 78, 22

@@ -5,16 +5,13 @@ from __future__ import annotations
 import base64
 import html
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from fegear.engine.figure.figure import Figure
 from fegear.output.draw_plotly.layout import plotly_json, template
 from fegear.output.numbers import LIGHT
-
-if TYPE_CHECKING:
-    from fegear.engine.figure.figure import Figure
-
 
 #: What JupyterLab, VS Code and others draw as an interactive plot; who does not takes the picture.
 PLOTLY = "application/vnd.plotly.v1+json"

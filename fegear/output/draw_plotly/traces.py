@@ -8,21 +8,16 @@ from __future__ import annotations
 import base64
 import html
 import re
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.engine.colours import look
+from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve, HeatMap, Points, Stems
 from fegear.output.numbers import DIVERGING, SEQUENTIAL, pretty_unit, shade
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.engine.figure.figure import Axis, Figure, Panel
-
 
 _DASHES = {"dashdot": "dashdot", "dot": "dot", "steps": "solid"}
 

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import few
 from fegear.output.draw_png.sheet import Sheet
 from fegear.output.file_names import file_name
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from fegear.engine.figure.figure import Figure, View
 
 DPI = 150
 #: SVG without its date, so that equal figures are equal bytes; PNG packed in two thirds of the time, a tenth larger.

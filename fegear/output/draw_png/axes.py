@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +30,6 @@ from fegear.engine.figure.items import (
     Which,
 )
 from fegear.output.numbers import DIVERGING, SEQUENTIAL, pretty_unit, shade
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def set_scales(axes: Any, panel: Panel) -> None:

@@ -6,11 +6,13 @@ The legend above the panels.
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from fegear.engine.colours import look
+from fegear.engine.figure.figure import Panel
 from fegear.engine.figure.items import Bars, Curve, Surface, TriangleField
 from fegear.output.draw_png.axes import (
     DASHES,
@@ -27,12 +29,6 @@ from fegear.output.draw_png.axes import (
     words,
 )
 from fegear.output.numbers import shade
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.engine.figure.figure import Panel
-
 
 #: Inches: a panel alone, panels above each other, and around them.
 _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}

@@ -7,33 +7,26 @@ What is ground off the flanks of a gear, for its gear data: the amounts that a d
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import GeometryError
+from fegear.case.gear import GearPart
+from fegear.case.reading import Scene
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_over, value_of
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
 from fegear.geometry.checks import tip_thickness
-from fegear.geometry.inspection import over_balls, touching_ball, usual_ball, usual_span
+from fegear.geometry.gear import Gear
+from fegear.geometry.inspection import OverBalls, over_balls, touching_ball, usual_ball, usual_span
 from fegear.geometry.interference import interference
-from fegear.geometry.pair import MEMBERS, active_profile, specific_sliding
+from fegear.geometry.pair import MEMBERS, GearPair, active_profile, specific_sliding
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.drawing import pair_figure
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from fegear.case.gear import GearPart
-    from fegear.case.reading import Scene
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.inspection import OverBalls
-    from fegear.geometry.pair import GearPair
-
 
 #: Of a pair, as single values.
 _OF_PAIR = ("contact_ratio", "centre_distance", "working_pressure_angle", "path_length", "base_pitch")

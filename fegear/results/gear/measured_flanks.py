@@ -3,32 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.case.built.flank_modifications import described_relief, gear_face
-from fegear.case.built.measured_flanks import measured_gear
+from fegear.case.built.measured_flanks import MeasuredGear, Traces, measured_gear
+from fegear.case.reading import Scene
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.formulas.iso1328 import tolerances_of
-from fegear.formulas.iso1328_traces import tightest_class
+from fegear.formulas.iso1328_traces import TraceDeviations, tightest_class
+from fegear.geometry.gear import Gear
 from fegear.results import forecasts
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array
-    from fegear.case.built.measured_flanks import MeasuredGear, Traces
-    from fegear.case.reading import Scene
-    from fegear.engine.stage import Upstream, Work
-    from fegear.formulas.iso1328_traces import TraceDeviations
-    from fegear.geometry.gear import Gear
 
 #: Teeth that are drawn.
 _DRAWN = 8

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.case.reading import Scene
 from fegear.engine.citation import citing
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Mark, Points
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.checks import Check, gear_checks, pair_checks
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
 from fegear.results.forecasts import INVOLUTE
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.case.reading import Scene
-    from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)

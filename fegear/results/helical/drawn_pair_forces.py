@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.helical_pair.pair_forces import rms
+from fegear.base.arrays import Array
+from fegear.dynamics.helical_pair.pair_forces import Line, PairForces, rms
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Stems, ramp
 from fegear.results.helical.transmissibility import ends
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.helical_pair.pair_forces import Line, PairForces
 
 #: Forces and moments with their keys and units in tables, and as figures write them.
 COMPONENTS = (

@@ -5,31 +5,25 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
-from fegear.case.built.helical_pair import helical_pair_inputs
+from fegear.case.built.helical_pair import HelicalPairInputs, helical_pair_inputs
+from fegear.case.pair_excitation import ExcitationPart, MeshErrorPart
 from fegear.case.part import at
+from fegear.case.reading import Scene
 from fegear.case.text_file import read_columns
-from fegear.dynamics.helical_pair.pair_forces import rms
+from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.dynamics.helical_pair.pair_forces import Line, PairForces, rms
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.helical.drawn_pair_forces import COMPONENTS, forces_figure, spectrum_figure
 from fegear.results.helical.transmissibility import mesh_needs, own_mesh
 from fegear.results.pair.mesh_stiffness_matrix import loaded_harmonics, mesh_stiffness_of
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Complex
-    from fegear.case.built.helical_pair import HelicalPairInputs
-    from fegear.case.pair_excitation import ExcitationPart, MeshErrorPart
-    from fegear.case.reading import Scene
-    from fegear.contact.loaded_teeth import ErrorOverPitch
-    from fegear.dynamics.helical_pair.pair_forces import Line, PairForces
-    from fegear.engine.stage import Upstream, Work
 
 #: Harmonics of a pair or a table that are taken by default.
 _HARMONICS = 8

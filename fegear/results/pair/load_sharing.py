@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from fegear.contact.loaded_teeth import POSITIONS
+from fegear.case.reading import Scene
+from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth, LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Subject
+from fegear.engine.stage import Forecast, Stage, Subject, Upstream, Work
 from fegear.engine.table import Table
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
@@ -26,11 +26,6 @@ from fegear.results.pair.loaded_teeth import (
     over_loads,
     under_load,
 )
-
-if TYPE_CHECKING:
-    from fegear.case.reading import Scene
-    from fegear.contact.loaded_teeth import LoadedTeeth, LoadHistory
-    from fegear.engine.stage import Upstream, Work
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
 _HISTORY, _HISTORY_CORNERS, _WIDE = 0.006, 0.02, 0.05

@@ -6,16 +6,12 @@ even steps and repeat it. What even steps lose is said: their means are compared
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.declared import column_of
 from fegear.engine.table import Column, Table
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.contact.loaded_teeth import ErrorOverPitch
 
 #: What is tabulated.
 _NAMES = ("te", "mesh_stiffness", "local_stiffness")

@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.pair_inputs import gear_name
+from fegear.case.reading import Scene
 from fegear.case.relief import STARTS as STARTS  # noqa: PLC0414  (for the window)
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
-from fegear.geometry.pair import MEMBERS, active_profile
-from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief
+from fegear.geometry.pair import MEMBERS, Member, active_profile
+from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, Relief
 from fegear.results.gear.drawing import roll_marks
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.case.reading import Scene
-    from fegear.geometry.pair import Member
-    from fegear.geometry.relief import Relief
 
 #: Parts of a relief that can be moved, in the order in which `build_relief` takes them.
 ENDS: tuple[Literal["tip"], Literal["root"], Literal["crowning"]] = ("tip", "root", "crowning")

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_flanks import check_flanks_to_load
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.built.train import motion_inputs
+from fegear.case.reading import Scene
+from fegear.case.train import TrainPart
 from fegear.results.gear.stiffness import contact_half_width, load_radii
 from fegear.results.pair.loaded_teeth import plane_pairs
 from fegear.studies.cost.answers import OF_FLANKS, OF_GEAR, Quantity
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.case.train import TrainPart
-
 
 #: Quantities that each wanted result stands for.
 _OF_RESULT = {

@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import install
@@ -34,9 +35,6 @@ from fegear.dynamics.motion.kernel.arrays import (
     TrainArrays,
     Travelled,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 __all__ = [
     "DONE", "TOO_MANY_STEPS", "Collocation", "MeshArrays", "Rule", "SpringArrays", "TrainArrays", "Travelled",
