@@ -2,8 +2,8 @@
 
     python benchmarks/lines_of_the_house.py [FOLDER THAT HOLDS fegear/]
 
-A code line is a physical line that is not blank, no comment and no docstring. Mechanics: geometry, fem, shafts, contact,
-design, dynamics, formulas. Kinds: imports; signatures of functions and classes; declared quantities (`shown`, `shows`);
+A code line is a physical line that is not blank, no comment and no docstring. Mechanics: geometry, fem, shafts,
+contact, design, dynamics, formulas. Kinds: imports; signatures of functions and classes; declared quantities (`shown`, `shows`);
 and, in what describes, statements that call a table, a value, a figure, make a text or a schema. A statement counts as
 the first kind that it has; `other` is what is left.
 """
@@ -21,8 +21,8 @@ from pathlib import Path
 MECHANICS = ("geometry", "fem", "shafts", "contact", "design", "dynamics", "formulas")
 #: The kinds of a statement by the names that it calls, in the order in which they are tried.
 KINDS = {
-    "figures": {"Figure", "DeferredFigure", "Panel", "Curve", "Mark", "Points", "HeatMap", "Bars", "Bar", "Axis", "Scale",
-                "axis_of", "drawn", "Skin", "Band", "Outline", "Text"},
+    "figures": {"Figure", "DeferredFigure", "Panel", "Curve", "Mark", "Points", "HeatMap", "Bars", "Bar", "Axis",
+                "Scale", "axis_of", "drawn", "Skin", "Band", "Outline", "Text"},
     "columns": {"Column", "column_of", "columns_of", "error_column", "Table"},
     "values": {"Value", "value_of", "value"},
     "stages": {"Stage", "Task", "Forecast", "Outcome", "citing", "Citation"},
