@@ -3,9 +3,9 @@
     python benchmarks/lines_of_the_house.py [FOLDER THAT HOLDS fegear/]
 
 A code line is a physical line that is not blank, no comment and no docstring. Mechanics: geometry, fem, shafts,
-contact, design, dynamics, formulas. Kinds: imports; signatures of functions and classes; declared quantities (`shown`, `shows`);
-and, in what describes, statements that call a table, a value, a figure, make a text or a schema. A statement counts as
-the first kind that it has; `other` is what is left.
+contact, design, dynamics, formulas. Kinds: imports; signatures of functions and classes; declared quantities (`shown`,
+`shows`); and statements that call a table, a value or a figure, or make a text or a schema. A statement counts as the
+first kind that it has; `other` is what is left.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import tokenize
 from collections import Counter
 from pathlib import Path
 
-#: `base` stands below both; the closing notes up to 0.3 count it as mechanics, which the last line does too.
+#: `base` stands below both; the last line counts it as mechanics too.
 MECHANICS = ("geometry", "fem", "shafts", "contact", "design", "dynamics", "formulas")
 #: The kinds of a statement by the names that it calls, in the order in which they are tried.
 KINDS = {
