@@ -184,7 +184,7 @@ class PairPart(Part):
         default=None, description="the oil of the pair, for film thickness, scuffing, micropitting and friction"
     )
     friction: Table[PairFrictionPart] | None = Field(
-        default=None, description="friction law of tooth-loss; Schlenk's where the lubricant is known"
+        default=None, description="friction law of gear-mesh-power-loss; Schlenk's where the lubricant is known"
     )
     operation: Table[OperationPart] = Field(
         default_factory=OperationPart, description="Loads, life and required safeties that the result rating is for."

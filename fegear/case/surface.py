@@ -170,7 +170,7 @@ class LubricantPart(Part):
 
 
 class PairFrictionPart(Part):
-    """``friction = { law = "schlenk" }`` or ``{ coefficient = 0.05 }``: of the flanks of a pair, for `tooth-loss`."""
+    """``friction = { law = "schlenk" }`` or ``{ coefficient = 0.05 }``: of flanks, for `gear-mesh-power-loss`."""
 
     law: FrictionLaw | None = Field(
         default=None, description='friction law (default: "constant" with a coefficient, else "schlenk")'

@@ -153,7 +153,9 @@ class UnityRatioPart(Part):
     alpha_y: Number = Field(description="Bearing stiffness ratio along the transverse line of action.")
     alpha_z: Number = Field(description="Bearing stiffness ratio along the axis.")
     alpha_theta: Number = Field(description="Bearing stiffness ratio against tilting.")
-    base_radius: PositiveLength | None = Field(default=None, description="Base radius, for moments in `pair-forces`.")
+    base_radius: PositiveLength | None = Field(
+        default=None, description="Base radius, for moments in `pair-forced-response`."
+    )
 
 
 #: Parameters of the unity-ratio pair alone.
@@ -193,9 +195,11 @@ class TransmissibilityPart(Part):
         default=400, description="Frequencies of the range; pictures are refined wherever a curve bends."
     )
     follow: FollowPart | None = Field(
-        default=None, description="Parameters over which the modes are followed, for `followed-modes`."
+        default=None, description="Parameters over which the modes are followed, for `mode-tracking`."
     )
-    excitation: ExcitationPart | None = Field(default=None, description="What shakes the pair, for `pair-forces`.")
+    excitation: ExcitationPart | None = Field(
+        default=None, description="What shakes the pair, for `pair-forced-response`."
+    )
 
     @model_validator(mode="after")
     def _one_model(self) -> Self:

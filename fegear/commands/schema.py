@@ -86,6 +86,7 @@ def schema_text() -> str:
     from fegear.results.catalogue import STAGES
 
     results = {name: entry.about for entry in STAGES.entries for name in entry.results}
+    results |= {old: f"former name of {new}" for old, new in STAGES.former().items()}
     return json.dumps(case_schema(results), indent=1, ensure_ascii=False) + "\n"
 
 

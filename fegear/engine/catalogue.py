@@ -27,6 +27,8 @@ class Entry(NamedTuple):
         What its results say, in a line; empty for stages that only serve others.
     extra : str
         What of `fegear.engine.extras` it needs beside fegear itself; empty for most.
+    formerly : str
+        Name by which older cases ask for it; empty for most.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Entry(NamedTuple):
     results: tuple[str, ...] = ()
     about: str = ""
     extra: str = ""
+    formerly: str = ""
 
 
 class Catalogue(Sequence[Stage]):
@@ -94,6 +97,10 @@ class Catalogue(Sequence[Stage]):
             for result in entry.results:
                 found.setdefault(result, []).append(entry.name)
         return found
+
+    def former(self) -> dict[str, str]:
+        """Names of results by the names that they had before."""
+        return {entry.formerly: entry.results[0] for entry in self.entries if entry.formerly}
 
     def __len__(self) -> int:
         return len(self.entries)

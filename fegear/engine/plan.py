@@ -40,7 +40,8 @@ class Plan:
     idle_effects : tuple of str
         Effects that are on but that no step uses.
     remarks : tuple of str
-        The same in words, with the results that would use them.
+        The same in words, with the results that would use them; before them the results that are asked for by a name
+        that they had before.
     """
 
     steps: tuple[Step, ...]
@@ -71,7 +72,8 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         If a result is unknown, or the scene lacks what a stage needs: a part, or an effect.
     """
     known = Catalogue.of(stages)
-    by_result = known.by_result()
+    by_result, former = known.by_result(), known.former()
+    wanted = list(dict.fromkeys(former.get(result, result) for result in scene.case.results))
 
     reasons: dict[Task, list[str]] = {}
     order: list[Task] = []
@@ -82,7 +84,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
                 reasons[task].append(reason)
             return
         stage = known.called(task.stage)
-        _require_effects(scene, stage)
+        _require_effects(scene, stage, wanted)
         _refuse_internal(scene, stage, task.subject, result)
         stage.check(scene, task.subject)
         reasons[task] = [reason]
@@ -90,19 +92,19 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
             require(need, f"needed by {task}", result)
         order.append(task)
 
-    for result in scene.case.results:
+    for result in wanted:
         if result not in by_result:
             raise InputError("results", f'"{result}"', "is no result that fegear knows", nearest(result, by_result))
         asked = [known.called(name) for name in by_result[result]]
-        wanted = [(stage, subject) for stage in asked for subject in stage.subjects(scene)]
-        if not wanted:
+        described = [(stage, subject) for stage in asked for subject in stage.subjects(scene)]
+        if not described:
             raise InputError(
                 "results",
                 f'"{result}"',
                 "asks for something that this case does not describe",
                 "add the gear, pair or train that it is about" + _straight(scene),
             )
-        for stage, subject in wanted:
+        for stage, subject in described:
             require(Task(stage.name, subject), f'requested by results = ["{result}"]', result)
 
     for task in more:
@@ -114,13 +116,17 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         for task, stage in ((task, known.called(task.stage)) for task in order)
     )
     running = {step.stage.name for step in steps}
-    skipped = tuple((one.name, _why_not(one, scene.case.results)) for one in known.entries if one.name not in running)
+    skipped = tuple((one.name, _why_not(one, wanted)) for one in known.entries if one.name not in running)
     used = {effect for step in steps for effect in step.effects}
     # What `fegear cost` studies in this case is wanted too, if not by a run.
     names = {entry.name for entry in known.entries}
     used |= {effect for name in scene.case.cost.stages if name in names for effect in known.called(name).effects}
     idle = tuple(effect for effect in on if effect not in used)
-    return Plan(steps, skipped, idle, tuple(_idle(effect, known) for effect in idle))
+    said = [
+        f'results: "{result}" is called "{former[result]}" now; the old name still works.'
+        for result in scene.case.results if result in former
+    ]  # fmt: skip
+    return Plan(steps, skipped, idle, (*said, *(_idle(effect, known) for effect in idle)))
 
 
 def _idle(effect: str, stages: Sequence[Stage]) -> str:
@@ -129,9 +135,9 @@ def _idle(effect: str, stages: Sequence[Stage]) -> str:
     return f"effects.{effect} is on, but no requested result uses it; {who}."
 
 
-def _require_effects(scene: Scene, stage: Stage) -> None:
+def _require_effects(scene: Scene, stage: Stage, results: Sequence[str]) -> None:
     for need in stage.requires:
-        wanted = [result for result in scene.case.results if result in (need.results or stage.results)]
+        wanted = [result for result in results if result in (need.results or stage.results)]
         if (need.results and not wanted) or scene.case.effects.is_on(need.effect):
             continue
         who = f'"{wanted[0]}"' if wanted else f"stage {stage.name}"

@@ -168,7 +168,7 @@ def test_modes_over_the_helix_angle_and_responses_of_figures_5_and_6(helical):
 
 
 def test_modes_over_kappa_of_figures_10_and_11():
-    tables, _, _, _ = run("blankenship_singh", 'results=["followed-modes"]')
+    tables, _, _, _ = run("blankenship_singh", 'results=["mode-tracking"]')
     over = tables["modes_over_kappa_I"]
     assert over["Lambda_3"] == pytest.approx(over["Lambda_3"][::-1], rel=1e-9), "kappa's sign mirrors the pair"
     middle = np.argmin(np.abs(over["kappa"]))
@@ -180,7 +180,7 @@ def test_modes_over_kappa_of_figures_10_and_11():
     assert all((over[f"coupling_{r}"] <= 1.0 + 1e-12).all() for r in range(1, 6))
     # Given as a number, mu stays where it is, and must be large enough for every kappa.
     with pytest.raises(InputError, match=r"transmissibility\.I\.follow\.kappa = 0\.7.*at least kappa\^2"):
-        run("blankenship_singh", 'results=["followed-modes"]', "transmissibility.I.mesh.mu=0.5")
+        run("blankenship_singh", 'results=["mode-tracking"]', "transmissibility.I.mesh.mu=0.5")
 
 
 GEAR = (
@@ -203,7 +203,7 @@ def general(tmp_path, results='"transmissibility"', more="", helix="20 deg"):
 
 def test_the_general_pair_follows_all_bearings_at_once(tmp_path):
     more = "[transmissibility.I.follow]\nbearing_stiffness = { start = 0.5, stop = 2.0, count = 7 }\n"
-    tables, _, _, _ = run(general(tmp_path, '"transmissibility", "followed-modes"', more))
+    tables, _, _, _ = run(general(tmp_path, '"transmissibility", "mode-tracking"', more))
     over = tables["modes_over_bearing_stiffness_I"]
     (own,) = np.flatnonzero(np.isclose(over["bearing_stiffness"], 1.0))
     found = [over[f"Lambda_{r}"][own] for r in range(1, 11)]
@@ -211,7 +211,7 @@ def test_the_general_pair_follows_all_bearings_at_once(tmp_path):
     assert all((np.diff(over[f"frequency_{r}"]) >= -1e-9).all() for r in range(1, 11)), "stiffer bearings"
     refused = more.replace("bearing_stiffness", "alpha_y")
     with pytest.raises(InputError, match=r"follow\.alpha_y.*belongs to unity_ratio"):
-        run(general(tmp_path, '"followed-modes"', refused))
+        run(general(tmp_path, '"mode-tracking"', refused))
 
 
 FORCES = "sources/blankenship_singh_forces"
@@ -287,14 +287,14 @@ def test_the_case_s_own_pair_excites(tmp_path):
         '[transmissibility.I.excitation]\nspeeds = { start = "1000 rpm", stop = "4000 rpm", count = 4 }\n'
         'transmission_error = { pair = "teeth", harmonics = 3 }\n'
     )
-    case = general(tmp_path, '"pair-forces", "transmission-error"', excitation + PAIR, "0 deg")
+    case = general(tmp_path, '"pair-forced-response", "transmission-error"', excitation + PAIR, "0 deg")
     tables, _, _, _ = run(case)
     lines, te = tables["pair_force_spectrum_I"], tables["transmission_error_harmonics_teeth"]
     assert sorted(set(lines["order"])) == [28.0, 56.0, 84.0]
     for n in (1, 2, 3):
         size = float(te["amplitude"][n - 1])
         given = f"transmissibility.I.excitation.transmission_error={{amplitude='{size!r} um', harmonic={n}}}"
-        one = run(case, 'results=["pair-forces"]', given, "transmissibility.I.excitation.teeth=28")
+        one = run(case, 'results=["pair-forced-response"]', given, "transmissibility.I.excitation.teeth=28")
         one = one[0]["pair_force_spectrum_I"]["mesh_normal"]
         assert lines["mesh_normal"][lines["order"] == 28.0 * n] == pytest.approx(one, rel=1e-9)
     with pytest.raises(InputError, match="not that of pair teeth, 0 deg"):
@@ -308,7 +308,7 @@ def test_a_helical_pair_excites_with_its_tooth_contact(tmp_path):
     scene = read_scene(CASES / "litvin_shaft_angle.toml")
     helical = next(iter(scene.helical_pairs.values()))
     psi = math.degrees(abs(helical.gear.base_helix_angle))
-    case = general(tmp_path, '"pair-forces", "tooth-contact"', (
+    case = general(tmp_path, '"pair-forced-response", "tooth-contact"', (
         '[transmissibility.I.excitation]\nspeeds = ["600 rpm"]\ntransmission_error = { pair = "I", harmonics = 4 }\n'
     ), f"{psi!r} deg")  # fmt: skip
     case.write_text(case.read_text() + "\n".join(text.split("\n")[text.split("\n").index("[gear.pinion]") :]))
@@ -321,10 +321,10 @@ def test_a_helical_pair_excites_with_its_tooth_contact(tmp_path):
     angle = 2.0 * math.pi * np.arange(te.size) / te.size
     size = float(2.0 * abs(np.mean(te * np.exp(-1j * angle))))
     given = f"transmissibility.I.excitation.transmission_error={{amplitude='{size!r} um'}}"
-    one = run(case, 'results=["pair-forces"]', given, f"transmissibility.I.excitation.teeth={teeth}")
+    one = run(case, 'results=["pair-forced-response"]', given, f"transmissibility.I.excitation.teeth={teeth}")
     assert lines["mesh_normal"][0] == pytest.approx(one[0]["pair_force_spectrum_I"]["mesh_normal"][0], rel=1e-6)
     # What more positions change is within the estimated error.
-    _, fine, _, _ = run(case, "tooth_contact.positions=240", 'results=["pair-forces"]')
+    _, fine, _, _ = run(case, "tooth_contact.positions=240", 'results=["pair-forced-response"]')
     error = tables["pair_forces_I"]["mesh_normal_error"][0]
     assert 0.0 < error < 0.05 * values["I.largest_mesh_force"]
     assert abs(values["I.largest_mesh_force"] - fine["I.largest_mesh_force"]) < error
@@ -355,10 +355,10 @@ def test_excitations_that_make_no_sense_are_refused(override, words):
 
 
 def test_what_is_missing_is_told_with_its_remedy(tmp_path):
-    with pytest.raises(InputError, match=r"transmissibility\.I\.excitation .*pair-forces needs it"):
-        run("blankenship_singh", 'results=["pair-forces"]')
-    with pytest.raises(InputError, match=r"transmissibility\.I\.follow .*followed-modes needs it"):
-        run(FORCES, 'results=["followed-modes"]')
+    with pytest.raises(InputError, match=r"transmissibility\.I\.excitation .*pair-forced-response needs it"):
+        run("blankenship_singh", 'results=["pair-forced-response"]')
+    with pytest.raises(InputError, match=r"transmissibility\.I\.follow .*mode-tracking needs it"):
+        run(FORCES, 'results=["mode-tracking"]')
     text = (CASES / f"{FORCES}.toml").read_text()
     case = tmp_path / "case.toml"
     case.write_text(text.replace('base_radius = "70.48 mm"\n', ""))
@@ -396,4 +396,4 @@ def test_a_range_over_parameters_that_makes_no_sense_is_refused():
         ("{bearing_stiffness={start=-1, stop=1}}", "greater than or equal to 0"),
     ):
         with pytest.raises(InputError, match=words):
-            run("blankenship_singh", 'results=["followed-modes"]', f"transmissibility.I.follow={given}")
+            run("blankenship_singh", 'results=["mode-tracking"]', f"transmissibility.I.follow={given}")

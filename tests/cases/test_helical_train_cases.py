@@ -26,7 +26,8 @@ COARSE = (
 )  # fmt: skip
 RIGID = '{ y = "1e12 N/m", z = "1e12 N/m", theta_x = "1e8 N*m/rad", theta_y = "1e8 N*m/rad" }'
 RESULTS = [
-    "gear-train", "mesh-force-spectrum", "tooth-force", "mesh-stiffness-matrix", "transmissibility", "pair-forces"
+    "gear-train", "mesh-force-spectrum", "tooth-force", "mesh-stiffness-matrix", "transmissibility",
+    "pair-forced-response",
 ]  # fmt: skip
 ASKED = (
     f"results={RESULTS}", "effects.corner_contact=false",
@@ -148,7 +149,7 @@ def test_transmissibility_takes_the_mean_matrix_of_the_teeth(outcomes):
 def test_slow_gears_on_rigid_bearings_feel_the_force_wander_over_the_face(outcomes):
     """Speed to zero: no dynamic force, but its moment about x is that of the static force."""
     data = outcomes[Task("mesh-stiffness-matrix", "first")].data
-    flanks, forces = data.flanks, outcomes[Task("pair-forces", "stage")].data.spectrum
+    flanks, forces = data.flanks, outcomes[Task("pair-forced-response", "stage")].data.spectrum
     lever = tilt_lever(data.found.pair, flanks.found.lines)
     force = flanks.found.contact.force[:, :, flanks.at]
     moment = np.einsum("pm,pm->p", force, hat_averages(flanks.found.lines, lever))
@@ -195,10 +196,10 @@ def test_tables_of_the_matrix(outcomes):
 )  # fmt: skip
 def test_what_contradicts_the_teeth_is_refused(overrides, words):
     def planned():
-        scene = read_scene(CASE, [*COARSE, 'results=["transmissibility","pair-forces"]', *overrides])
+        scene = read_scene(CASE, [*COARSE, 'results=["transmissibility","pair-forced-response"]', *overrides])
         make_plan(scene, STAGES)
         for stage in STAGES:
-            if stage.name in ("transmissibility", "pair-forces"):
+            if stage.name in ("transmissibility", "pair-forced-response"):
                 stage.inputs(scene, "stage")
 
     with pytest.raises(InputError, match=words):

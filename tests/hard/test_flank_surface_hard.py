@@ -38,7 +38,12 @@ def asked(rng):
         name: {"teeth": z, "profile_shift": 0.2 if z < 20 else 0.0} | one for name, z in zip("ab", teeth, strict=True)
     }
     effects = {"hertz": "load-dependent", "corner_contact": bool(rng.random() < 0.3)}
-    return {"results": ["flank-surface", "tooth-loss"], "gear": gears, "pair": {"I": pair}, "effects": effects}
+    return {
+        "results": ["flank-surface", "gear-mesh-power-loss"],
+        "gear": gears,
+        "pair": {"I": pair},
+        "effects": effects,
+    }
 
 
 @pytest.mark.parametrize("seed", [*range(8), *(pytest.param(k, marks=pytest.mark.long) for k in range(8, 150))])

@@ -1,4 +1,4 @@
-"""Results flank-surface and tooth-loss on pairs whose compliances are closed forms: no finite elements."""
+"""Results flank-surface and gear-mesh-power-loss on pairs whose compliances are closed forms: no finite elements."""
 
 import math
 
@@ -125,7 +125,7 @@ def test_without_tests_of_the_oil_there_are_no_safeties_but_a_remark():
 
 
 def test_constant_friction_and_loss_factor_and_power():
-    values, found = numbers("tooth-loss", friction={"coefficient": 0.06}, lubricant=None)
+    values, found = numbers("gear-mesh-power-loss", friction={"coefficient": 0.06}, lubricant=None)
     assert values["transmitted_power"] == pytest.approx(150.0 * 1500 * math.pi / 30)
     assert values["tooth_loss"] == pytest.approx(0.06 * values["loss_factor"] * values["transmitted_power"])
     assert values["mean_friction"] == pytest.approx(0.06)
@@ -135,7 +135,7 @@ def test_constant_friction_and_loss_factor_and_power():
     assert path["power_loss"] == pytest.approx(
         0.06 * path["load"] * np.abs(flank_speeds(found.scene.pairs["I"], path["x"], 1500 * math.pi / 30).sliding)
     )
-    frictionless, _ = numbers("tooth-loss", friction={"coefficient": 0.0}, lubricant=None)
+    frictionless, _ = numbers("gear-mesh-power-loss", friction={"coefficient": 0.0}, lubricant=None)
     assert frictionless["tooth_loss"] == 0.0
     assert frictionless["tooth_efficiency"] == 1.0
 
@@ -144,7 +144,7 @@ def test_teeth_alike_everywhere_share_alike_and_lose_as_ohlendorf_says(tmp_path)
     """A pair compliance that is the same at every place gives shares of one half, so H_V is Ohlendorf's."""
     table = tmp_path / "even.csv"
     table.write_text("x [mm],compliance [um/N]\n" + "".join(f"{x},0.003\n" for x in np.linspace(-30.0, 30.0, 61)))
-    asked = case("tooth-loss", friction={"coefficient": 0.05}, effects={"hertz": "none"},
+    asked = case("gear-mesh-power-loss", friction={"coefficient": 0.05}, effects={"hertz": "none"},
                  compliance={"source": "table", "of": "pair", "file": str(table)})  # fmt: skip
     found = run(asked, progress=False)
     values = {value.name.removeprefix("I."): value.value for value in found.values}
@@ -153,15 +153,15 @@ def test_teeth_alike_everywhere_share_alike_and_lose_as_ohlendorf_says(tmp_path)
 
 
 def test_local_laws_are_integrated_over_the_path():
-    values, found = numbers("tooth-loss", friction={"law": "buckingham"})
+    values, found = numbers("gear-mesh-power-loss", friction={"law": "buckingham"})
     path = columns(found, "tooth_loss_I")
     pair = found.scene.pairs["I"]
     at = flank_speeds(pair, path["x"], 1500 * math.pi / 30)
     assert path["friction_coefficient"] == pytest.approx(buckingham(at.sliding))
     mean = np.trapezoid(buckingham(at.sliding) * path["load"] * np.abs(at.sliding), path["x"]) / pair.base_pitch
     assert values["tooth_loss"] == pytest.approx(mean, rel=1e-9)
-    whole, _ = numbers("tooth-loss", friction={"law": "iso-6336-22"})
-    local, _ = numbers("tooth-loss", friction={"law": "iso-6336-22", "local": True})
+    whole, _ = numbers("gear-mesh-power-loss", friction={"law": "iso-6336-22"})
+    local, _ = numbers("gear-mesh-power-loss", friction={"law": "iso-6336-22", "local": True})
     assert local["loss_factor"] == pytest.approx(whole["loss_factor"], rel=1e-12)
     assert local["mean_friction"] == pytest.approx(whole["mean_friction"], rel=0.15)
     assert local["mean_friction"] != whole["mean_friction"]
@@ -174,7 +174,10 @@ def test_losses_of_a_train_are_those_of_friction_in_motion():
     friction = {f"pair.{name}.friction": {"law": "buckingham"} for name in ("first", "second")}
     path = Path(__file__).parents[2] / "cases" / "two_stage_gearbox.toml"
     found = run(
-        path, {**friction, "dynamics.speeds": ["3000 rpm"]}, results=["tooth-loss", "tooth-friction"], progress=False
+        path,
+        {**friction, "dynamics.speeds": ["3000 rpm"]},
+        results=["gear-mesh-power-loss", "tooth-friction"],
+        progress=False,
     )
     values = {value.name: value.value for value in found.values}
     for name in ("first", "second"):
@@ -189,9 +192,16 @@ def test_losses_of_a_train_are_those_of_friction_in_motion():
 def test_flanks_with_a_width_tend_to_the_plane_and_carry_the_whole_load():
     """Wide spur teeth as solids: loss factor within 5 % of the plane's, film and temperature near it in the middle."""
     gear = {"face_width": "24 mm"}
-    plane, _ = numbers("flank-surface", "tooth-loss", gear=gear, compliance=None, friction={"coefficient": 0.05})
+    plane, _ = numbers(
+        "flank-surface", "gear-mesh-power-loss", gear=gear, compliance=None, friction={"coefficient": 0.05}
+    )
     wide, found = numbers(
-        "flank-surface", "tooth-loss", gear=gear, compliance=None, friction={"coefficient": 0.05}, width="slices"
+        "flank-surface",
+        "gear-mesh-power-loss",
+        gear=gear,
+        compliance=None,
+        friction={"coefficient": 0.05},
+        width="slices",
     )
     assert wide["loss_factor"] == pytest.approx(plane["loss_factor"], rel=0.05)
     path = columns(found, "flank_surface_I")
@@ -218,8 +228,8 @@ def test_load_factors_come_from_iso_6336_where_gears_have_a_strength():
 
 def test_losses_under_every_load_are_those_of_each_load_alone():
     law = {"law": "schlenk"}
-    alone, _ = numbers("tooth-loss", friction=law, torque="60 N*m")
-    values, found = numbers("tooth-loss", friction=law, torque="60 N*m", loads=["500 N", "8000 N"])
+    alone, _ = numbers("gear-mesh-power-loss", friction=law, torque="60 N*m")
+    values, found = numbers("gear-mesh-power-loss", friction=law, torque="60 N*m", loads=["500 N", "8000 N"])
     assert {key: values[key] for key in alone} == pytest.approx(alone, rel=1e-9)
     table = columns(found, "tooth_loss_loads_I")
     assert table["load"].size == 3

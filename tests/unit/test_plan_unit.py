@@ -11,12 +11,14 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.reading import build_scene
+from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Need, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.fem.plane.settings import MeshSettings
+from fegear.results.catalogue import STAGES
 
 GEARS = {"a": {"teeth": 28, "module": "1 mm"}, "b": {"teeth": 35, "module": "1 mm"}}
 
@@ -173,3 +175,16 @@ def test_finer_settings_is_predicted_to_take_longer():
     seconds = [seconds_of_gear(settings) for settings in (usual.scaled(1.5), usual, usual.scaled(0.5))]
     assert 0.0 < seconds[0] < seconds[1] < seconds[2]
     assert seconds_of_gear(replace(usual, order=3)) < seconds[1]
+
+
+def test_a_former_name_of_a_result_asks_for_it_and_gives_the_new_one():
+    stages = Workshop().stages
+    entries = [Entry(s.name, "", s.title, s.results, formerly="fangs" * ("teeth" in s.results)) for s in stages]
+    renamed = Catalogue(entries, "")
+    renamed._loaded.update({stage.name: stage for stage in stages})
+    old, new = make_plan(scene("fangs", "teeth"), renamed), make_plan(scene("teeth"), renamed)
+    assert [step.task for step in old.steps] == [step.task for step in new.steps]
+    assert old.remarks == ('results: "fangs" is called "teeth" now; the old name still works.', *new.remarks)
+    assert STAGES.former() == {
+        "tooth-loss": "gear-mesh-power-loss", "followed-modes": "mode-tracking", "pair-forces": "pair-forced-response",
+    }  # fmt: skip

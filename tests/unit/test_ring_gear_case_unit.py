@@ -226,7 +226,7 @@ def test_reliefs_and_spacing_errors_of_a_ring_hold_its_flanks_back(cache):
     ("overrides", "words"),
     [
         (['results=["rating"]'], "gear.p.strength = (not given): is missing"),
-        (['results=["tooth-loss"]'], "is computed for external gears alone"),
+        (['results=["gear-mesh-power-loss"]'], "is computed for external gears alone"),
         (['results=["crosscheck"]'], "is computed for external gears alone"),
         (['pair.I.compliance={ source = "cornell" }', "effects.neighbour_coupling=false"], "and r is internal"),
         (['pair.I.root_stress={ source = "heywood" }', 'results=["root-stress-history"]'], "and r is internal"),

@@ -1,4 +1,4 @@
-"""Stage ``pair-forces``: mesh and bearing forces of a helical pair under transmission error and external forces."""
+"""Stage ``pair-forced-response``: mesh and bearing forces of a helical pair by errors and external forces."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
-from fegear.results.helical.drawn_pair_forces import COMPONENTS, forces_figure, spectrum_figure
+from fegear.results.helical.drawn_forced_response import COMPONENTS, forces_figure, spectrum_figure
 from fegear.results.helical.transmissibility import mesh_needs, own_mesh
 from fegear.results.pair.mesh_stiffness_matrix import loaded_harmonics, mesh_stiffness_of
 
@@ -149,7 +149,7 @@ def _excitation(scene: Scene, name: str) -> ExcitationPart:
     found = scene.case.transmissibility[name].excitation
     if found is None:
         raise InputError(
-            f"transmissibility.{name}.excitation", "(not given)", "is missing, but pair-forces needs it",
+            f"transmissibility.{name}.excitation", "(not given)", "is missing, but pair-forced-response needs it",
             'write excitation = { teeth = 50, speeds = ["1000 rpm"], transmission_error = { amplitude = "1 um" } }',
         )  # fmt: skip
     return found
@@ -380,7 +380,7 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     return Forecast({"speeds": count, "lines": lines}, 0.1 + 0.02 * lines + 2e-5 * count * lines)
 
 
-PAIR_FORCES = Stage(
+PAIR_FORCED_RESPONSE = Stage(
     subjects=_pairs,
     needs=_needs,
     inputs=_inputs,

@@ -1,4 +1,4 @@
-"""Stage ``followed-modes``: modes of a helical pair and their indices over a parameter, and its response at values.
+"""Stage ``mode-tracking``: modes of a helical pair and their indices over a parameter, and its response at values.
 
 Figures of modes followed over a parameter, and of the response at values of it.
 """
@@ -218,7 +218,7 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
 def _check(scene: Scene, name: str) -> None:
     if scene.case.transmissibility[name].follow is None:
         raise InputError(
-            f"transmissibility.{name}.follow", "(not given)", "is missing, but followed-modes needs it",
+            f"transmissibility.{name}.follow", "(not given)", "is missing, but mode-tracking needs it",
             'write follow.base_helix_angle = { start = "0 deg", stop = "40 deg" }',
         )  # fmt: skip
 
@@ -316,7 +316,7 @@ def response_figure(name: str, one: FollowedData) -> Figure:
     )
 
 
-FOLLOWED_MODES = Stage(
+MODE_TRACKING = Stage(
     subjects=_pairs,
     needs=mesh_needs,
     inputs=lambda scene, name: FollowedInputs(helical_pair_inputs(scene, name), name),

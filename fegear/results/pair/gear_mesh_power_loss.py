@@ -1,6 +1,6 @@
-"""Stages of the result ``tooth-loss``: friction loss, loss factors and efficiency of a pair and of a train.
+"""Stages of the result ``gear-mesh-power-loss``: friction loss, loss factors and efficiency of a pair and of a train.
 
-Stage ``train-loss`` of the result ``tooth-loss``: what the teeth of all meshes of a train take of its power.
+Stage ``train-loss`` of the result ``gear-mesh-power-loss``: what the teeth of all meshes of a train take of its power.
 """
 
 from __future__ import annotations
@@ -123,14 +123,14 @@ class ToothLossData:
 def _inputs(scene: Scene, name: str) -> ToothLossInputs:
     part = scene.case.pair[name]
     load, loads = part.normal_load(scene.pairs[name]) or math.nan, part.all_loads(scene.pairs[name])
-    law, speed = pair_friction(scene, name, "tooth-loss"), pair_speed(scene, name)
+    law, speed = pair_friction(scene, name, "gear-mesh-power-loss"), pair_speed(scene, name)
     return ToothLossInputs(law, speed, loads, loads.index(load), part.friction is not None, name)
 
 
 def _check(scene: Scene, name: str) -> None:
     check_teeth(scene, name)
-    check_speed(scene, name, "tooth-loss")
-    pair_friction(scene, name, "tooth-loss")
+    check_speed(scene, name, "gear-mesh-power-loss")
+    pair_friction(scene, name, "gear-mesh-power-loss")
 
 
 def _compute(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
@@ -330,7 +330,9 @@ class TrainLossData:
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     part = train_part(scene)
-    return tuple(Task("tooth-loss", pair) for pair in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
+    return tuple(
+        Task("gear-mesh-power-loss", pair) for pair in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh)
+    )
 
 
 def _train_inputs(scene: Scene, _subject: str) -> TrainLossInputs:
@@ -363,7 +365,7 @@ def _train_inputs(scene: Scene, _subject: str) -> TrainLossInputs:
 
 
 def _compute_train(asked: TrainLossInputs, upstream: Upstream, _work: Work) -> TrainLossData:
-    found = [cast("ToothLossData", upstream[Task("tooth-loss", pair)]) for pair in asked.pairs]
+    found = [cast("ToothLossData", upstream[Task("gear-mesh-power-loss", pair)]) for pair in asked.pairs]
     power = np.array(asked.power)
     share = np.array([one.found.loss / one.found.transmitted for one in found])
     return TrainLossData(
@@ -421,7 +423,7 @@ def _check_train(scene: Scene, _subject: str) -> None:
     check_train(scene)
 
 
-TOOTH_LOSS = Stage(
+GEAR_MESH_POWER_LOSS = Stage(
     subjects=loaded_pairs,
     needs=needs_teeth,
     inputs=_inputs,
