@@ -3,22 +3,24 @@
     @dataclass(frozen=True)
     class PairHistory:
         x: Array = shown("mm", "position of the pair on the line of action, from the pitch point")
-        load: Array = shown("N", "on the pair along the line of action")
+        load: Array = shown("N", "on the pair along the line of action", table="path")
 
         @property
         @shows("um", "peak to peak of the transmission error")
         def peak_to_peak(self) -> float: ...
 
-The numbers are in SI; the unit is the one in which an engineer reads them. Columns, values, axes, datasets and the
-tables of the docs take unit and meaning from here (`fegear.engine.declared`).
+With a `table` a quantity is a column of the table of that name, in the order in which the quantities stand in their
+class: a new column is one field. The numbers are in SI; the unit is the one in which an engineer reads them. Columns,
+values, axes, datasets and the tables of the docs take unit and meaning from here (`fegear.engine.declared`).
 """
 
 from __future__ import annotations
 
 import inspect
-from dataclasses import field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from itertools import count
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,10 +29,11 @@ _KEY = "shown"
 _F = TypeVar("_F", bound="Callable[..., Any]")
 
 
-class Shown(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Shown:
     """How a quantity is shown.
 
-    Attributes
+    Parameters
     ----------
     unit : str
         In which it is read; empty for dimensionless.
@@ -40,15 +43,30 @@ class Shown(NamedTuple):
         In tables, values and datasets.
     label : str
         Of an axis; the meaning where it has none of its own.
+    table : str
+        Of which it is a column; empty where a result lists its columns itself.
+    order : int
+        Grows in the order of declaration.
     """
 
     unit: str
     meaning: str
     name: str
     label: str
+    table: str = ""
+    order: int = field(default=0, compare=False)
 
 
-def shown(unit: str = "", meaning: str = "", *, name: str = "", label: str = "", **options: Any) -> Any:
+_ORDER = count()
+
+
+def _how(unit: str, meaning: str, name: str, label: str, table: str) -> Shown:
+    return Shown(unit, meaning, name, label or meaning, table, next(_ORDER))
+
+
+def shown(
+    unit: str = "", meaning: str = "", *, name: str = "", label: str = "", table: str = "", **options: Any
+) -> Any:
     """Declare how a field of a dataclass is shown.
 
     Parameters
@@ -56,17 +74,19 @@ def shown(unit: str = "", meaning: str = "", *, name: str = "", label: str = "",
     unit, meaning : str
     name, label : str
         Where they differ from the field's name and from the meaning.
+    table : str
+        Of which it is a column.
     **options
         Of `dataclasses.field`: ``default``, ``compare``, ...
     """
-    return field(metadata={_KEY: Shown(unit, meaning, name, label or meaning)}, **options)
+    return field(metadata={_KEY: _how(unit, meaning, name, label, table)}, **options)
 
 
-def shows(unit: str = "", meaning: str = "", *, name: str = "", label: str = "") -> Callable[[_F], _F]:
+def shows(unit: str = "", meaning: str = "", *, name: str = "", label: str = "", table: str = "") -> Callable[[_F], _F]:
     """Declare how a property is shown; stands below ``@property`` or ``@cached_property``."""
 
     def mark(function: _F) -> _F:
-        setattr(function, _KEY, Shown(unit, meaning, name, label or meaning))
+        setattr(function, _KEY, _how(unit, meaning, name, label, table))
         return function
 
     return mark
@@ -91,7 +111,7 @@ def declared(owner: type, attribute: str) -> Shown:
         mark = getattr(member, _KEY, None)
     if not isinstance(mark, Shown):
         raise TypeError(f"{owner.__name__}.{attribute} is not declared with shown() or shows()")
-    return mark if mark.name else mark._replace(name=attribute)
+    return mark if mark.name else replace(mark, name=attribute)
 
 
 def all_declared(owner: type) -> dict[str, Shown]:
@@ -103,3 +123,9 @@ def all_declared(owner: type) -> dict[str, Shown]:
         except TypeError:
             continue
     return found
+
+
+def columns_declared(owner: type, table: str) -> tuple[str, ...]:
+    """Attributes of a class that are columns of one of its tables, in the order of their declaration."""
+    found = {attribute: how for attribute, how in all_declared(owner).items() if how.table == table}
+    return tuple(sorted(found, key=lambda attribute: found[attribute].order))

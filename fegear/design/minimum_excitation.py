@@ -215,13 +215,16 @@ def minimum_excitation(
 class ReliefTable:
     """Relief of one gear over its path, as a drawing gives it; arrays of shape (P,)."""
 
-    x: Array = shown("mm", "position on the line of action, positive toward the driver's tip")
-    radius: Array = shown("mm", "radius of the flank point")
-    roll_angle: Array = shown("deg", "roll angle of the flank point", label="roll angle")
-    load: Array = shown("N", "design load on the pair there", label="load")
-    relief: Array = shown("um", "material to remove, along the normal", label="material to remove")
+    x: Array = shown("mm", "position on the line of action, positive toward the driver's tip", table="flank")
+    radius: Array = shown("mm", "radius of the flank point", table="flank")
+    roll_angle: Array = shown("deg", "roll angle of the flank point", label="roll angle", table="flank")
+    load: Array = shown("N", "design load on the pair there", label="load", table="flank")
+    relief: Array = shown("um", "material to remove, along the normal", label="material to remove", table="flank")
     deflection: Array = shown(
-        "um", "of this flank under the design loads, which the relief makes up for", label="deflection of the flank"
+        "um",
+        "of this flank under the design loads, which the relief makes up for",
+        label="deflection of the flank",
+        table="flank",
     )
 
     def relieved(self) -> TabulatedRelief:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.shown import declared
+from fegear.base.shown import columns_declared, declared
 from fegear.base.units import from_si
 from fegear.engine.figure.figure import Axis
 from fegear.engine.figure.items import Curve
@@ -26,18 +26,22 @@ def _si(found: object, attribute: str, load: int | None) -> Any:
     return si[..., load] if load is not None and np.ndim(si) > 1 else si
 
 
-def columns_of(found: object, *attributes: str, load: int | None = None) -> tuple[Column, ...]:
-    """Columns of some quantities of a result.
+def columns_of(found: object, *attributes: str, table: str = "", load: int | None = None) -> tuple[Column, ...]:
+    """Columns of some quantities of a result, and of of all that its class declares for a table.
 
     Parameters
     ----------
     found : object
         Of a class that declares them; arrays of shape (N,) or (N, L).
     *attributes : str
+    table : str
+        Whose declared columns follow those named; a quantity that this result lacks (None) has none.
     load : int, optional
         Which of the L loads.
     """
-    return tuple(column_of(found, attribute, load=load) for attribute in attributes)
+    more = columns_declared(_class(found), table) if table else ()
+    named = (*attributes, *(one for one in more if getattr(found, one) is not None))
+    return tuple(column_of(found, attribute, load=load) for attribute in named)
 
 
 def column_of(

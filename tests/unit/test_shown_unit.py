@@ -1,6 +1,6 @@
 """A quantity declared once: columns, values, axes and curves take unit and meaning from the mechanics' own field."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -91,3 +91,29 @@ def test_other_numbers_are_shown_as_the_declared_quantity():
     assert value_of(History, "x", "I", si=0.004, name="pitch").value == 4.0
     assert drawn(FOUND, "x", [0.001]).tolist() == [1.0]
     assert axis_of(FOUND, "load").unit == "N"
+
+
+@dataclass(frozen=True)
+class Path:
+    x: np.ndarray = shown("mm", "position", table="path")
+    mean: float = shown("N", "mean load")
+    corner: np.ndarray | None = shown("", "1 where a corner touches", table="path")
+
+    @property
+    @shows("N", "load", name="force", table="path")
+    def load(self) -> np.ndarray:
+        return 2.0 * self.x
+
+    @property
+    @shows("", "position over the length", table="path")
+    def place(self) -> np.ndarray:
+        return self.x / 1e-3
+
+
+def test_a_quantity_that_names_a_table_is_a_column_of_it_in_the_order_of_declaration():
+    one = Path(np.array([0.0, 1e-3]), 1.0, None)
+    assert [column.name for column in columns_of(one, table="path")] == ["x", "force", "place"]
+    assert [c.name for c in columns_of(replace(one, corner=one.x), "mean", table="path")] == [
+        "mean", "x", "corner", "force", "place",
+    ]  # fmt: skip
+    assert columns_of(one, table="none") == ()

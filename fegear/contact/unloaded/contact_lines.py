@@ -39,9 +39,9 @@ class LineContact(ReadOnlyArrays):
 class LineLength(ReadOnlyArrays):
     """Total length of all lines of contact at a time, arrays of shape (n,) over a pitch; the rest is exact."""
 
-    phi_1: Array = shown("deg", "pinion angle", name="phi1")
-    total: Array = shown("mm", "total length of all lines of contact", name="length")
-    lines: NDArray[np.int_] = shown("", "tooth pairs in contact", name="pairs")
+    phi_1: Array = shown("deg", "pinion angle", name="phi1", table="cycle")
+    total: Array = shown("mm", "total length of all lines of contact", name="length", table="cycle")
+    lines: NDArray[np.int_] = shown("", "tooth pairs in contact", name="pairs", table="cycle")
     least: float = shown("mm", "least over a cycle", name="contact_line_least")
     mean: float = shown("mm", "mean total length of the contact lines", name="contact_line_mean")
     largest: float = shown("mm", "largest over a cycle", name="contact_line_largest")

@@ -42,24 +42,29 @@ class StiffnessTable:
     errors: Mapping[str, Array]
     influence: GearInfluence
     seconds: float
-    radius: Array = shown("mm", "radius of the contact point", label="radius of the load")
-    roll_angle: Array = shown("deg", "roll angle of the contact point", label="roll angle of the load")
-    c_self: Array = shown("um.mm/N", "deflection of the loaded tooth at the contact per line load", label="compliance")
-    c_prev: Array = shown("um.mm/N", "deflection of the tooth before it at the same radius", label="compliance")
-    c_next: Array = shown(
-        "um.mm/N", "deflection of the tooth after it (which the loaded flank faces)", label="compliance"
+    radius: Array = shown("mm", "radius of the contact point", label="radius of the load", table="flank")
+    roll_angle: Array = shown("deg", "roll angle of the contact point", label="roll angle of the load", table="flank")
+    c_self: Array = shown(
+        "um.mm/N", "deflection of the loaded tooth at the contact per line load", label="compliance", table="flank"
     )
-    half_width: Array = shown("mm", "half-width of the contact that c_self is for", name="contact_half_width")
+    c_prev: Array = shown(
+        "um.mm/N", "deflection of the tooth before it at the same radius", label="compliance", table="flank"
+    )
+    c_next: Array = shown(
+        "um.mm/N", "deflection of the tooth after it (which the loaded flank faces)", label="compliance", table="flank"
+    )
+    half_width: Array = shown(
+        "mm", "half-width of the contact that c_self is for", name="contact_half_width", table="flank"
+    )
     root_tension: Array = shown(
         "MPa.mm/N", "largest tangential stress of the fillet below the loaded flank",
-        label="largest root stress per line load",
-    )  # fmt: skip
-    root_tension_radius: Array = shown("mm", "where it sits")
+        label="largest root stress per line load", table="flank")  # fmt: skip
+    root_tension_radius: Array = shown("mm", "where it sits", table="flank")
     root_tension_angle: Array = shown(
         "deg", "fillet tangent to tooth centre line there", label="fillet tangent to centre line"
     )
-    root_compression: Array = shown("MPa.mm/N", "most negative tangential stress of the other fillet")
-    root_compression_radius: Array = shown("mm", "where it sits")
+    root_compression: Array = shown("MPa.mm/N", "most negative tangential stress of the other fillet", table="flank")
+    root_compression_radius: Array = shown("mm", "where it sits", table="flank")
     root_compression_angle: Array = shown("deg", "the same on the other fillet")
 
 

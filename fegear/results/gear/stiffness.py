@@ -60,11 +60,6 @@ _SECONDS_OF_TABLE = 0.05
 
 
 _SIDES = ("root_tension", "root_compression")
-#: Columns of the table, before and behind the estimated errors.
-_COLUMNS = (
-    "radius", "roll_angle", "c_self", "c_prev", "c_next", "half_width", "root_tension", "root_tension_radius",
-    "root_compression", "root_compression_radius",
-)  # fmt: skip
 
 
 def _table(name: str, t: StiffnessTable) -> Table:
@@ -73,7 +68,7 @@ def _table(name: str, t: StiffnessTable) -> Table:
         t, "c_next", t.errors["c_neighbour"], name="c_neighbour_error", meaning="estimated error of c_prev and c_next"
     )
     columns = (
-        *columns_of(t, *_COLUMNS), errors.pop("c_self"), neighbour, *errors.values(),
+        *columns_of(t, table="flank"), errors.pop("c_self"), neighbour, *errors.values(),
         *columns_of(t, "root_tension_angle", "root_compression_angle"),
     )  # fmt: skip
     return Table(f"stiffness_{name}", columns, f"Compliance and root stress of gear {name}")

@@ -95,7 +95,7 @@ def _present(data: ContactLinesData, asked: ContactLinesInputs) -> Outcome:
         _lines_table(name, data.lines),
         Table(
             f"contact_line_length_{name}",
-            columns_of(length, "phi_1", "total", "lines"),
+            columns_of(length, table="cycle"),
             f"Total length of the contact lines of pair {name}",
         ),
     )

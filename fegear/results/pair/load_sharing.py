@@ -29,8 +29,6 @@ from fegear.results.pair.loaded_teeth import (
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
 _HISTORY, _HISTORY_CORNERS, _WIDE = 0.006, 0.02, 0.05
-#: Columns of a pair under one load.
-_COLUMNS = ("x", "driver_roll_angle", "load", "share", "deflection", "hertz_pressure")
 
 
 @dataclass(frozen=True)
@@ -49,15 +47,15 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> LoadSharingDat
 def _tables(name: str, data: LoadSharingData) -> tuple[Table, ...]:
     """The pair at the nominal load, and under every load."""
     h, loads = data.history, data.teeth.loads
-    columns = [*columns_of(h.found, *_COLUMNS, load=h.at)]
-    error = None if h.load_error is None else error_column(columns[_COLUMNS.index("load")], h.load_error[:, h.at])
+    columns = [*columns_of(h.found, table="path", load=h.at)]
+    error = None if h.load_error is None else error_column(column_of(h.found, "load"), h.load_error[:, h.at])
     if h.corner is not None:
         columns.append(column_of(h, "corner"))
     columns += [] if error is None else [error]
     title = f"Load on one tooth pair of {name}"
     tables = [Table(f"load_sharing_{name}", tuple(columns), f"{title}, {loads[h.at]:.6g} N")]
     if len(loads) > 1:
-        every = over_loads(loads, [columns_of(h.found, *_COLUMNS, load=k) for k in range(len(loads))])
+        every = over_loads(loads, [columns_of(h.found, table="path", load=k) for k in range(len(loads))])
         tables.append(Table(f"load_sharing_loads_{name}", every, f"{title} for every load"))
     return tuple(tables)
 

@@ -10,7 +10,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_of, curve_of, drawn, error_column, value_of
+from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, error_column, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
 from fegear.engine.figure.items import Bars, Stems
 from fegear.engine.outcome import Outcome, Value
@@ -47,9 +47,6 @@ if TYPE_CHECKING:
 _ERROR, _ERROR_CORNERS, _WIDE = 0.015, 0.1, 0.1
 #: Harmonics in the figure.
 _BARS = 16
-#: Columns of the curve, and of the summary over the loads by the names that they have there.
-_CURVE = ("x", "te", "mesh_stiffness", "pairs_in_contact", "local_stiffness")
-_SUMMARY = ("total_load", "te_mean", "te_peak_to_peak", "te_effective", "local_stiffness_mean", "driver_torque")
 #: Single numbers.
 _VALUES = ("te_mean", "te_peak_to_peak", "te_effective", "te_first_harmonic", "mesh_stiffness_mean",
            "local_stiffness_mean")  # fmt: skip
@@ -116,17 +113,17 @@ def _present(data: TransmissionErrorData, inputs: TransmissionErrorInputs) -> Ou
 def _tables(name: str, e: ErrorOverPitch) -> list[Table]:
     """The curve, its harmonics, and both over the loads."""
     title = f"Transmission error of {name} over one base pitch"
-    curve = columns_of(e, *_CURVE, load=e.at)
+    curve = columns_of(e, table="pitch", load=e.at)
     if e.te_error is not None:
-        curve = (*curve, *columns_of(e, "te_error"))
+        curve = (*curve, column_of(e, "te_error"))
     tables = [Table(f"transmission_error_{name}", curve, f"{title}, {e.load:.6g} N"), _harmonics_table(name, e)]
     if len(e.loads) > 1:
         summary = [replace(one, name="local_stiffness") if one.name == "local_stiffness_mean" else one
-                   for one in columns_of(e, *_SUMMARY)]  # fmt: skip
+                   for one in columns_of(e, "total_load", table="loads")]  # fmt: skip
         tables.append(
             Table(f"transmission_error_summary_{name}", tuple(summary), f"Transmission error of {name} for every load")
         )
-        every = over_loads(e.loads, [columns_of(e, *_CURVE, load=k) for k in range(len(e.loads))])
+        every = over_loads(e.loads, [columns_of(e, table="pitch", load=k) for k in range(len(e.loads))])
         tables.append(Table(f"transmission_error_loads_{name}", every, f"{title}, every load (Harris map)"))
     return tables
 

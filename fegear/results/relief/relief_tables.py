@@ -54,7 +54,7 @@ def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list
     for member, label in inputs.labels.items():
         found = design.reliefs[member]
         t = found.table
-        columns = [*columns_of(t, "x", "radius", "roll_angle", "load", "relief", "deflection")]
+        columns = [*columns_of(t, table="flank")]
         if found.diagonal is not None:
             meaning = "without the neighbours' loads (Mark 5.4)"
             columns.append(column_of(t, "relief", found.diagonal, name="relief_diagonal", meaning=meaning))
