@@ -7,6 +7,7 @@ import pytest
 
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.meshing import Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
@@ -163,3 +164,14 @@ def test_errors_are_honest_against_finer_everything(beta, most_gap):
         # and they are no blanket
         assert error.mean[0] < 0.03 * found.mean_transmission_error[0]
         assert error.face_load_factor[0] < 0.08 * found.face_load_factor[0]
+
+
+@pytest.mark.parametrize("unit", [1.0, 1.3, 1.7, 0.1])
+def test_zero_is_the_gap_of_flanks_on_the_path_alone(unit):
+    """Past its end a gap was zero or not by the last bit, and Mark's stiffness counted another pair or did not."""
+    planet, wheel = (gear(0.0, teeth=teeth) for teeth in (23, 60))
+    pair = GearPair(*(Gear(one.tooth, unit * MODULE, unit * one.bore_radius, unit * one.face_width, STEEL, "strain")
+                      for one in (planet, wheel)))  # fmt: skip
+    past = pair.base_pitch * np.logspace(-9, -2, 200)
+    gap = Meshing(pair, corner_contact=True).touching(np.concatenate([pair.x_end + past, pair.x_start - past])).gap
+    assert np.all(gap > 0.0)

@@ -15,6 +15,9 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.corner import CornerContact, corner_contact
 from fegear.geometry.pair import GearPair
 
+#: Zero is the gap of flanks on the path alone: beyond it round-off, too, leaves more [m].
+_OFF_PATH = float(np.finfo(float).tiny)
+
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
@@ -146,7 +149,8 @@ class Meshing:
                 off = ~inside & (beyond > 0.0) & (beyond < pair.base_pitch)
                 if not (corner.exists and off.any()):
                     continue
-                gap[off], flank, slope = corner.locate(beyond[off])
+                apart, flank, slope = corner.locate(beyond[off])
+                gap[off] = np.maximum(apart, _OFF_PATH)
                 (length1 if corner.flank_of == "driver" else length2)[off] = flank
                 curvature[off] = 1.0 / flank + 1.0 / corner.radius_of_curvature
                 edge[off] = -np.inf if corner.rounding > 0.0 else slope / curvature[off]

@@ -31,7 +31,7 @@ CELLS = 96
 
 
 #: Part of the function's range to which extremes are located.
-PRECISION = 1e-6
+PRECISION = 1e-8
 
 
 #: What a cubic may miss in a cell, over what it misses at the places that were looked at. A kink anywhere in the cell
@@ -108,7 +108,7 @@ def extremes(function: Pieces, start: float, period: float, tolerance: float = 1
     start, period : float
         The period to look at [rad].
     tolerance : float
-        Bound of the error of the values at which to stop, beside a 1e-6th of their range.
+        Bound of the error of the values at which to stop, beside a 1e-8th of their range.
 
     Returns
     -------
