@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import re
+import textwrap
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).resolve().parent
 MADE = DOCS.parent / "results" / "pages"
 log = logging.getLogger("mkdocs.plugins.executed")
+_NOTE = re.compile(r"^Note: .{105,}$", re.MULTILINE)
 _MADE_LINK = re.compile(r"\]\((results/[^)#]+)\)")
 
 
@@ -70,5 +72,6 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_others):
-    """Let links to results lead to the page's own run."""
-    return _MADE_LINK.sub(rf"]({Path(page.file.src_uri).stem}_files/\1)", markdown)
+    """Let links to results lead to the page's own run, and fold the long sentences of its notes."""
+    linked = _MADE_LINK.sub(rf"]({Path(page.file.src_uri).stem}_files/\1)", markdown)
+    return _NOTE.sub(lambda found: textwrap.fill(found[0], 110, subsequent_indent="      "), linked)

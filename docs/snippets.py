@@ -7,18 +7,24 @@
 - ``sh`` is run by the shell and ``python`` in one namespace for the whole page; a block that starts with
   ``# needs PROGRAM`` is passed over where that program is not installed;
 - ``text`` is what the block before it prints. Numbers may differ in the last printed digit or by 0.4 %, error estimates
-  (after ``+-``) by a factor of five; ``...`` stands for anything in a line, and alone for any lines.
+  (after ``+-``) by a factor of five; ``...`` stands for anything in a line, alone for any lines but notes: a command
+  that has notes for its reader (``Note: ...``) is followed by a block with all of them, whole.
+- a number of the prose that comes from a run is followed by a comment that no reader sees and that says where from:
+  ``229<!-- loaded: I.driver.largest_root_tension -->`` is a value of ``results/loaded``, ``41<!-- = EXPRESSION -->``
+  whatever Python makes of the names of the page's programs, of ``value("loaded", "I.te_mean")``, ``error`` and
+  ``printed(r"REGEX")``, the number that a run of the page has printed as the regular expression's first group.
 
 Commands end with code 0 unless the page shows the refusal (a line that starts with ``fegear: ``).
 
 ``python docs/snippets.py --accept PAGE FOLDER`` writes the numbers that are printed now into the page; words stay, and
-lines that are new or gone are refused: they are for a writer. Numbers in the prose of the page are for a writer, too.
+notes of the run that are missing are put in; other lines that are new or gone are refused: they are for a writer.
 """
 
 from __future__ import annotations
 
 import contextlib
 import io
+import json
 import os
 import re
 import shutil
@@ -26,7 +32,7 @@ import signal
 import subprocess
 import sys
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,6 +45,8 @@ _FILE = re.compile(r"# ([\w.-]+\.(?:toml|csv|py))(, continued)?$")
 _NEEDS = re.compile(r"# needs ([\w-]+)$")
 _NUMBER = r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
 _RELATIVE, _ESTIMATE = 4e-3, 5.0
+_NOTE = "Note: "
+_FILLED = re.compile(rf"({_NUMBER})<!-- (?:= (.+?)|([\w.-]+): ([\w.-]+)) -->")
 
 
 class DifferentError(AssertionError):
@@ -90,42 +98,75 @@ def compare(expected: str, got: str) -> None:
 
 
 def accepted(expected: str, got: str) -> str:
-    """What a page says, with the numbers that are printed now where they are not the same.
+    """What a page says, with the numbers that are printed now where they are not the same, and with every note.
 
     Raises
     ------
     DifferentError
-        If more than numbers differs.
+        If more than numbers and notes differs.
     """
-    pairs = _aligned(expected, got, lambda _expected, _got: True)
+    pairs = _aligned(expected, got, lambda _expected, _got: True, notes_may_lack=True)
     return "".join(line + "\n" if found is None else _renewed(line, found) + "\n" for line, found in pairs)
 
 
-def _aligned(expected: str, got: str, same: Callable[[str, str], bool]) -> list[tuple[str, str | None]]:
-    """Lines of a page with the printed lines that they stand for; none for ``...`` alone."""
-    have = [line.rstrip() for line in got.strip("\n").splitlines()]
-    pairs: list[tuple[str, str | None]] = []
-    where = 0
+@dataclass
+class _Reading:
+    """How far what is printed has been read along a page: pairs of lines, none for ``...`` and for notes put in."""
+
+    have: list[str]
+    notes_may_lack: bool
+    pairs: list[tuple[str, str | None]] = field(default_factory=list)
+    where: int = 0
+
+    @property
+    def ended(self) -> bool:
+        return self.where >= len(self.have)
+
+    def skip(self) -> None:
+        """Pass over a line that the page elides."""
+        line = self.have[self.where]
+        if line.startswith(_NOTE):
+            if not self.notes_may_lack:
+                raise DifferentError(f"the page does not have the run's\n  {line}")
+            self.pairs.append((line, None))
+        elif not self.pairs or self.pairs[-1][0] != "...":
+            self.pairs.append(("...", None))
+        self.where += 1
+
+    def take(self, line: str, *, same: Callable[[str, str], bool]) -> bool:
+        """Whether a line of the page stands for the next one that is printed, which then counts as read."""
+        if self.ended or _numbers(line, self.have[self.where]) is None:
+            return False
+        printed = self.have[self.where]
+        elided = line.startswith(_NOTE) and "..." in line and "..." not in printed
+        if not same(line, printed) or (elided and not self.notes_may_lack):
+            return False
+        self.pairs.append((printed, None) if elided else (line, printed))
+        self.where += 1
+        return True
+
+
+def _aligned(
+    expected: str, got: str, same: Callable[[str, str], bool], *, notes_may_lack: bool = False
+) -> list[tuple[str, str | None]]:
+    """Lines of a page with the printed lines that they stand for; none for ``...`` alone, and for notes put in."""
+    reading = _Reading([line.rstrip() for line in got.strip("\n").splitlines()], notes_may_lack)
     skipping = False
-
-    def fits(line: str) -> bool:
-        return _numbers(line, have[where]) is not None and same(line, have[where])
-
     for line in expected.strip("\n").splitlines():
         if line.strip() == "...":
             skipping = True
-            pairs.append((line, None))
             continue
-        while skipping and where < len(have) and not fits(line):
-            where += 1
-        if where >= len(have) or not fits(line):
-            found = have[where] if where < len(have) else "(the end)"
-            raise DifferentError(f"expected\n  {line}\nprinted\n  {found}\nin\n{got}")
-        pairs.append((line, have[where]))
-        where, skipping = where + 1, False
-    if where < len(have) and not skipping:
-        raise DifferentError(f"more is printed than expected:\n{chr(10).join(have[where:])}")
-    return pairs
+        while not reading.take(line, same=same):
+            if reading.ended or not skipping:
+                found = "(the end)" if reading.ended else reading.have[reading.where]
+                raise DifferentError(f"expected\n  {line}\nprinted\n  {found}\nin\n{got}")
+            reading.skip()
+        skipping = False
+    while skipping and not reading.ended:
+        reading.skip()
+    if not reading.ended:
+        raise DifferentError(f"more is printed than expected:\n{chr(10).join(reading.have[reading.where :])}")
+    return reading.pairs
 
 
 def _parts(expected: str) -> list[str]:
@@ -185,17 +226,14 @@ def run_page(page: Path, *, accept: bool = False) -> int:
     names: dict[str, object] = {"__name__": "__main__"}
     printed: str | None = None
     refused = ""
-    done = 0
-    for block in blocks(page):
+    everything = ""
+    done = inserted = 0
+    found = blocks(page)
+    for number, block in enumerate(found):
         where = f"{page.name}, line {block.line}"
         if block.kind == "text":
             if printed is not None:
-                try:
-                    (_accept if accept else _compare)(page, block, printed)
-                except DifferentError as error:
-                    raise DifferentError(f"{where}: {error}") from None
-                if refused and not re.search(r"^fegear: ", block.text, re.MULTILINE):
-                    raise DifferentError(f"{where}: {refused}")
+                _answer(page, number + inserted, where, printed, refused, accept=accept)
                 done += 1
             printed, refused = None, ""
             continue
@@ -207,28 +245,100 @@ def run_page(page: Path, *, accept: bool = False) -> int:
         if block.file:
             block.write()
         elif block.kind == "sh":
-            ran = subprocess.run(["sh", "-eu", "-c", block.text], capture_output=True, text=True, check=False)
-            printed = ran.stdout + (ran.stderr if ran.returncode else "")
-            refused = f"{where}: ends with {ran.returncode}: {ran.stderr}{ran.stdout}" if ran.returncode else ""
+            printed, refused = _shell(block, where)
             done += 1
+            if [after.kind for after in found[number + 1 : number + 2]] != ["text"]:
+                inserted += _unshown_notes(page, number + inserted, where, printed, accept=accept)
         elif block.kind == "python":
             printed = _python(block, names, where)
             done += 1
+        everything += printed or ""
     if refused:
         raise DifferentError(refused)
+    _fill(page, names, everything, accept=accept)
     return done
 
 
-def _compare(_page: Path, block: Block, printed: str) -> None:
-    compare(block.text, printed)
+def _shell(block: Block, where: str) -> tuple[str, str]:
+    """What a command prints, and what it complains of."""
+    ran = subprocess.run(["sh", "-eu", "-c", block.text], capture_output=True, text=True, check=False)
+    if not ran.returncode:
+        return ran.stdout, ""
+    return ran.stdout + ran.stderr, f"{where}: ends with {ran.returncode}: {ran.stderr}{ran.stdout}"
 
 
-def _accept(page: Path, block: Block, printed: str) -> None:
-    """Write the numbers that are printed now into a block of a page."""
-    text = accepted(block.text, printed)
+def _answer(page: Path, number: int, where: str, printed: str, refused: str, *, accept: bool) -> None:
+    """Compare a block of a page with what is printed, or renew it."""
+    said = blocks(page)[number].text
+    try:
+        _accept(page, number, printed) if accept else compare(said, printed)
+    except DifferentError as error:
+        raise DifferentError(f"{where}: {error}") from None
+    if refused and not re.search(r"^fegear: ", said, re.MULTILINE):
+        raise DifferentError(f"{where}: {refused}")
+
+
+def _unshown_notes(page: Path, number: int, where: str, printed: str, *, accept: bool) -> int:
+    """Refuse a command without a block for its notes, or put one in; how many were put in."""
+    if not re.search(f"^{_NOTE}", printed, re.MULTILINE):
+        return 0
+    if not accept:
+        raise DifferentError(f"{where}: the page shows no note of\n{printed}")
+    block = blocks(page)[number]
     lines = page.read_text("utf-8").splitlines(keepends=True)
-    lines[block.line : block.line + block.text.count("\n")] = text.splitlines(keepends=True)
+    end = block.line + block.text.count("\n") + 1
+    lines[end:end] = ["\n", "```text\n", *accepted("...", printed).splitlines(keepends=True), "```\n"]
     page.write_text("".join(lines), "utf-8")
+    return 1
+
+
+def _accept(page: Path, number: int, printed: str) -> None:
+    """Write the numbers that are printed now into a block of a page."""
+    block = blocks(page)[number]
+    lines = page.read_text("utf-8").splitlines(keepends=True)
+    lines[block.line : block.line + block.text.count("\n")] = accepted(block.text, printed).splitlines(keepends=True)
+    page.write_text("".join(lines), "utf-8")
+
+
+def _fill(page: Path, names: dict[str, object], everything: str, *, accept: bool) -> None:
+    """Hold the numbers of the prose against what the page's runs found, or write them anew."""
+
+    def of(run: str, name: str, what: str) -> float:
+        return float(json.loads(Path("results", run, "summary.json").read_text("utf-8"))["results"][name][what])
+
+    def value(run: str, name: str) -> float:
+        return of(run, name, "value")
+
+    def error(run: str, name: str) -> float:
+        return of(run, name, "error")
+
+    def printed(pattern: str) -> float:
+        found = re.search(pattern, everything)
+        if not found:
+            raise DifferentError(f"{page.name}: nothing that is printed fits {pattern}")
+        return float(found[1])
+
+    known = {"value": value, "error": error, "printed": printed}
+
+    def renewed(place: re.Match[str]) -> str:
+        said, expression, run, name = place.groups()
+        try:
+            now = eval(expression, {**names, **known}) if expression else value(run, name)
+        except (ArithmeticError, LookupError, NameError, OSError, TypeError, ValueError) as fault:
+            raise DifferentError(f"{page.name}: {place[0]} cannot be filled: {fault!r}") from None
+        digits = len(said.partition(".")[2])
+        room = max(0.6 * 10.0**-digits, _RELATIVE * abs(float(said)))
+        estimate = "error(" in (expression or "") and 1.0 / _ESTIMATE < float(now) / float(said) < _ESTIMATE
+        if estimate or abs(float(now) - float(said)) <= room:
+            return place[0]
+        if not accept:
+            raise DifferentError(f"{page.name}: the prose has {place[0]}, the run {now:.6g}")
+        return f"{now:.{digits}f}" + place[0].removeprefix(said)
+
+    text = page.read_text("utf-8")
+    filled = _FILLED.sub(renewed, text)
+    if accept and filled != text:
+        page.write_text(filled, "utf-8")
 
 
 def _python(block: Block, names: dict[str, object], where: str) -> str:

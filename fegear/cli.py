@@ -16,6 +16,7 @@ from fegear.base.streams import give_up
 from fegear.commands.common import INTERRUPTED, Command, Group, context_settings, leave
 from fegear.commands.export import export
 from fegear.commands.import_model import import_
+from fegear.commands.migrate import migrate
 from fegear.commands.new import new
 from fegear.commands.open import open  # noqa: A004  (the name of the command)
 from fegear.commands.run import plan, run
@@ -52,6 +53,7 @@ def _options(
 COMMANDS = (
     (new, "Write a commented case to start from."),
     (import_, "A case from a REXS model of a gearbox."),
+    (migrate, "Write a case anew where keys have other names now."),
     (open, "The live workbench: change a case and see the gears answer."),
     (results, "What a case can ask for."),
     (run, "Compute a case: tables, pictures, report."),

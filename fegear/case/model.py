@@ -17,6 +17,7 @@ from fegear.case.operation import RatingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part, Table
 from fegear.case.planetary import PlanetaryPart
+from fegear.case.renamed import SCHEMA_VERSION
 from fegear.case.shaft import BearingPart, ShaftInSpacePart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
@@ -28,6 +29,10 @@ class Case(Part):
     """One case file."""
 
     title: str = Field(default="", description="Headline of the report; without it the file's name.")
+    schema_version: Annotated[int, Field(ge=1)] = Field(
+        default=SCHEMA_VERSION,
+        description="Form of case files that this one was written in; a later one than fegear knows is refused.",
+    )
     results: Annotated[list[str], Field(min_length=1)] = Field(
         description="What is wanted: these results are computed, and what they need, nothing else."
     )

@@ -17,6 +17,7 @@ from fegear.base.errors import PATH, InputError, shown
 from fegear.case.model import Case
 from fegear.case.part import BARE_SI, check_references, nearest
 from fegear.case.planetary import with_set_pairs
+from fegear.case.renamed import current, current_key, without_old
 from fegear.case.schema import keys_at
 from fegear.case.text_file import read_text
 
@@ -60,6 +61,8 @@ class Scene:
     drafts : mapping of str to float
         Gears of which a draft is enough, with its relative tolerance: their teeth are solved once, as that tolerance
         usually wants, and not compared with it.
+    renamed : tuple of str
+        A sentence about every name of the case that is another one now.
     """
 
     case: Case
@@ -72,6 +75,7 @@ class Scene:
     document: Mapping[str, object] = field(default_factory=dict)
     estimates: bool = True
     drafts: Mapping[str, float] = field(default_factory=dict)
+    renamed: tuple[str, ...] = ()
 
     @property
     def spur_gears(self) -> dict[str, Gear]:
@@ -180,6 +184,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
     InputError
         If anything in it breaks a rule.
     """
+    document, renamed = current(document)
     try:
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
@@ -206,7 +211,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         for key, pair in case.pair.items()
         if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical and not pairs[key].internal
     }
-    scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document)
+    scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document, renamed=renamed)
     check_references(scene)
     return scene
 
@@ -246,6 +251,8 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
     option : str
         Name of the option for error messages.
     """
+    path = current_key(path)
+    without_old(document, path)
     steps = path.split(".")
     table = document
     for depth, step in enumerate(steps[:-1]):

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ValidationError
 from fegear.base.units import DIMENSIONS, EVERYDAY
 from fegear.case.model import Case
 from fegear.case.part import QUANTITY
+from fegear.case.renamed import current
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -316,6 +317,6 @@ def flat(document: Mapping[str, object], prefix: str = "") -> dict[str, object]:
 def meaning_of(document: Mapping[str, object]) -> dict[str, object]:
     """A case by dotted keys in SI, with the defaults of what it does not give; as it is written if it is no case."""
     try:
-        return flat(Case.model_validate(document).model_dump())
+        return flat(Case.model_validate(current(document)[0]).model_dump())
     except ValidationError:
         return flat(document)

@@ -123,10 +123,10 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     used |= {effect for name in scene.case.cost.stages if name in names for effect in known.called(name).effects}
     idle = tuple(effect for effect in on if effect not in used)
     said = [
-        f'results: "{result}" is called "{former[result]}" now; the old name still works.'
+        f'results: "{result}" is called "{former[result]}" now; fegear migrate writes it anew.'
         for result in scene.case.results if result in former
     ]  # fmt: skip
-    return Plan(steps, skipped, idle, (*said, *(_idle(effect, known) for effect in idle)))
+    return Plan(steps, skipped, idle, (*scene.renamed, *said, *(_idle(effect, known) for effect in idle)))
 
 
 def _idle(effect: str, stages: Sequence[Stage]) -> str:

@@ -194,6 +194,44 @@ def test_numbers_that_are_printed_now_are_written_into_a_page_and_words_are_not(
         snippets.accepted("c = 2.40 um", "a = 2.40 um")
 
 
+RUN = """```sh
+printf 'a = 2.50 um\\nmore\\nNote: Pair I: 46 %% off; write corner_contact = true.\\nWrote it.\\n'
+```
+"""
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["", "\n```text\na = 2.50 um\n...\n```\n", "\n```text\n...\nNote: Pair I: ...\nWrote it.\n```\n"],
+    ids=["no output shown", "elided with other lines", "elided in its line"],
+)
+def test_a_page_shows_every_note_of_its_runs_whole(said, tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(RUN + said)
+    assert "Note: Pair I: 46 % off" in snippets.execute(page, tmp_path / "compared")
+    assert snippets.execute(page, tmp_path / "put_in", accept=True) == ""
+    assert "Note: Pair I: 46 % off; write corner_contact = true.\n" in page.read_text()
+    assert snippets.execute(page, tmp_path / "compared") == ""
+
+
+def test_numbers_of_the_prose_are_those_of_the_run(tmp_path):
+    page = tmp_path / "page.md"
+    summary = '{"results": {"I.te_mean": {"value": 17.04}}}'
+    program = (
+        "```python\nimport pathlib\nfolder = pathlib.Path('results/drive')\nfolder.mkdir(parents=True)\n"
+        f"(folder / 'summary.json').write_text('{summary}')\nprint('up to 41.1 %')\nratio = 1 / 8\n```\n\n"
+    )
+    prose = "{}<!-- drive: I.te_mean --> um, {}<!-- = printed(r'up to ([.\\d]+) %') --> %, {}<!-- = 100 * ratio --> %\n"
+    page.write_text(program + prose.format("17", "41", "12"))
+    assert snippets.execute(page, tmp_path / "right") == ""
+    page.write_text(program + prose.format("18", "41", "12"))
+    assert "the prose has 18" in snippets.execute(page, tmp_path / "wrong")
+    assert snippets.execute(page, tmp_path / "filled", accept=True) == ""
+    assert page.read_text() == program + prose.format("17", "41", "12")
+    page.write_text(program + "7<!-- drive: I.te_meen -->\n")
+    assert "cannot be filled" in snippets.execute(page, tmp_path / "lost")
+
+
 def test_a_refusal_counts_only_where_the_page_shows_it(tmp_path):
     page = tmp_path / "page.md"
     command = "```sh\nfegear run missing.toml\n```\n"

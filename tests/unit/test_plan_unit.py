@@ -184,7 +184,7 @@ def test_a_former_name_of_a_result_asks_for_it_and_gives_the_new_one():
     renamed._loaded.update({stage.name: stage for stage in stages})
     old, new = make_plan(scene("fangs", "teeth"), renamed), make_plan(scene("teeth"), renamed)
     assert [step.task for step in old.steps] == [step.task for step in new.steps]
-    assert old.remarks == ('results: "fangs" is called "teeth" now; the old name still works.', *new.remarks)
+    assert old.remarks == ('results: "fangs" is called "teeth" now; fegear migrate writes it anew.', *new.remarks)
     assert STAGES.former() == {
         "tooth-loss": "gear-mesh-power-loss", "followed-modes": "mode-tracking", "pair-forces": "pair-forced-response",
     }  # fmt: skip

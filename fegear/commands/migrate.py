@@ -1,0 +1,94 @@
+"""``fegear migrate``: a case file by the names of now."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fegear.commands.common import CaseFile, Quiet, Voice
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: The list of wanted results in a case file.
+_RESULTS = re.compile(r"^(results[ \t]*=[ \t]*\[)(.*?)(\])", re.DOTALL | re.MULTILINE)
+
+
+def migrate(
+    case: CaseFile,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what would change; write nothing.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a case file anew where keys or results have other names now; comments and order stay.
+
+    The file as it was is kept beside it as CASE.toml.old.
+    """
+    from fegear.base.errors import InputError
+    from fegear.case.reading import build_scene, parse_document
+    from fegear.case.text_file import read_file, write_file
+
+    voice = Voice(quiet)
+    file = read_file(case, "case")
+    text, said = migrated(file.text, parse_document(file.text, f'"{case}"'))
+    build_scene(tomllib.loads(text), case.stem, case.parent)
+    if not said:
+        voice.say(f"{case} has the names of now; nothing to change.")
+        return
+    for sentence in said:
+        voice.say(sentence)
+    if dry_run:
+        return
+    kept = case.with_name(case.name + ".old")
+    if kept.exists():
+        raise InputError(
+            "case", f'"{kept}"', "is there already; the case would be kept under this name", "move it away"
+        )
+    write_file(kept, file.written(file.text), "case")
+    write_file(case, file.written(text), "case")
+    voice.say(f"Wrote {case}; as it was: {kept}")
+
+
+def migrated(text: str, document: Mapping[str, object]) -> tuple[str, list[str]]:
+    """The text of a case by the names of now, and what was changed.
+
+    Raises
+    ------
+    InputError
+        If a key stands where it cannot be changed by itself, or was written for a later version.
+    """
+    from fegear.case.renamed import SCHEMA_VERSION, changes, current
+    from fegear.results.catalogue import STAGES
+    from fegear.window.case_text import literal, value_at, with_values
+
+    current(document)  # refuses what cannot be read
+    edits: dict[tuple[str, ...], str | None] = {}
+    said = []
+    for old, new, remark in changes(document):
+        edits[old] = None
+        if new:
+            edits[new] = literal(value_at(document, old))
+        said.append(remark.partition(";")[0] + ".")
+    former = STAGES.former()
+    wanted = document.get("results")
+    if isinstance(wanted, list) and (renamed := [name for name in wanted if name in former]):
+        said += [f'results: "{name}" is called "{former[name]}" now.' for name in renamed]
+        results = list(dict.fromkeys(former.get(name, str(name)) for name in wanted))
+        text = _with_results(text, results, former)
+        edits["results",] = literal(results)
+    if said and "schema_version" in document:
+        edits["schema_version",] = str(SCHEMA_VERSION)
+    return with_values(text, edits), said
+
+
+def _with_results(text: str, results: list[str], former: Mapping[str, str]) -> str:
+    """Names of results in the text of a case renamed where they stand, which leaves comments between them alone."""
+
+    def renamed(found: re.Match[str]) -> str:
+        inside = re.sub(r'"([\w-]+)"', lambda name: f'"{former.get(name[1], name[1])}"', found[2])
+        return found[1] + inside + found[3]
+
+    made = _RESULTS.sub(renamed, text, count=1)
+    return made if tomllib.loads(made).get("results") == results else text
