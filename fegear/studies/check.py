@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.units import from_si
 from fegear.case.built.tooth_influence import gear_to_solve, solve_influence_functions
-from fegear.results.gear.stiffness import chosen_gears
+from fegear.results.gear.load_positions import chosen_gears
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

@@ -11,7 +11,7 @@ import fegear
 from fegear.base.errors import FegearError
 from fegear.base.one_thread import one_thread
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.reading import read_scene
+from fegear.case.reading import build_scene, read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
@@ -21,6 +21,7 @@ from fegear.geometry.gear import Gear
 from fegear.output.draw_png import draw_pictures
 from fegear.output.figures import _write_field
 from fegear.results.catalogue import STAGES
+from fegear.results.gear.load_positions import stiffness_inputs
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.knobs import solid_knobs
 
@@ -195,6 +196,18 @@ def test_without_face_positions_the_table_is_the_plane_one_and_the_other_way_rou
 
 
 @pytest.mark.long
+def test_a_contact_as_wide_as_a_load_makes_it_is_not_called_the_usual_one():
+    gears = {name: {"teeth": 28, "module": "3 mm", "face_width": "10 mm"} for name in "ab"}
+    for part, said in ({"load": "100 N/mm"}, False), ({}, True):
+        document = {
+            "results": ["stiffness"], "gear": gears, "pair": {"I": {"driver": "a", "driven": "b"}},
+            "stiffness": {"gear": "a", "face_positions": 2, "band_radii": 3, **part},
+        }  # fmt: skip
+        found = stiffness_inputs(build_scene(document, "case", Path()), "a")
+        assert any("0.02 modules" in remark for remark in found.assumed) is said
+        assert np.allclose(found.half_widths, 0.02 * 3e-3) is said
+
+
 def test_the_cost_study_varies_what_the_solid_depends_on():
     """Errors fall as edges shorten and functions are added, and neither is free."""
     with one_thread():

@@ -26,7 +26,8 @@ from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_iso import iso_inputs, iso_table, section_figure, section_table
-from fegear.results.gear.stiffness import chosen_gears, needs_solution, solution_of
+from fegear.results.gear.load_positions import chosen_gears
+from fegear.results.gear.solved_gear import needs_solution, solution_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

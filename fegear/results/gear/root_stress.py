@@ -17,7 +17,7 @@ from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import deformed_figure
-from fegear.results.gear.stiffness import chosen_gears
+from fegear.results.gear.load_positions import chosen_gears
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

@@ -1,13 +1,10 @@
 """Result ``stiffness`` over the face: the table of one gear with its width, band by band.
 
 Figures of a gear with a width: compliance over the flank, root stress along the face, the deformed tooth.
-
-Stage ``solid-solution``: the influence functions of a gear with its width, for every result that needs them.
 """
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
@@ -16,15 +13,6 @@ import numpy as np
 from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
-from fegear.case.built.rated_duty import bore_remarks
-from fegear.case.built.solid_influence import (
-    check_solid_gear,
-    seconds_of_solid_gear,
-    solid_gear_to_solve,
-    solid_settings_of,
-    solid_solution_settings,
-    solve_solid_influence,
-)
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import (
     axis_of,
@@ -39,26 +27,20 @@ from fegear.engine.declared import (
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
 from fegear.engine.figure.items import Curve, HeatMap, Skin
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Table
 from fegear.results.forecasts import RING
-from fegear.results.gear.stiffness import (
-    USUAL_HALF_WIDTH,
-    check_contacts_of,
-    contact_half_width,
-    load_radii,
-    tolerance_remarks,
-)
+from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, stiffness_inputs
+from fegear.results.gear.solved_gear import needs_solid_solution
+from fegear.results.gear.stiffness import compliance_errors, tolerance_remarks
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
-    from fegear.case.built.solid_influence import SolidGearToSolve
     from fegear.case.reading import Scene
     from fegear.engine.outcome import Value
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.field import SolidField
-    from fegear.fem.solid.influence import SolidInfluence
     from fegear.fem.solid.table import SolidTable
     from fegear.geometry.gear import Gear
 
@@ -86,11 +68,7 @@ def _table(name: str, t: SolidTable) -> Table:
         *repeated(columns_of(t, "half_width", "pressed_half_width"), places),
         *tiled(columns_of(t, "before", "after"), rows),
     ]
-    errors = [error_column(column_of(t, "c_self"), t.errors["c_self"].ravel())]
-    errors.append(column_of(
-        t, "c_next", t.errors["c_neighbour"].ravel(), name="c_neighbour_error",
-        meaning="estimated error of c_prev and c_next",
-    ))  # fmt: skip
+    errors = [*compliance_errors(t)]
     for side, meaning in _SIDES:
         found = t.root[side]
         root = column_of(found, "value", found.value.ravel(), name=f"root_{side}", meaning=meaning)
@@ -120,57 +98,15 @@ def _values(name: str, t: SolidTable) -> tuple[Value, ...]:
     return tuple(found)
 
 
-@dataclass(frozen=True)
-class SolidTableInputs:
-    """What the table of a solid gear depends on beside its influence functions.
-
-    Parameters
-    ----------
-    gear : Gear
-    radii, positions, half_widths : ndarray, shape (R,), (Z,), (R,)
-        Of the bands and their contacts [m].
-    tolerance : float
-        That estimated errors are compared with.
-    assumed : tuple of str
-        Sentences about values that the case does not give.
-    name : str
-        Of the gear.
-    """
-
-    gear: Gear
-    radii: Array
-    positions: Array
-    half_widths: Array
-    tolerance: float
-    assumed: tuple[str, ...] = field(default=(), compare=False)
-    name: str = field(default="", compare=False)
-
-
-def face_positions(scene: Scene, name: str) -> Array:
-    """Places along the face [m]: those of the case, or so many equally spaced from end to end."""
-    wanted, half = scene.case.stiffness.face_positions, 0.5 * scene.gears[name].face_width
-    if isinstance(wanted, int):
-        return np.linspace(-half, half, wanted) if wanted > 1 else np.zeros(1)
-    return np.array(wanted)
-
-
-def _inputs(scene: Scene, name: str) -> SolidTableInputs:
-    assumed, radii = () if scene.gears[name].body else bore_remarks(scene, name), load_radii(scene, name)
-    if scene.case.stiffness.contact_half_width is None:
-        usual = f"so c_self is for a half-width of {USUAL_HALF_WIDTH} modules."
-        assumed = (f"Gear {name}: no contact_half_width was given, {usual}", *assumed)
-    widths, tolerance = contact_half_width(scene, name, radii), scene.case.accuracy.tolerance
-    return SolidTableInputs(scene.gears[name], radii, face_positions(scene, name), widths, tolerance, assumed, name)
-
-
-def _compute(asked: SolidTableInputs, upstream: Upstream, _work: Work) -> SolidTable:
+def _compute(asked: StiffnessInputs, upstream: Upstream, _work: Work) -> SolidTable:
     from fegear.fem.solid.table import solid_table
 
     (influence,) = upstream.values()
-    return solid_table(asked.gear, influence, asked.radii, asked.positions, asked.half_widths)
+    places = cast("Array", asked.positions)
+    return solid_table(asked.gear, influence, asked.radii, places, asked.half_widths)
 
 
-def _present(table: SolidTable, asked: SolidTableInputs) -> Outcome:
+def _present(table: SolidTable, asked: StiffnessInputs) -> Outcome:
     name, m = asked.name, asked.gear.module
     reach = float(max(table.before.max(), table.after.max())) * 1e3
     width = f"{table.pressed_half_width.min() * 1e3:.4g} to {table.pressed_half_width.max() * 1e3:.4g}"
@@ -188,7 +124,7 @@ def _present(table: SolidTable, asked: SolidTableInputs) -> Outcome:
     )
 
 
-def _sliced(table: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
+def _sliced(table: SolidTable, asked: StiffnessInputs) -> tuple[str, ...]:
     """Say what slices are."""
     if table.influence.settings.source == "solid":
         return ()
@@ -196,7 +132,7 @@ def _sliced(table: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
     return (f"Gear {asked.name} over its face: {said}.",)
 
 
-def _missed(t: SolidTable, asked: SolidTableInputs) -> list[str]:
+def _missed(t: SolidTable, asked: StiffnessInputs) -> list[str]:
     """Say where the tolerance is missed."""
     values = {"c_self": t.c_self, **{f"root_{side}": found.value for side, found in t.root.items()}}
     relative = {label: np.abs(t.errors[label] / value).max(axis=1) for label, value in values.items()}
@@ -379,48 +315,13 @@ def _skin(field: SolidField) -> Index:
     return np.hstack([*(np.stack(strip) for strip in strips), *ends])
 
 
-def needs_solid_solution(*gears: str) -> tuple[Task, ...]:
-    """The tasks of this stage for gears, each once."""
-    return tuple(Task("solid-solution", name) for name in dict.fromkeys(gears))
-
-
-def solid_solution_of(upstream: Upstream, gear: str) -> SolidInfluence:
-    """What this stage computed for a gear."""
-    return cast("SolidInfluence", upstream[Task("solid-solution", gear)])
-
-
-def _solve_gears(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> SolidInfluence:
-    return solve_solid_influence(asked, work.cache)
-
-
-def _present_solution(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
-    return Outcome(influence, settings=solid_solution_settings(influence))
-
-
-def _solving_forecast(scene: Scene, name: str) -> Forecast:
-    settings, gear = solid_settings_of(scene, name), scene.gears[name]
-    seconds = seconds_of_solid_gear(settings, gear.face_width / gear.module, on_a_web=gear.body is not None)
-    return Forecast(asdict(settings), seconds)
-
-
 SOLID_STIFFNESS = Stage(
     subjects=_subjects,
     needs=lambda _scene, name: needs_solid_solution(name),
-    inputs=_inputs,
+    inputs=stiffness_inputs,
     compute=_compute,
     present=_present,
     check=_check,
     cites=citing(*RING, Citation("iso-21771", "the transverse section, turned along the face")),
     forecast=_forecast,
-)
-
-
-SOLID_SOLUTION = Stage(
-    subjects=lambda scene: tuple(scene.gears),
-    inputs=solid_gear_to_solve,
-    compute=_solve_gears,
-    present=_present_solution,
-    check=check_solid_gear,
-    cites=citing(*RING),
-    forecast=_solving_forecast,
 )

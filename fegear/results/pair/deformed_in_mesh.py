@@ -17,7 +17,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
-from fegear.results.gear.stiffness import of_solved_gear, solution_of
+from fegear.results.gear.solved_gear import of_solved_gear, solution_of
 from fegear.results.pair.loaded_teeth import loaded_pair, needs_gears, plane_pairs
 from fegear.results.pair.stress_in_mesh import mesh_inputs
 

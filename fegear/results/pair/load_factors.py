@@ -17,7 +17,7 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
 from fegear.results.forecasts import RING
-from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.load_distribution import distributed_pairs
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import gears_of

@@ -18,7 +18,7 @@ from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import heavy_load
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
-from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.loaded_teeth import wide_pairs
 
 if TYPE_CHECKING:

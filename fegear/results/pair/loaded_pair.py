@@ -19,7 +19,7 @@ from fegear.case.effects import AT_REST, PLANE_EFFECTS
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
-from fegear.results.gear.stiffness import needs_solution, solution_of
+from fegear.results.gear.solved_gear import needs_solution, solution_of
 from fegear.results.pair.loaded_teeth import plane_pairs
 
 if TYPE_CHECKING:

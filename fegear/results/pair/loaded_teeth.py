@@ -22,8 +22,7 @@ from fegear.engine.figure.items import Mark, few, ramp
 from fegear.engine.stage import Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results.gear.drawing import path_marks
-from fegear.results.gear.stiffness import needs_solution
-from fegear.results.gear.stiffness_over_face import needs_solid_solution
+from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -22,8 +22,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.drawing import path_marks
-from fegear.results.gear.stiffness import needs_solution, solution_of
-from fegear.results.gear.stiffness_over_face import solid_solution_of
+from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.loaded_teeth import (
     TEETH_EFFECTS,
     check_teeth,

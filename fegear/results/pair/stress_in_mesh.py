@@ -24,8 +24,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
-from fegear.results.gear.stiffness import solution_of
-from fegear.results.gear.stiffness_over_face import solid_solution_of
+from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import (
     PLANE,

@@ -19,7 +19,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
-from fegear.results.gear.stiffness import of_solved_gear
+from fegear.results.gear.solved_gear import of_solved_gear
 from fegear.results.pair.loaded_teeth import gears_of, plane_pairs
 
 if TYPE_CHECKING:

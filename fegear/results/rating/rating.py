@@ -20,8 +20,7 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import RING
-from fegear.results.gear.stiffness import needs_solution, solution_of
-from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.rating.rating_tables import (
     agma_table,

@@ -22,7 +22,7 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
-from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.relief.flank_design_tables import (
     designs_table,

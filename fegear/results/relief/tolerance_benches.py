@@ -23,8 +23,7 @@ from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.built.tooth_influence import gear_to_solve
 from fegear.engine.stage import Forecast
 from fegear.geometry.pair import MEMBERS
-from fegear.results.gear.stiffness import solution_of
-from fegear.results.gear.stiffness_over_face import solid_solution_of
+from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_pair, needs_gears, needs_teeth
 from fegear.results.pair.root_stress_history import needs_sources, stress_sources

@@ -15,7 +15,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
-from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.loaded_flanks import load_flanks
 from fegear.shafts.rolling_bearing import RollingBearing
 

@@ -21,7 +21,7 @@ from fegear.engine.table import Table
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.gear.drawing import path_marks
-from fegear.results.gear.stiffness import solution_of
+from fegear.results.gear.solved_gear import solution_of
 from fegear.results.pair.root_stress_history import (
     cited_sources,
     ending,

@@ -14,7 +14,7 @@ from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.built.train import motion_inputs
 from fegear.case.reading import Scene
 from fegear.case.train import TrainPart
-from fegear.results.gear.stiffness import contact_half_width, load_radii
+from fegear.results.gear.load_positions import contact_half_width, load_radii
 from fegear.results.pair.loaded_teeth import plane_pairs
 from fegear.studies.cost.answers import OF_FLANKS, OF_GEAR, Quantity
 

@@ -21,7 +21,7 @@ from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.table import band_numbers, bands_of_table
-from fegear.results.gear.stiffness_over_face import face_positions
+from fegear.results.gear.load_positions import face_positions
 from fegear.studies.cost.answers import (
     HARMONICS,
     FiniteElements,

@@ -1,0 +1,158 @@
+"""A gear solved by finite elements, plane or with its width: the stages that solve one, and how results get at it.
+
+The two kinds answer in their own terms: a plane gear per line load, in SI; a solid one for bands of pressure on its
+flank, in modules. What results of a pair need of either comes through `fegear.contact.loaded_teeth`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+from fegear.case.built.solid_influence import (
+    check_solid_gear,
+    seconds_of_solid_gear,
+    solid_gear_to_solve,
+    solid_settings_of,
+    solid_solution_settings,
+    solve_solid_influence,
+)
+from fegear.case.built.tooth_influence import (
+    gear_to_solve,
+    mesh_settings,
+    solution_remarks,
+    solution_settings,
+    solve_influence_functions,
+)
+from fegear.case.reading import Scene
+from fegear.engine.citation import citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.results import forecasts
+from fegear.results.forecasts import RING
+
+if TYPE_CHECKING:
+    from fegear.case.built.solid_influence import SolidGearToSolve
+    from fegear.case.built.tooth_influence import GearToSolve
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.influence import Influence
+    from fegear.fem.solid.influence import SolidInfluence
+
+#: Stages of plane gears, and of gears with their width.
+PLANE, SOLID = "gear-solution", "solid-solution"
+#: How many times the solution of a plane gear reports that it goes on, about.
+_STEPS = 4
+
+
+def _needs(stage: str, gears: tuple[str, ...]) -> tuple[Task, ...]:
+    return tuple(Task(stage, name) for name in dict.fromkeys(gears))
+
+
+def needs_solution(*gears: str) -> tuple[Task, ...]:
+    """The tasks that solve plane gears, each once."""
+    return _needs(PLANE, gears)
+
+
+def needs_solid_solution(*gears: str) -> tuple[Task, ...]:
+    """The tasks that solve gears with their width, each once."""
+    return _needs(SOLID, gears)
+
+
+def solution_of(upstream: Upstream, gear: str) -> GearInfluence:
+    """A plane gear that was solved."""
+    return cast("GearInfluence", upstream[Task(PLANE, gear)])
+
+
+def solid_solution_of(upstream: Upstream, gear: str) -> SolidInfluence:
+    """A gear that was solved with its width."""
+    return cast("SolidInfluence", upstream[Task(SOLID, gear)])
+
+
+def _solve(asked: GearToSolve, _upstream: Upstream, work: Work) -> GearInfluence:
+    steps = iter(range(_STEPS))
+    return solve_influence_functions(asked, work.cache, lambda _title: work.progress(next(steps, _STEPS) / _STEPS))
+
+
+def _present(influence: GearInfluence, asked: GearToSolve) -> Outcome:
+    remarks = solution_remarks(asked.name, influence, asked.tolerance)
+    return Outcome(influence, settings=solution_settings(influence), remarks=remarks)
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    settings = mesh_settings(scene.case.accuracy)
+    if scene.case.gear[name].tooth_mesh is not None:
+        return Forecast({"mesh": scene.case.gear[name].tooth_mesh, "order": settings.order})
+    return Forecast(asdict(settings), 0.0, forecasts.shapes(scene, [name]))
+
+
+def _solve_solid(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> SolidInfluence:
+    return solve_solid_influence(asked, work.cache)
+
+
+def _present_solid(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
+    return Outcome(influence, settings=solid_solution_settings(influence))
+
+
+def _forecast_solid(scene: Scene, name: str) -> Forecast:
+    settings, gear = solid_settings_of(scene, name), scene.gears[name]
+    seconds = seconds_of_solid_gear(settings, gear.face_width / gear.module, on_a_web=gear.body is not None)
+    return Forecast(asdict(settings), seconds)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What a table of unit loads on one gear depends on besides the gear's solution."""
+
+    teeth: int
+
+
+def of_solved_gear(compute: Callable[[Influence, int], Any], reach: int, seconds: float) -> Stage:
+    """The stage of what one solved spur gear gives by itself, for results of its pairs.
+
+    Parameters
+    ----------
+    compute : callable
+        ``compute(fine, reach)``, of the gear's finer solution.
+    reach : int
+        Neighbours to either side of the loaded tooth that it is known for.
+    seconds : float
+        What it takes.
+    """
+
+    def found(asked: Reach, upstream: Upstream, _work: Work) -> Any:
+        (influence,) = upstream.values()
+        return compute(cast("GearInfluence", influence).fine, asked.teeth)
+
+    return Stage(
+        subjects=lambda scene: tuple(scene.spur_gears),
+        needs=lambda _scene, name: needs_solution(name),
+        inputs=lambda _scene, _name: Reach(reach),
+        compute=found,
+        present=lambda data, _inputs: Outcome(data),
+        cites=citing(*RING),
+        forecast=lambda _scene, _name: forecasts.constant(seconds),
+        internal=True,
+    )
+
+
+GEAR_SOLUTION = Stage(
+    subjects=lambda scene: tuple(scene.spur_gears),
+    inputs=gear_to_solve,
+    compute=_solve,
+    present=_present,
+    cites=citing(*RING),
+    forecast=_forecast,
+    internal=True,
+)
+
+
+SOLID_SOLUTION = Stage(
+    subjects=lambda scene: tuple(scene.gears),
+    inputs=solid_gear_to_solve,
+    compute=_solve_solid,
+    present=_present_solid,
+    check=check_solid_gear,
+    cites=citing(*RING),
+    forecast=_forecast_solid,
+)
