@@ -11,7 +11,9 @@ from fegear.commands.common import Quiet, Voice
 
 
 def import_(
-    model: Annotated[Path, typer.Argument(metavar="MODEL", help="REXS 1.0 to 1.7, XML or JSON.", show_default=False)],
+    model: Annotated[
+        Path, typer.Argument(metavar="MODEL", help="REXS 1.0 to 1.7: XML, JSON or archive.", show_default=False)
+    ],
     out: Annotated[
         str | None, typer.Option("--out", metavar="CASE", help="Case file to write; default the model's name.")
     ] = None,

@@ -19,8 +19,9 @@ from fegear.geometry.internal_tooth import InternalTooth, leaving_margin
 from fegear.geometry.involute import inv
 from fegear.geometry.involute_tooth import InvoluteTooth
 
-#: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet.
-_TURNS, _CLOSER, _FILLET = 257, 4, 1025
+#: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet, and of a
+#: tip's chamfer or rounding.
+_TURNS, _CLOSER, _FILLET, _EDGE = 257, 4, 1025, 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +78,9 @@ def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float)
 
     Notes
     -----
-    Tips count as sharp where contact with a fillet and the parting of tips are checked, which is on the safe side of
-    rounded ones. A tip that reaches below the start of an undercut flank may find room there. One that touches the
+    Tips count as sharp where contact of an involute with a fillet and the parting of tips are checked, which is on the
+    safe side of rounded ones; what passes a fillet is the tip as it is, with its chamfer or rounding. A tip that
+    reaches below the start of an undercut flank may find room there. One that touches the
     mate on its involute alone may still cut its fillet on the way there: of a ring cut by few teeth the fillet stands
     further out than a planet of many teeth leaves room for.
     """
@@ -123,6 +125,15 @@ def _tip_corner(tooth: InvoluteTooth) -> TipCorner:
         x, y = edge.centre
         return TipCorner(math.hypot(x, y), math.atan2(x, y), edge.radius)
     return TipCorner(tooth.tip_radius, float(tooth.half_thickness_angle(tooth.tip_radius)), 0.0)
+
+
+def _edge(tooth: InvoluteTooth | InternalTooth) -> tuple[Array, Array]:
+    """Radii [modules] and angles from the centre line [rad] of a tip's corner, (1, 1), or along its edge, (n, 1)."""
+    edge = tooth.tip_edge
+    if edge is None:
+        return np.full((1, 1), tooth.tip_radius), np.full((1, 1), float(tooth.half_thickness_angle(tooth.tip_radius)))
+    x, y = edge.points(np.linspace(edge.start, edge.end, _EDGE)[:, None])
+    return np.hypot(x, y), np.arctan2(x, y)
 
 
 def radial_room(corner: TipCorner, teeth: int, ring: InternalTooth, distance: float) -> float:
@@ -172,7 +183,7 @@ def _least(room: Callable[[Array], Array], low: float, high: float) -> float:
 
 
 def _past_fillets(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> tuple[float, float]:
-    """Least room between a tip corner's path and the mating fillet: planet's past the ring's, ring's past the planet's.
+    """Least room between a tip's path and the mating fillet: planet's past the ring's, ring's past the planet's.
 
     The planet's tooth stands `turn` ahead of the line between the axes, its leading flank on the ring's.
     """
@@ -180,16 +191,15 @@ def _past_fillets(planet: InvoluteTooth, ring: InternalTooth, distance: float) -
     ratio, half_pitch = planet.teeth / ring.teeth, math.pi / ring.teeth
     front = planet.base_half_angle - inv_working
     behind = half_pitch - ring.base_half_angle - inv_working
-    own = float(planet.half_thickness_angle(planet.tip_radius))
-    other = float(ring.half_thickness_angle(ring.tip_radius))
+    (tip1, own), (tip3, other) = _edge(planet), _edge(ring)
 
     def of_planet(turn: Array) -> tuple[Array, Array]:
-        x, y = distance + planet.tip_radius * np.cos(turn + own), planet.tip_radius * np.sin(turn + own)
+        x, y = distance + tip1 * np.cos(turn + own), tip1 * np.sin(turn + own)
         return np.hypot(x, y), half_pitch + (turn + front) * ratio - behind - np.arctan2(y, x)
 
     def of_ring(turn: Array) -> tuple[Array, Array]:
         at = (turn + front) * ratio - behind + half_pitch - other
-        x, y = ring.tip_radius * np.cos(at) - distance, ring.tip_radius * np.sin(at)
+        x, y = tip3 * np.cos(at) - distance, tip3 * np.sin(at)
         return np.hypot(x, y), np.arctan2(y, x) - turn
 
     def least(path: Callable[[Array], tuple[Array, Array]], fillet: Curve) -> float:
@@ -201,7 +211,7 @@ def _past_fillets(planet: InvoluteTooth, ring: InternalTooth, distance: float) -
         def room(turn: Array) -> Array:
             at, beside = path(turn)
             inside = (at > radius[0]) & (at < radius[-1])
-            return np.where(inside, (beside - np.interp(at, radius, half)) * at, np.inf)
+            return np.where(inside, (beside - np.interp(at, radius, half)) * at, np.inf).min(axis=0)
 
         reach = 6.0 * math.pi / planet.teeth
         return _least(room, -reach, reach)

@@ -344,3 +344,15 @@ def test_evenly_spaced_planets_fit_where_the_teeth_of_sun_and_ring_divide_by_the
                 PlanetarySet(*given)
     assert any(fits)
     assert not all(fits)
+
+
+@pytest.mark.parametrize(
+    ("edge", "passes"),
+    [({}, False), ({"tip_chamfer": 0.125}, True), ({"tip_rounding": 0.1}, True), ({"tip_chamfer": 0.01}, False)],
+)
+def test_a_chamfered_tip_of_a_ring_passes_a_fillet_that_a_sharp_one_cuts(edge: dict[str, float], passes: bool) -> None:
+    """Planet of 22 and ring of 61 teeth without shifts, as in public models of planetary stages."""
+    planet = Tooth(22, tip_radius=12.0)
+    ring = InternalTooth(61, PinionCutter(45, 0.0, 1.25, tip_radius=0.0), tip_radius=29.5, **edge)
+    assert (margin("ring's corner past the planet's fillet", planet, ring, 19.5) > 0.0) == passes
+    assert (rolled(planet, ring, 19.5) < MEETS) == passes

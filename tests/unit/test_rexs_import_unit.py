@@ -112,7 +112,7 @@ def test_a_shaft_without_bearings_is_imported_as_a_pair_alone():
     for number in (51, 52):
         tree = without(tree, number)
     text = case_of(model_of(in_json(tree), HERE))
-    assert "shaft 3 has no bearings: shafts and bearings are not imported" in text
+    assert "shaft 3 has no bearings; shafts and bearings are not imported" in text
     found = tomllib.loads(text)
     assert "shaft" not in found
     assert "misalignment" not in found["results"]
@@ -133,7 +133,7 @@ def test_a_planetary_stage_becomes_a_set():
 
 
 def test_sets_that_nothing_holds_or_that_have_no_ring_are_refused():
-    with pytest.raises(InputError, match="do not balance through the teeth"):
+    with pytest.raises(InputError, match="finds nothing that takes it behind the teeth; give a load"):
         case(in_json(without(planetary_set(), 7)))
     with pytest.raises(InputError, match="must have a cylindrical gear as gear_1"):
         case(in_json(without(planetary_set(), 15)))

@@ -8,20 +8,24 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, case_text, listed, plain_name, quantity, text
+from fegear.exchange.rexs.bearings import bearing_tables, bearings_of, fixed_bearing, stopped_along
 from fegear.exchange.rexs.loads import Spectrum, chosen_load_case, flow_of, spectrum_of
 from fegear.exchange.rexs.operation import lubricant_key, operation_key
-from fegear.exchange.rexs.places import BEARINGS, middle_on_shaft, places_of, shaft_of, stages_of
-from fegear.exchange.rexs.said import Said
-from fegear.exchange.rexs.sets import planetary_of, set_table
-from fegear.exchange.rexs.shafts import (
-    OnShaft,
-    bearing_table,
-    bearings_of,
-    diameter_below,
-    fixed_bearing,
-    sections_of,
-    shaft_table,
+from fegear.exchange.rexs.places import (
+    BEARINGS,
+    BEVEL,
+    bevels_of,
+    distance_of,
+    joints_of,
+    middle_on_shaft,
+    places_of,
+    shaft_of,
+    stages_of,
+    turn_to_axes,
 )
+from fegear.exchange.rexs.said import Said
+from fegear.exchange.rexs.sets import is_helical, planetary_of, set_table
+from fegear.exchange.rexs.shafts import OnShaft, diameter_below, sections_of, shaft_table
 from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift, refuse_equal_hands, teeth_of
 from fegear.geometry.involute import inv
 
@@ -36,10 +40,12 @@ _RESULTS = ("geometry", "misalignment", "shaft-deflection", "load-distribution",
 _LEAST_RIM = 2.7
 #: Digits of what was solved: those behind them mean nothing.
 _SOLVED = 12
+#: A torque of so much of the largest is none.
+_IDLE = 1e-9
 #: Faces may stand beside each other by so much without being told [m].
 _APART = 1e-9
 #: Stages that are not cylindrical.
-_OTHER_STAGES = ("bevel_stage", "worm_stage")
+_OTHER_STAGES = (BEVEL, "worm_stage")
 
 
 def case_of(model: Model, load_case: int | None = None, source: str = "", *, spectrum: bool = False) -> str:
@@ -64,23 +70,36 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     said = Said(model, chosen.attributes if chosen else {})
     stages = stages_of(said)
     refuse_equal_hands(said, stages)
+    turn_to_axes(said, stages)
+    bevels = bevels_of(said)
+    through = {stage.component.id for stage in bevels}
     for one in model.of(*_OTHER_STAGES):
-        said.notes.append(f"{one.said} is not read.")
+        also = ": torque and speed pass it, its forces on the shafts do not enter" if one.id in through else ""
+        said.notes.append(f"{one.said} is not read{also}.")
     sets = planetary_of(said, stages)
     inside = {number for one in sets for number in one.stages}
     everything, stages = stages, [stage for stage in stages if stage.component.id not in inside]
+    told = [one for one in sets if not (stages and is_helical(said, one))]
+    for whole in sets:
+        if whole not in told:
+            said.notes.append(f"{whole.component.said} is not read, for it is helical: torque and speed pass it alone.")
     gears = {gear.id: gear for stage in stages for gear in stage.gears}
-    of_sets = {gear.id: gear for one in sets for gear in one.gears if gear.id not in gears}
+    of_sets = {gear.id: gear for one in told for gear in one.gears if gear.id not in gears}
     names = _names((*gears.values(), *of_sets.values()), "gear")
     on = {n: shaft_of(said, gear) for n, gear in (gears | of_sets).items()}
     if lost := next((gear for n, gear in (gears | of_sets).items() if on[n] is None), None):
         raise InputError(lost.said, "(on no shaft)", "is part of no shaft", "complete its relation of type assembly")
-    shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     middles = _middles(said, gears, on)
-    flow = flow_of(said, stages, sets, on)
-    bins = spectrum_of(said, stages, sets, on, flow) if spectrum else Spectrum(((),) * len(stages))
+    every = [*stages, *bevels]
+    on |= {gear.id: shaft_of(said, gear) for stage in bevels for gear in stage.gears}
+    flow = flow_of(said, every, sets, on)
+    bins = spectrum_of(said, every, sets, on, flow) if spectrum else Spectrum(((),) * len(stages))
+    loaded = _loaded(said, stages, flow, bins)
+    gears = {n: gear for n, gear in gears.items() if any(gear in stages[one].gears for one in loaded)}
+    names = {n: name for n, name in names.items() if n in gears or n in of_sets}
+    shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     bent = bool(shafts) and _held(said, shafts)
-    tables = [_head(stages, sets, said, bent=bent)]
+    tables = [_head(stages, told, said, bent=bent)]
     for n, gear in (gears | of_sets).items():
         bore = _bore(said, gear, on[n], middles) if n in gears else None
         keys = gear_keys(said, gear, _rest_of_shift(said, gear, everything), bore)
@@ -88,11 +107,12 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
     places = places_of(said, stages, middles)
     heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
-    tables += [_pair(said, stage, names, flow, n, heights if bent else {}, bins) for n, stage in enumerate(stages)]
     tables += [
-        set_table(said, one, names, whole, flow.driven, n, flow.held)
-        for n, (one, whole) in enumerate(zip(sets, flow.sets, strict=True))
+        _pair(said, stage, names, flow, n, heights if bent else {}, bins)
+        for n, stage in enumerate(stages)
+        if n in loaded
     ]
+    tables += [set_table(said, one, names, n, flow) for n, one in enumerate(sets) if one in told]
     tables += _shafts(said, shafts, places, stages, names, on, middles, flow) if bent else []
     tables.append(_effects(bent=bent, relieved=relieved))
     about = f"Imported from {source}" if source else "Imported"
@@ -102,6 +122,23 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         "Behind each key stands the attribute that it comes from, or what was assumed.",
     )  # fmt: skip
     return case_text(head, tables, (*(f"Note: {note}" for note in dict.fromkeys(said.notes)), *_unread(said)))
+
+
+def _loaded(said: Said, stages: list[Stage], flow: Flow, spectrum: Spectrum) -> list[int]:
+    """Stages that carry a load; a note on those that turn without, as gears of another speed do."""
+    size = [
+        max([abs(flow.into(n)[1]), *(torque for torque, _, _ in bins)])
+        for n, bins in zip(range(len(stages)), spectrum.bins, strict=False)
+    ]
+    loaded = [n for n, one in enumerate(size) if not one <= _IDLE * max(size)]
+    idle = [stages[n].component.said for n in range(len(stages)) if n not in loaded]
+    if idle:
+        said.notes.append(f"No torque passes {', '.join(idle)} under this load: {_are(idle)} not in the case.")
+    return loaded
+
+
+def _are(several: list[str]) -> str:
+    return "it is" if len(several) == 1 else "they are"
 
 
 def _names(components: object, other: str) -> dict[int, str]:
@@ -141,7 +178,7 @@ def _rest_of_shift(said: Said, gear: Component, stages: list[Stage]) -> float | 
     if profile_shift(said, gear) is not None:
         return None
     stage = next(one for one in stages if gear.id in (two.id for two in one.gears))
-    distance = said.number(stage.component, "length", "center_distance")
+    distance = distance_of(said, stage)
     mate = next(one for one in stage.gears if one.id != gear.id)
     if distance is None or stage.internal:
         return 0.0
@@ -188,10 +225,12 @@ def _pair(
     first, second = stage.gears
     drives, on_driver, speed = flow.into(n)
     driver, wheel = (first, second) if drives else (second, first)
-    distance = said.number(stage.component, "length", "center_distance")
+    distance = distance_of(said, stage)
     keys = [Key("driver", text(names[driver.id])), Key("driven", text(names[wheel.id]))]
     if distance is not None:
-        keys.append(Key("centre_distance", quantity(abs(distance), "mm"), "center_distance"))
+        given = "center_distance" in said.attributes_of(stage.component)
+        where = "center_distance" if given else "from the support vectors of both shafts"
+        keys.append(Key("centre_distance", quantity(abs(distance), "mm"), where))
     # End I is that from which the driver turns counter-clockwise: the end of +u where it turns about +u.
     higher = heights.get(wheel.id, 0.0) - heights.get(driver.id, 0.0)
     higher *= -1.0 if speed < 0.0 else 1.0
@@ -223,7 +262,7 @@ def _shafts(
     names: dict[int, str], on: dict[int, Component | None], middles: dict[int, float], flow: Flow,
 ) -> list[Table]:  # fmt: skip
     """All shafts with gears, the first as the origin, and their bearings."""
-    every = {gear.id: gear for stage in stages for gear in stage.gears}
+    every = {gear.id: gear for stage in stages for gear in stage.gears if gear.id in names}
     called = _names(shafts.values(), "shaft")
     held = _names(said.model.of(*BEARINGS), "bearing")
     origin = places[next(iter(shafts))]
@@ -236,16 +275,18 @@ def _shafts(
             said.needed(one, "length", "u_coordinate_on_shaft")
             for one in said.linked(shaft, "assembly", "assembly", "part", "external_load")
             if said.yes(one, "transmits_torque") or said.number(one, "torque", "torque_around_u_axis")
-        )
+        ) + joints_of(said, shaft)
         if not ends and flow.left_by(stages, gears):
             ends = (sections_of(said, shaft)[-1].end,)
             said.notes.append(f"{shaft.said}: nothing says where its torque enters or leaves: its end is assumed.")
         bearings = bearings_of(said, shaft, held)
         sense = -1.0 if places[n].reversed else 1.0
         along = fixed_bearing(said, shaft, bearings, sense * flow.push(said, stages, gears))
+        bearings = stopped_along(said, shaft, bearings, along)
         for one in bearings:  # between two shafts it comes twice
-            if f"bearing.{one.name}" not in {seat.name for seat in seats}:
-                seats.append(bearing_table(said, one, fixed=one is along))
+            known = {seat.name for seat in seats}
+            made_now = bearing_tables(said, one, fixed=one.component is along.component)
+            seats += [table for table in made_now if table.name not in known]
         clockwise = flow.driven.speed[flow.bodies[n]] < 0.0
         made.append(
             shaft_table(said, shaft, called[n], places[n], OnShaft(mine, ends), bearings, origin, clockwise=clockwise)
@@ -254,12 +295,15 @@ def _shafts(
 
 
 def _held(said: Said, shafts: dict[int, Component]) -> bool:
-    """Whether every shaft has sections and bearings; a note where one has not."""
+    """Whether every shaft has sections and bearings that hold it; a note where one has not."""
     for shaft in shafts.values():
-        for what, there in (("sections", sections_of(said, shaft)), ("bearings", bearings_of(said, shaft, _Any()))):
-            if not there:
-                said.notes.append(f"{shaft.said} has no {what}: shafts and bearings are not imported.")
-                return False
+        bearings = bearings_of(said, shaft, _Any())
+        why = "no sections" if not sections_of(said, shaft) else "no bearings" if not bearings else None
+        if len({one.at for one in bearings}) == 1 and not any(one.tilts(said) for one in bearings):
+            why = "one bearing alone, which lets it tilt: what joins it to other shafts is not in a case"
+        if why:
+            said.notes.append(f"{shaft.said} has {why}; shafts and bearings are not imported.")
+            return False
     return True
 
 

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.rexs.drive import Mesh, Torque, driven
-from fegear.exchange.rexs.places import bodies_of, direction
-from fegear.exchange.rexs.said import Said
+from fegear.exchange.rexs.places import BEVEL, bodies_of, direction
 from fegear.exchange.rexs.sets import flow_through
 from fegear.exchange.rexs.teeth import module_of, teeth_of
 
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from fegear.exchange.rexs.drive import Driven, PlanetSet
     from fegear.exchange.rexs.model import Component, LoadCase, Model
     from fegear.exchange.rexs.places import Stage
+    from fegear.exchange.rexs.said import Said
     from fegear.exchange.rexs.sets import Planetary
 
 #: What a mesh gets where the model says nothing: torque per mm of face and module squared [Pa], and speed [rad/s].
@@ -62,10 +62,10 @@ class Flow:
         return drives, on_driver, speeds[0] if drives else speeds[1]
 
     def on_gear(self, stages: list[Stage], gear: Component) -> list[float]:
-        """Torques on a gear by its mates about +u [N m]."""
+        """Torques on a gear by its mates about +u [N m]; bevel stages, behind the cylindrical ones, have none here."""
         return [
             torque * (teeth / mesh.teeth[0])
-            for stage, mesh, torque in zip(stages, self.meshes, self.driven.mesh_torque, strict=True)
+            for stage, mesh, torque in zip(stages, self.meshes, self.driven.mesh_torque, strict=False)
             for one, teeth in zip(stage.gears, mesh.teeth, strict=True)
             if one.id == gear.id
         ]
@@ -139,7 +139,7 @@ def spectrum_of(
     times: list[float | None] = []
     in_hours: list[bool] = []
     for one in said.model.load_cases:
-        under = Said(said.model, one.attributes, said.used)
+        under = replace(said, loaded=one.attributes, notes=[])
         time, absolute = _time(under)
         times.append(time)
         in_hours.append(absolute)
@@ -152,6 +152,8 @@ def spectrum_of(
         )  # fmt: skip
     found = []
     for n, stage in enumerate(stages):
+        if stage.component.type == BEVEL:
+            continue
         bins = []
         for flow, time in zip(flows, times, strict=True):
             if n in flow.assumed_torque or n in flow.assumed_speed:
@@ -189,7 +191,7 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
     ----------
     said : Said
     stages : list of Stage
-        Those that are no part of a set.
+        Those that are no part of a set, bevel stages last.
     sets : list of Planetary
     on : dict
         The shaft of every gear.
@@ -204,7 +206,7 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
     meshes = tuple(
         Mesh(
             tuple(bodies[on[gear.id].id] for gear in stage.gears),  # type: ignore[union-attr, arg-type]
-            tuple(teeth_of(said, gear) for gear in stage.gears),  # type: ignore[arg-type]
+            _teeth(said, stage),
         )
         for stage in stages
     )
@@ -214,7 +216,10 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
     def solved(torques: list[Torque]) -> Driven:
         return driven(count, meshes, whole, torques, speeds, sorted(held))
 
-    found = solved([])
+    try:
+        found = solved([])
+    except InputError:
+        raise _contradiction(said, "rotational_speed", "rpm", "shaft", "speed") from None
     slow = [n for n, mesh in enumerate(meshes) if not math.isfinite(found.speed[mesh.bodies[0]])]
     assumed_speed = frozenset(slow)
     while slow:
@@ -224,12 +229,68 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
         found = solved([])
         left = [n for n in slow if not math.isfinite(found.speed[meshes[n].bodies[0]])]
         slow = left if len(left) < len(slow) else []
-    torques = _torques(said, bodies, found.speed)
+    turning = {body for mesh in meshes for body in mesh.bodies} | held
+    turning |= {body for one in whole for body in (one.sun, one.ring, one.carrier)}
+    torques = _torques(said, bodies, found.speed, turning)
     trains: list[list[int]] = []
     for n in range(len(meshes)):
         if not any(n in one for one in trains):
             trains.append(_train(meshes, n))
     in_sets = {body for one in whole for body in (one.sun, one.ring, one.carrier)} | held
+    torques, assumed = _completed(said, stages, meshes, trains, torques, found.speed, in_sets, bodies, on)
+    try:
+        found = solved(torques)
+    except InputError:
+        torques = _torques(said, bodies, found.speed, turning, defined_alone=True)
+        try:
+            found = solved(torques if any(one.value for one in torques) else [])
+        except InputError:
+            raise _contradiction(said, "torque_around_u_axis", "N*m", "external_load", "torque") from None
+    for n in sorted(found.shared):
+        said.notes.append(
+            f"{stages[n].component.said}: the model does not determine its torque; paths share it as evenly as balance "
+            "allows."
+        )
+    return Flow(found, bodies, held, whole, meshes, frozenset(assumed), assumed_speed)
+
+
+def _teeth(said: Said, stage: Stage) -> tuple[int, int]:
+    """Teeth of both gears; of a bevel stage the second below zero where the mesh turns both the same way about own u.
+
+    Gears whose cones point to the same ends of their own axes turn against each other about them.
+    """
+    one, two = (teeth_of(said, gear) for gear in stage.gears)
+    if stage.component.type != BEVEL:
+        return one, two
+    ways = [said.word(gear, "bevel_cone_orientation") for gear in stage.gears]
+    if None in ways:
+        said.notes.append(f"{stage.component.said}: which way its cones point is not said; its gears turn oppositely.")
+    return one, two if ways[0] == ways[1] or None in ways else -two
+
+
+def _contradiction(said: Said, name: str, unit: str, kind: str, quantity: str) -> InputError:
+    """What is given of torques or speeds, where the teeth do not allow it."""
+    size = 1.0 if quantity == "torque" else 2.0 * math.pi / 60.0
+    given = [
+        f"{value / size:.6g} {unit} of {one.said}"
+        for one in said.model.of(kind)
+        if (value := said.number(one, quantity, name))
+    ]
+    rule, remedy = (
+        "contradict each other through the teeth",
+        "correct them, or give one and leave the others to the teeth",
+    )
+    if len(given) == 1 and quantity == "torque":
+        rule = "finds nothing that takes it behind the teeth"
+        remedy = "give a load that does, or hold a member of the set: a coupling that is not engaged holds nothing"
+    return InputError(name, ", ".join(given) or "(powers)", rule, remedy)
+
+
+def _completed(
+    said: Said, stages: list[Stage], meshes: tuple[Mesh, ...], trains: list[list[int]], torques: list[Torque],
+    speeds: tuple[float, ...], in_sets: set[int], bodies: dict[int, int], on: dict[int, Component | None],
+) -> tuple[list[Torque], set[int]]:  # fmt: skip
+    """Torques with those that are assumed where a train has none or lets none out, and the meshes of the former."""
     assumed: set[int] = set()
     for train in trains:
         among = {body for n in train for body in meshes[n].bodies}
@@ -237,7 +298,7 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
         given = [one for one in here if one.value]
         if not given and not among & in_sets:
             torques = [one for one in torques if one.body not in among]
-            torques += _assumed_train(said, stages, meshes, train, found.speed, here)
+            torques += _assumed_train(said, stages, meshes, train, speeds, here)
             assumed.update(train)
         elif len(here) == 1 and not among & in_sets:
             (one,) = here
@@ -246,13 +307,7 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
             torques += [Torque(body, None) for body in outlets]
             last = next(gear for n in train for gear in stages[n].gears if bodies[on[gear.id].id] == outlets[0])  # type: ignore[union-attr]
             said.notes.append(f"The torque is assumed to leave at {last.said}: nothing else takes it.")
-    found = solved(torques)
-    for n in sorted(found.shared):
-        said.notes.append(
-            f"{stages[n].component.said}: the model does not determine its torque; paths share it as evenly as balance "
-            "allows."
-        )
-    return Flow(found, bodies, held, whole, meshes, frozenset(assumed), assumed_speed)
+    return torques, assumed
 
 
 def _speeds(said: Said, bodies: dict[int, int]) -> dict[int, float]:
@@ -264,8 +319,22 @@ def _speeds(said: Said, bodies: dict[int, int]) -> dict[int, float]:
     return found
 
 
-def _torques(said: Said, bodies: dict[int, int], speeds: tuple[float, ...]) -> list[Torque]:
-    """Those from outside, from a power where that is given alone."""
+def _torques(
+    said: Said, bodies: dict[int, int], speeds: tuple[float, ...], turning: set[int], *, defined_alone: bool = False
+) -> list[Torque]:
+    """Those from outside, from a power where that is given alone.
+
+    Parameters
+    ----------
+    said : Said
+    bodies : dict
+    speeds : tuple of float
+        Of every body [rad/s]; NaN where unknown.
+    turning : set of int
+        Bodies in meshes or sets: what stands on others does not reach the teeth.
+    defined_alone : bool
+        Whether values of loads that do not define their torque are left to balance.
+    """
     found = []
     for shaft in said.model.of("shaft"):
         body, sign = bodies[shaft.id], -1.0 if direction(said, shaft) else 1.0
@@ -277,7 +346,18 @@ def _torques(said: Said, bodies: dict[int, int], speeds: tuple[float, ...]) -> l
                 if power:
                     value = sign * power / speeds[body]
                     said.notes.append(f"{load.said}: its torque is that of its power, positive where it drives.")
-            if said.yes(load, "defines_torque") is False or (value is None and through):
+            if body not in turning:
+                if value:
+                    said.notes.append(f"{load.said}: its torque reaches no gear and is not used.")
+                continue
+            defines = said.yes(load, "defines_torque")
+            left = defined_alone and through and not defines
+            if left and value:
+                said.notes.append(
+                    f"{load.said}: its torque of {value:g} N m does not balance and is left to the loads that define "
+                    "theirs: losses are not in the case."
+                )
+            if left or defines is False or (value is None and through):
                 found.append(Torque(body, None))
             elif value:
                 found.append(Torque(body, sign * value))
@@ -315,6 +395,8 @@ def _assumed_train(
     sizes = []
     for n in train:
         gear = stages[n].gears[0]
+        if stages[n].component.type == BEVEL:
+            continue
         module = module_of(said, gear)
         usual = _ASSUMED_LOAD * said.needed(gear, "length", "face_width") * 0.5 * module**2 * abs(meshes[n].teeth[0])
         if abs(flow.mesh_torque[n]) > 1e-9:

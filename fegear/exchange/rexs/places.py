@@ -15,9 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fegear.exchange.rexs.model import Component
-    from fegear.exchange.rexs.said import Said
+    from fegear.exchange.rexs.said import Frame, Said, Vector
 
 GEARS = ("cylindrical_gear", "ring_gear")
+BEVEL = "bevel_stage"
 BEARINGS = (
     "concept_bearing",
     "rolling_bearing_with_catalog_geometry",
@@ -26,6 +27,10 @@ BEARINGS = (
     "hydrodynamic_radial_plain_bearing",
 )
 COUPLINGS = ("coupling", "switchable_coupling")
+#: What joins a hub to its shaft.
+HUBS = (
+    "cylindrical_interference_fit", "tapered_interference_fit", "feather_key_connection", "involute_spline_connection",
+)  # fmt: skip
 #: Axes are parallel to so much.
 _PARALLEL = 1e-6
 #: By so much of the centre distance axes may stand elsewhere than a stage says.
@@ -82,9 +87,66 @@ def stages_of(said: Said) -> list[Stage]:
     return found
 
 
+def bevels_of(said: Said) -> list[Stage]:
+    """Bevel stages on shafts: a case has none, but what flows through the gearbox flows through them."""
+    found = []
+    for stage in said.model.of(BEVEL):
+        one, two = (said.linked(stage, "stage", "stage", role, "bevel_gear")[:1] for role in ("gear_1", "gear_2"))
+        if one and two and shaft_of(said, one[0]) and shaft_of(said, two[0]):
+            found.append(Stage(stage, (one[0], two[0])))
+    return found
+
+
 def shaft_of(said: Said, part: Component) -> Component | None:
-    """The shaft that a gear or a load stands on."""
-    return next(iter(said.linked(part, "part", "assembly", "assembly", "shaft")), None)
+    """The shaft that a gear or a load stands on, as its part or by a fit, key or spline."""
+    own = said.linked(part, "part", "assembly", "assembly", "shaft")
+    if not own:
+        hubs = said.linked(part, "outer_part", "side", "assembly", *HUBS)
+        own = [shaft for hub in hubs for shaft in said.linked(hub, "assembly", "side", "inner_part", "shaft")]
+    return next(iter(own), None)
+
+
+def turn_to_axes(said: Said, stages: Iterable[Stage]) -> None:
+    """Turn the model so that the shafts of its cylindrical stages run along u; shafts without such gears may not."""
+    shafts = [shaft for stage in stages for gear in stage.gears if (shaft := shaft_of(said, gear)) is not None]
+    axes = [axis for shaft in shafts if (axis := said.vector(shaft, "u_axis_vector")) is not None and any(axis)]
+    if axes and _off_u(axes[0]) > _PARALLEL:
+        said.turn = _frame(axes[0], None)
+        said.notes.append(f"The model is turned so that the axis of {shafts[0].said} runs along u.")
+    carrying = {shaft.id for shaft in shafts}
+    for shaft in said.model.of("shaft"):
+        axis = said.vector(shaft, "u_axis_vector")
+        if shaft.id not in carrying and axis is not None and _off_u(axis) > _PARALLEL:
+            said.across.add(shaft.id)
+
+
+def own_axes(said: Said, shaft: Component) -> Frame:
+    """The axes of a shaft that is parallel to the gearbox: unit vectors along its own u, v and w."""
+    u = (-1.0 if direction(said, shaft) else 1.0, 0.0, 0.0)
+    return _frame(u, said.vector(shaft, "w_axis_vector") or (0.0, 0.0, u[0]))
+
+
+def _frame(axis: Vector, beside: Vector | None) -> Frame:
+    """Unit vectors: along an axis, across it, and across it in its plane with another vector."""
+    u = _unit(axis)
+    if beside is None or math.hypot(*_cross(beside, u)) <= _PARALLEL * math.hypot(*beside):
+        beside = tuple(float(n == min(range(3), key=lambda m: abs(u[m]))) for n in range(3))  # type: ignore[assignment]
+    v = _unit(_cross(beside, u))  # type: ignore[arg-type]
+    return u, v, _cross(u, v)
+
+
+def _unit(one: Vector) -> Vector:
+    length = math.hypot(*one)
+    return one[0] / length, one[1] / length, one[2] / length
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _off_u(axis: Vector) -> float:
+    length = math.hypot(*axis)
+    return math.hypot(axis[1], axis[2]) / length if length else math.inf
 
 
 def bodies_of(said: Said, joined: Iterable[tuple[Component, Component]] = ()) -> tuple[dict[int, int], set[int]]:
@@ -107,7 +169,7 @@ def bodies_of(said: Said, joined: Iterable[tuple[Component, Component]] = ()) ->
     for one, other in joined:
         leader[top(one.id)] = top(other.id)
     held = []
-    for coupling in said.model.of(*COUPLINGS):
+    for coupling in said.model.of(*COUPLINGS, *HUBS):
         if said.yes(coupling, "is_engaged") is False:
             continue
         sides = [
@@ -124,19 +186,21 @@ def bodies_of(said: Said, joined: Iterable[tuple[Component, Component]] = ()) ->
 
 
 def direction(said: Said, shaft: Component) -> bool:
-    """Whether a shaft's own u runs against that of the gearbox.
+    """Whether a shaft's own u runs against that of the gearbox; one across it counts by its own u.
 
     Raises
     ------
     InputError
         If its axis is not parallel to the gearbox's.
     """
+    if shaft.id in said.across:
+        return False
     axis = said.vector(shaft, "u_axis_vector") or (1e-3, 0.0, 0.0)
-    length = math.hypot(*axis)
-    if length == 0.0 or math.hypot(axis[1], axis[2]) > _PARALLEL * length:
+    if _off_u(axis) > _PARALLEL:
         raise InputError(
             "u_axis_vector", " ".join(f"{one * 1e3:.6g}" for one in axis),
-            f"of {shaft.said} is not parallel to the u-axis of the gearbox", "fegear knows parallel shafts alone",
+            f"of {shaft.said} is not parallel to the other shafts with cylindrical gears",
+            "fegear knows parallel shafts alone",
         )  # fmt: skip
     return axis[0] < 0.0
 
@@ -158,6 +222,19 @@ def middle_on_shaft(said: Said, gear: Component, shaft: Component) -> float | No
     return along + begins
 
 
+def joints_of(said: Said, shaft: Component) -> tuple[float, ...]:
+    """Where torque enters or leaves a shaft through other parts: couplings to shafts and bevel gears [m]."""
+    found = []
+    for side, other, name in (("inner_part", "outer_part", "inner"), ("outer_part", "inner_part", "outer")):
+        for joint in said.linked(shaft, side, "side", "assembly", *COUPLINGS):
+            turns = said.linked(joint, "assembly", "side", other, "shaft")
+            if turns and said.yes(joint, "is_engaged") is not False:
+                found.append(said.number(joint, "length", f"u_coordinate_on_shaft_{name}_side"))
+    bevels = said.linked(shaft, "assembly", "assembly", "part", "bevel_gear")
+    found += [middle_on_shaft(said, gear, shaft) for gear in bevels]
+    return tuple(at for at in found if at is not None)
+
+
 def places_of(said: Said, stages: Iterable[Stage], middles: dict[int, float]) -> dict[int, Place]:
     """Where the shafts of stages stand: as their support vectors say, else one after the other from centre distances.
 
@@ -176,7 +253,7 @@ def places_of(said: Said, stages: Iterable[Stage], middles: dict[int, float]) ->
     found: dict[int, Place] = {}
     for shaft in said.model.of("shaft"):
         at = said.vector(shaft, "support_vector")
-        if at is not None:
+        if at is not None and shaft.id not in said.across:
             found[shaft.id] = Place(*at, reversed=direction(said, shaft))
     left = list(stages)
     while left:
@@ -184,6 +261,16 @@ def places_of(said: Said, stages: Iterable[Stage], middles: dict[int, float]) ->
         left.remove(stage)
         _place_stage(said, stage, found, middles)
     return found
+
+
+def distance_of(said: Said, stage: Stage) -> float | None:
+    """Centre distance of a stage: its own, else that of the axes that both shafts say [m]; None without either."""
+    given = said.number(stage.component, "length", "center_distance")
+    shafts = [shaft_of(said, gear) for gear in stage.gears]
+    at = [said.vector(shaft, "support_vector") for shaft in shafts if shaft is not None]
+    if given is not None or len(at) < 2 or at[0] is None or at[1] is None:
+        return given
+    return math.hypot(at[0][1] - at[1][1], at[0][2] - at[1][2]) or None
 
 
 def _placed(said: Said, stage: Stage, found: dict[int, Place]) -> bool:

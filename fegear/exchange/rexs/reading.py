@@ -12,6 +12,7 @@ from xml.parsers import expat
 
 from fegear.base.errors import InputError, shown
 from fegear.case.text_file import read_text
+from fegear.exchange.rexs.archive import archived_text
 from fegear.exchange.rexs.model import MOST_COMPONENTS, Attribute, Component, LoadCase, Model, Relation
 
 if TYPE_CHECKING:
@@ -33,20 +34,16 @@ def read_model(path: Path) -> Model:
     Parameters
     ----------
     path : Path
-        XML or JSON, told by its first sign.
+        XML or JSON, told by its first sign, or an archive with one of them.
 
     Raises
     ------
     InputError
         If it is none, is damaged or too large, declares entities, has another version, or relates what is not there.
     """
-    try:
-        text = read_text(path, KEY)
-    except InputError:
-        if _begins(path) == b"PK":
-            raise _refusal(path, "is a zip archive", "unpack it and import the .rexs or .rexsj in it") from None
-        raise
-    return model_of(text, path)
+    if path.is_file() and _begins(path) == b"PK":
+        return model_of(archived_text(path, lambda rule, remedy: _refusal(path, rule, remedy)), path)
+    return model_of(read_text(path, KEY), path)
 
 
 def _begins(path: Path) -> bytes:

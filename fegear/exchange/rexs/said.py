@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     from fegear.exchange.rexs.model import Attribute, Component, Model
 
+Vector = tuple[float, float, float]
+Frame = tuple[Vector, Vector, Vector]
 #: Largest number that stands for something: beyond it programs mean infinity.
 RIGID = 1e15
 
@@ -31,12 +33,18 @@ class Said:
         Numbers of components and names of attributes that entered the case.
     notes : list of str
         What was assumed or not used, for the user.
+    turn : three unit vectors, optional
+        Axes along which vectors of the model are read, in place of its own u, v and w.
+    across : set of int
+        Shafts that do not run along u.
     """
 
     model: Model
     loaded: Mapping[int, Mapping[str, Attribute]] = field(default_factory=dict)
     used: set[tuple[int, str]] = field(default_factory=set)
     notes: list[str] = field(default_factory=list)
+    turn: Frame | None = None
+    across: set[int] = field(default_factory=set)
 
     def attributes_of(self, component: Component) -> Mapping[str, Attribute]:
         """All that a component says under the load case, by names."""
@@ -78,7 +86,7 @@ class Said:
             raise InputError(names[0], f"{value:g}", f"is no whole number in {component.said}", "correct the model")
         return round(value)
 
-    def vector(self, component: Component, name: str) -> tuple[float, float, float] | None:
+    def vector(self, component: Component, name: str) -> Vector | None:
         """Three components along u, v and w in SI (mm); None without."""
         one = self.found(component, name)
         if one is None or self._is_truth(one, component):
@@ -86,6 +94,8 @@ class Said:
         if not isinstance(one.value, tuple) or len(one.value) != 3:
             raise InputError(name, shown(one.value), f"has not three entries in {component.said}", "correct the model")
         u, v, w = (_in_si(one, part, component, "length") for part in one.value)
+        if self.turn is not None:
+            u, v, w = (axis[0] * u + axis[1] * v + axis[2] * w for axis in self.turn)
         return u, v, w
 
     def word(self, component: Component, *names: str) -> str | None:

@@ -13,7 +13,7 @@ from fegear.exchange.rexs.places import shaft_of
 from fegear.exchange.rexs.teeth import teeth_of
 
 if TYPE_CHECKING:
-    from fegear.exchange.rexs.drive import Driven
+    from fegear.exchange.rexs.loads import Flow
     from fegear.exchange.rexs.model import Component
     from fegear.exchange.rexs.places import Stage
     from fegear.exchange.rexs.said import Said
@@ -103,16 +103,30 @@ def flow_through(said: Said, one: Planetary, bodies: dict[int, int]) -> PlanetSe
     return PlanetSet(numbers["sun"], numbers["ring"], numbers["carrier"], teeth)
 
 
-def set_table(
-    said: Said, one: Planetary, names: dict[int, str], whole: PlanetSet, flow: Driven, n: int, held: set[int]
-) -> Table:
+def is_helical(said: Said, one: Planetary) -> bool:
+    """Whether its teeth are helical."""
+    return any(said.number(gear, "angle", "helix_angle_reference_diameter") for gear in one.gears)
+
+
+def set_table(said: Said, one: Planetary, names: dict[int, str], n: int, flow: Flow) -> Table:
     """``[planetary.P]``: gears, number of planets, what is held and what drives.
+
+    Parameters
+    ----------
+    said : Said
+    one : Planetary
+    names : dict
+        Of its gears in the case.
+    n : int
+        Its number among the sets.
+    flow : Flow
 
     Raises
     ------
     InputError
         If nothing is held, or the gears are helical.
     """
+    whole, held = flow.sets[n], flow.held
     members = {"sun": whole.sun, "ring": whole.ring, "carrier": whole.carrier}
     fixed = [name for name, body in members.items() if body in held]
     if len(fixed) != 1:
@@ -120,12 +134,12 @@ def set_table(
             one.component.said, f"{len(fixed)} members held", "needs one of sun, ring and carrier held by the casing",
             "join it to the casing by a coupling",
         )  # fmt: skip
-    if any(said.number(gear, "angle", "helix_angle_reference_diameter") for gear in one.gears):
+    if is_helical(said, one):
         raise InputError(one.component.said, "(helical)", "has helical gears", "fegear's sets have spur gears")
     sun, ring = whole.teeth
-    on_sun = flow.set_torque[n]
+    on_sun = flow.driven.set_torque[n]
     torques = {"sun": on_sun, "ring": on_sun * ring / sun, "carrier": -on_sun * (sun + ring) / sun}
-    speeds = {name: flow.speed[body] for name, body in members.items()}
+    speeds = {name: flow.driven.speed[body] for name, body in members.items()}
     free = [name for name in members if name != fixed[0]]
     # The planets take power from the member that drives.
     driving = next((name for name in free if torques[name] * speeds[name] < 0.0), free[0])

@@ -1,0 +1,310 @@
+"""Bearings of a REXS model as ``[bearing.NAME]``, and how they sit on shafts.
+
+A bearing supports the shaft where it moves to +u (``positive``), to -u, both ways or none; so does each of its rows.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from fegear.exchange.case_tables import Key, Table, inline, listed, number, quantity, text
+from fegear.exchange.rexs.places import BEARINGS
+from fegear.exchange.rexs.said import RIGID
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from fegear.exchange.rexs.model import Component
+    from fegear.exchange.rexs.said import Said
+
+_BOTH, _NONE, _PLUS, _MINUS = "both_directions", "no_direction", "positive", "negative"
+#: What a bearing that slides in its seat holds along the axis [N/m]: nothing beside any other.
+_SLIDES = 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A bearing of a shaft.
+
+    Parameters
+    ----------
+    component : Component
+    name : str
+        In the case.
+    at : float
+        Where it acts [m].
+    outside : bool
+        Whether the shaft is its outer part.
+    rows : Rows, optional
+        What rolls in it, where that is said.
+    stopped : bool
+        Whether something beside what rolls in it holds the shaft along its axis.
+    """
+
+    component: Component
+    name: str
+    at: float
+    outside: bool = False
+    rows: Rows | None = None
+    stopped: bool = False
+
+    @property
+    def seats(self) -> list[tuple[str, bool, bool]]:
+        """Of each bearing of the case at this place: its name, whether it holds to -u, and whether that matters."""
+        ways = self.rows.ways if self.rows else (False,)
+        found = [(self.name, way != self.outside, bool(self.rows and self.rows.angle)) for way in ways]
+        return [*found, (self._stop, False, False)] if self.stopped else found
+
+    @property
+    def _stop(self) -> str:
+        return f"{self.name}_along"
+
+    def tilts(self, said: Said) -> bool:
+        """Whether it resists tilt: its rollers do, and what has a stiffness against it."""
+        if self.rows:
+            return self.rows.length is not None
+        return bool(said.number(self.component, "tilting stiffness", "bending_stiffness"))
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """What rolls in a bearing, alike in its rows.
+
+    Parameters
+    ----------
+    count : float
+        Elements of a row.
+    diameter, pitch : float
+        Of an element, and of the circle of their centres [m].
+    angle : float
+        Contact angle [rad].
+    length : float or None
+        Of a roller [m]; None for balls.
+    grooves : tuple of float, optional
+        Radii of the grooves of inner and outer ring over the ball's diameter.
+    ways : tuple of bool
+        Of each row whether it holds to -u in place of +u.
+    about : str
+        Where it comes from.
+    """
+
+    count: float
+    diameter: float
+    pitch: float
+    angle: float
+    length: float | None
+    grooves: tuple[float, float] | None
+    ways: tuple[bool, ...]
+    about: str
+
+
+def bearings_of(said: Said, shaft: Component, names: Mapping[int, str]) -> list[Held]:
+    """What holds a shaft; bearings between shafts count as held by the casing."""
+    found = []
+    for side, other, at in (("inner_part", "outer_part", "inner"), ("outer_part", "inner_part", "outer")):
+        for one in said.linked(shaft, side, "side", "assembly", *BEARINGS):
+            mates = said.linked(one, "assembly", "side", other)
+            if any(mate.type == "shaft" for mate in mates):
+                said.notes.append(f"{one.said} holds {shaft.said} in another shaft: it is taken as held by the casing.")
+            place = said.needed(one, "length", f"u_coordinate_on_shaft_{at}_side", "u_coordinate_on_shaft_inner_side")
+            found.append(Held(one, names[one.id], place, outside=at == "outer", rows=_rows(said, one)))
+    return sorted(found, key=lambda one: one.at)
+
+
+def fixed_bearing(said: Said, shaft: Component, bearings: Sequence[Held], push: float) -> Held:
+    """The bearing that holds a shaft along its axis; a note where the model does not say one that does.
+
+    Parameters
+    ----------
+    said : Said
+    shaft : Component
+    bearings : sequence of Held
+    push : float
+        Force of its meshes along the shaft's own u [N]: of bearings that hold one way, that which takes it is chosen.
+    """
+    ways = [_holds(said, one.component) for one in bearings]
+    for kind in (_BOTH, *((_MINUS, _PLUS) if push < 0.0 else (_PLUS, _MINUS))):
+        if kind not in ways:
+            continue
+        found = bearings[ways.index(kind)]
+        if kind != _BOTH and not (found.rows and found.rows.angle and {_PLUS, _MINUS} <= set(ways)):
+            said.notes.append(
+                f"{shaft.said}: no bearing holds it both ways along its axis; {found.component.said} is taken to."
+            )
+        return found
+    if any(ways):
+        said.notes.append(
+            f"{shaft.said}: no bearing holds it along its axis; {bearings[0].component.said} is taken to."
+        )
+    return bearings[0]
+
+
+def stopped_along(said: Said, shaft: Component, bearings: Sequence[Held], along: Held) -> list[Held]:
+    """Bearings of a shaft, that which holds it along its axis with a stop where what rolls in them cannot.
+
+    Parameters
+    ----------
+    said : Said
+    shaft : Component
+    bearings : sequence of Held
+    along : Held
+        The one of them that holds the shaft.
+    """
+    held = {way for one in bearings if one.rows for way in _thrust(said, one, one.rows)}
+    if along.rows is None or held == {False, True}:
+        return list(bearings)
+    said.notes.append(f"{along.component.said}: what rolls does not hold {shaft.said} both ways: its ring is stopped.")
+    return [replace(one, stopped=one is along) for one in bearings]
+
+
+def _thrust(said: Said, one: Held, rows: Rows) -> set[bool]:
+    """Whether its elements hold to +u (False) and to -u (True): balls both ways, rollers by their contact angle."""
+    if _holds(said, one.component) == _NONE or not (rows.angle or rows.length is None):
+        return set()
+    return {way != one.outside for way in rows.ways} if rows.angle else {False, True}
+
+
+def _holds(said: Said, one: Component) -> str:
+    return (said.word(one, "axial_force_absorption") or "").lower()
+
+
+def bearing_tables(said: Said, held: Held, *, fixed: bool) -> list[Table]:
+    """``[bearing.NAME]``: what rolls in it, else its stiffness, else rigid; and its stop.
+
+    Parameters
+    ----------
+    said : Said
+    held : Held
+    fixed : bool
+        Whether it holds the shaft along the axis, where it has no axial stiffness.
+    """
+    one = held.component
+    keys = _elements(said, held, fixed=fixed) if held.rows else _stiffness(said, one, fixed=fixed)
+    life = _life(said, one, len(held.rows.ways) if held.rows else 1)
+    designation = said.word(one, "catalogue_designation", "name") or ""
+    maker = said.word(one, "manufacturer") or ""
+    about = " ".join(part for part in (one.said, one.name, designation, maker) if part)
+    tables = [Table(f"bearing.{held.name}", (*keys, *life), about)]
+    if held.stopped:
+        stop = (
+            Key("radial", quantity(0.0, "N/um"), "nothing across the axis"),
+            Key("fixed", "true", "axial_force_absorption"),
+        )
+        tables.append(Table(f"bearing.{held.name}_along", stop, f"flanges of {one.said}"))
+    return tables
+
+
+def _stiffness(said: Said, one: Component, *, fixed: bool) -> list[Key]:
+    radial = said.number(one, "stiffness", "radial_stiffness")
+    axial = said.number(one, "stiffness", "axial_stiffness")
+    tilting = said.number(one, "tilting stiffness", "bending_stiffness")
+    clearance = _clearance(said, one)
+    keys = []
+    soft = radial is not None and 0.0 < radial < RIGID
+    if soft:
+        keys.append(Key("radial", quantity(radial or 0.0, "N/um"), "radial_stiffness"))
+    else:
+        said.notes.append(f"{one.said}: neither what rolls in it nor a stiffness is said; it is rigid across the axis.")
+    if fixed and axial is not None and 0.0 < axial < RIGID:
+        keys.append(Key("axial", quantity(axial, "N/um"), "axial_stiffness"))
+    elif fixed:
+        keys.append(Key("fixed", "true", "axial_force_absorption; rigid along the axis"))
+    if tilting:
+        keys.append(Key("tilting", quantity(min(tilting, RIGID), "N*m/rad"), "bending_stiffness"))
+    if clearance and soft and not fixed:
+        keys.append(Key("radial_clearance", quantity(0.5 * clearance, "um"), "half the radial bearing clearance"))
+    elif clearance:
+        said.notes.append(f"{one.said}: its clearance of {clearance * 1e6:g} um is not used, for it is rigid or fixed.")
+    return keys or [Key("tilting", quantity(0.0, "N*m/rad"), "rigid across the axis, free to tilt and to slide")]
+
+
+def _clearance(said: Said, one: Component) -> float | None:
+    return said.number(
+        one, "length", "operating_radial_bearing_clearance", "mounted_radial_bearing_clearance",
+        "radial_bearing_clearance", "radial_clearance", "radial_backlash",
+    )  # fmt: skip
+
+
+def _rows(said: Said, one: Component) -> Rows | None:
+    """What rolls in a bearing, where its rows say it; a note where that is impossible or differs."""
+    rows = said.linked(one, "assembly", "assembly", "part", "rolling_bearing_row")
+    if not rows:
+        return None
+    row = rows[0]
+    count = said.number(row, "number", "number_of_rolling_elements")
+    pitch = said.number(row, "length", "reference_diameter")
+    rolls = said.linked(row, "assembly", "assembly", "part", "rolling_element")
+    diameter = said.number(rolls[0], "length", "diameter_of_rolling_element") if rolls else None
+    roller = "roller" in (said.word(one, "bearing_type") or "")
+    length = said.number(rolls[0], "length", "length_of_rolling_element") if roller and rolls else None
+    if not (count and pitch and diameter) or (roller and not length):
+        return None
+    if count < 3.0 or count != round(count) or diameter > pitch * math.sin(math.pi / count):
+        said.notes.append(
+            f"{one.said}: {count:g} elements of {diameter * 1e3:g} mm do not fit on {pitch * 1e3:g} mm; not used."
+        )
+        return None
+    angle = abs(said.number(row, "angle", "pressure_angle") or 0.0)
+    if angle and _holds(said, one) == _NONE:
+        said.notes.append(
+            f"{one.said} slides in its seat: its contact angle of {math.degrees(angle):g} deg is not used."
+        )
+        angle = 0.0
+    races = [said.number(row, "length", f"raceway_radius_of_{ring}_ring") for ring in ("inner", "outer")]
+    grooves = None if roller or not all(races) else ((races[0] or 0.0) / diameter, (races[1] or 0.0) / diameter)
+    return Rows(
+        count, diameter, pitch, angle, length, grooves, _ways(said, one, rows, angle), f"{row.said}, {rolls[0].said}"
+    )
+
+
+def _ways(said: Said, one: Component, rows: Sequence[Component], angle: float) -> tuple[bool, ...]:
+    """Of each row whether it holds to -u: as it says, else as the bearing says, else every second one."""
+    if len(rows) > 1:
+        said.notes.append(
+            f"{one.said} has {len(rows)} rows: each is a bearing of the case like the first, in one place."
+        )
+    own = [(said.word(row, "axial_force_absorption_of_row") or "").lower() for row in rows]
+    if angle and len(rows) == 1:
+        own = [own[0] if own[0] in (_PLUS, _MINUS) else _holds(said, one)]
+        if own[0] not in (_PLUS, _MINUS):
+            said.notes.append(f"{one.said}: which way its contact angle holds is not said; to +u is assumed.")
+    return tuple(way == _MINUS if way in (_PLUS, _MINUS) else bool(n % 2) for n, way in enumerate(own))
+
+
+def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
+    """``elements``; a ball bearing that slides has a seat that holds nothing along the axis."""
+    one, rows = held.component, held.rows
+    assert rows is not None  # noqa: S101
+    clearance = _clearance(said, one)
+    value = inline(
+        kind=text("ball" if rows.length is None else "roller"), count=number(rows.count),
+        diameter=quantity(rows.diameter, "mm"), pitch_diameter=quantity(rows.pitch, "mm"),
+        contact_angle=quantity(rows.angle, "deg") if rows.angle else None,
+        groove_ratio=listed(map(number, rows.grooves)) if rows.grooves else None,
+        roller_length=quantity(rows.length, "mm") if rows.length else None,
+        clearance=quantity(clearance, "um") if clearance else None,
+    )  # fmt: skip
+    keys = [Key("elements", value, rows.about)]
+    if rows.length is None and not fixed and _holds(said, one) == _NONE:
+        keys.append(Key("housing_axial", quantity(_SLIDES, "N/um"), "axial_force_absorption: it slides in its seat"))
+    return keys
+
+
+def _life(said: Said, one: Component, rows: int) -> list[Key]:
+    rating = said.number(one, "force", "radial_dynamic_load_rating", "dynamic_capacity")
+    if not rating:
+        return []
+    x, y = (said.number(one, "number", name) for name in ("radial_factor_x_2", "axial_factor_y_2"))
+    limit = said.number(one, "number", "catalogue_value_e")
+    roller = "roller" in (said.word(one, "bearing_type") or "")
+    # ISO 281: C of i rows alike is i^0.7 times that of one of balls, i^(7/9) times that of one of rollers.
+    shared = rating / rows ** (7.0 / 9.0 if roller else 0.7)
+    value = inline(
+        dynamic_rating=quantity(shared, "kN"), kind=text("roller" if roller else "ball"),
+        radial_factor=number(x) if x and y and limit else None, axial_factor=number(y) if x and y and limit else None,
+        limit=number(limit) if x and y and limit else None,
+    )  # fmt: skip
+    also = f", that of one of {rows} rows by ISO 281" if rows > 1 else ""
+    return [Key("life", value, f"dynamic load rating and factors of the catalogue{also}")]

@@ -1,0 +1,288 @@
+"""What whole gearboxes of other programs hold besides: archives, fits, losses, bevel stages, tapered bearings."""
+
+from __future__ import annotations
+
+import struct
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+from rexs_models import gear, in_json, link, part, planetary_set, shaft, two_stages
+
+from fegear.base.errors import InputError
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.reading import model_of, read_model
+from fegear.results.catalogue import STAGES
+
+
+def text_of(tree: dict) -> str:
+    return case_of(model_of(in_json(tree), Path("model.rexs")))
+
+
+def case(tree: dict) -> dict:
+    """The case, which can be planned."""
+    found = tomllib.loads(text_of(tree))
+    make_plan(build_scene(found, "case", Path()), STAGES)
+    return found
+
+
+def put(tree: dict, number: int, **attributes: object) -> dict:
+    """The model with attributes of a component set."""
+    made = part(0, "", **attributes)
+    parts = [
+        {**one, "attributes": [*(a for a in one["attributes"] if a["id"] not in attributes), *made["attributes"]]}
+        if one["id"] == number else one
+        for one in tree["components"]
+    ]  # fmt: skip
+    return {**tree, "components": parts}
+
+
+def more(tree: dict, *components: dict, relations: tuple[dict, ...] = (), drop: tuple[int, ...] = ()) -> dict:
+    links = [one for one in tree["relations"] if one["id"] not in drop]
+    return {**tree, "components": [*tree["components"], *components], "relations": [*links, *relations]}
+
+
+@pytest.mark.parametrize("name", ["model.rexsz", "model.rexs.zip"])
+def test_an_archive_is_read_like_the_model_in_it(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("deep/gearbox.rexsj", "\ufeff" + in_json(two_stages()))
+        archive.writestr("__MACOSX/._gearbox.rexsj", "x")
+        archive.writestr("gears.gde", "")
+    assert case_of(read_model(path)) == text_of(two_stages())
+
+
+def test_archives_without_one_model_or_damaged_or_too_large_are_refused(tmp_path: Path, monkeypatch) -> None:
+    path = tmp_path / "model.rexsz"
+
+    def refused(files: dict[str, str], match: str, change=lambda data: data) -> None:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, text in files.items():
+                archive.writestr(name, text)
+        path.write_bytes(change(path.read_bytes()))
+        with pytest.raises(InputError, match=match) as error:
+            read_model(path)
+        assert str(error.value).count("\n") == 0
+
+    model = in_json(two_stages())
+    refused({"a.gde": ""}, "archive with no model")
+    refused({"a.rexs": model, "b/c.rexsj": model}, r"2 models \(a.rexs, b/c.rexsj\)")
+    refused({"a.rexs": model}, "damaged archive", lambda data: data[: len(data) // 2])
+    refused({"a.rexs": model}, "damaged archive", lambda data: data[:60] + b"\0\1\2\3" + data[64:])
+    refused({"a.rexs": "\xff"}, "neither XML nor JSON")
+    monkeypatch.setattr("fegear.exchange.rexs.archive._LARGEST", 1000)
+    lies = struct.pack("<I", 10)  # the directory says ten bytes
+    refused({"a.rexs": " " * 5000}, "more than 0 MB|damaged archive",
+            lambda data: data[: data.rindex(b"PK\1\2") + 24] + lies + data[data.rindex(b"PK\1\2") + 28 :])  # fmt: skip
+    refused({"a.rexs": " " * 5000}, "more than 0 MB")
+
+
+@pytest.mark.parametrize(
+    "kind", ["cylindrical_interference_fit", "feather_key_connection", "involute_spline_connection"]
+)
+def test_a_gear_stands_on_the_shaft_that_a_fit_key_or_spline_joins_it_to(kind: str) -> None:
+    tree = two_stages()
+    ((number, _),) = [(r["id"], r) for r in tree["relations"] if r["refs"][-1]["id"] == 12 and r["type"] == "assembly"]
+    joined = more(tree, part(71, kind), relations=(link(171, "side", assembly=71, inner_part=4, outer_part=12),),
+                  drop=(number,))  # fmt: skip
+    assert case(joined) == case(tree)
+
+
+def test_a_torque_that_counts_losses_is_left_to_the_load_that_defines_its_own() -> None:
+    tree = put(two_stages(), 32, torque_around_u_axis=(870.0, "N m"))
+    found = text_of(tree)
+    assert tomllib.loads(found)["pair"] == case(two_stages())["pair"]
+    assert "external_load 32: its torque of 870 N m does not balance" in found
+    both = put(tree, 32, defines_torque="true")
+    with pytest.raises(InputError, match=r"100 N\*m of external_load 31, 870 N\*m of external_load 32: contradict"):
+        case(both)
+    with pytest.raises(InputError, match="1500 rpm of shaft 3, 700 rpm of shaft 5: contradict"):
+        case(put(two_stages(), 5, rotational_speed=(700.0, "1/min")))
+
+
+def test_a_torque_on_a_shaft_without_gears_is_not_used() -> None:
+    tree = more(two_stages(), shaft(6, 0.0, 300.0), part(33, "external_load", torque_around_u_axis=(5.0, "N m")),
+                relations=(link(160, "assembly", assembly=6, part=33),))  # fmt: skip
+    assert "external_load 33: its torque reaches no gear" in text_of(tree)
+    assert case(tree) == case(two_stages())
+
+
+def turned(tree: dict) -> dict:
+    """The same gearbox drawn with its shafts along -w."""
+    parts = []
+    for one in tree["components"]:
+        changed = [
+            {**a, "float": [a["float"][2], a["float"][1], -a["float"][0]]} if a["id"].endswith("_vector") else a
+            for a in one["attributes"]
+        ]
+        parts.append({**one, "attributes": changed})
+    return {**tree, "components": parts}
+
+
+def test_shafts_along_another_axis_are_turned_into_that_of_the_case() -> None:
+    text = text_of(turned(two_stages()))
+    found, straight = tomllib.loads(text), case(two_stages())
+    assert "is turned so that the axis of shaft 3 runs along u" in text
+    assert {key: one for key, one in found.items() if key != "shaft"} == {
+        key: one for key, one in straight.items() if key != "shaft"
+    }
+    for name, one in found["shaft"].items():
+        size = [
+            sum(float(part.split()[0]) ** 2 for part in two["axis"]) ** 0.5 for two in (one, straight["shaft"][name])
+        ]
+        assert size[0] == pytest.approx(size[1])
+        assert {key: part for key, part in one.items() if key != "axis"} == {
+            key: part for key, part in straight["shaft"][name].items() if key != "axis"
+        }
+
+
+def with_bevels(ways: tuple[str, str]) -> dict:
+    """Two stages behind a bevel stage of 15 and 30 teeth, its pinion on a shaft along w; 50 N m on that."""
+    tree = two_stages()
+    across = part(6, "shaft", "across", support_vector=([0.0, 0.0, 0.0], "mm"), u_axis_vector=([0.0, 0.0, 1.0], "mm"))
+    bevels = [
+        part(15 + n, "bevel_gear", number_of_teeth=(15.0 * (n + 1), "none"), bevel_cone_orientation=way,
+             u_coordinate_on_shaft=(5.0, "mm"))
+        for n, way in enumerate(ways)
+    ]  # fmt: skip
+    links = (link(180, "stage", stage=23, gear_1=15, gear_2=16), link(181, "assembly", assembly=6, part=15),
+             link(182, "assembly", assembly=3, part=16), link(183, "assembly", assembly=6, part=33))  # fmt: skip
+    load = part(33, "external_load", torque_around_u_axis=(50.0, "N m"), transmits_torque="true", defines_torque="true")
+    tree = more(tree, across, *bevels, part(23, "bevel_stage", "bevels"), load, relations=links)
+    parts = [one for one in tree["components"] if one["id"] != 31]
+    links = [one for one in tree["relations"] if all(ref["id"] != 31 for ref in one["refs"])]
+    return put({**tree, "components": parts, "relations": links}, 3, rotational_speed=(-1500.0, "1/min"))
+
+
+@pytest.mark.parametrize(("ways", "pushes"), [(("positive", "positive"), True), (("positive", "negative"), False)])
+def test_torque_passes_a_bevel_stage(ways: tuple[str, str], pushes: bool) -> None:
+    """Of cones that point alike the gears turn against each other about their own axes: -100 N m at -1500 rpm drive."""
+    text = text_of(with_bevels(ways))
+    found = tomllib.loads(text)
+    assert "bevel_stage 23 is not read: torque and speed pass it" in text
+    driver = found["pair"]["I"]["driver"]
+    assert found["gear"][driver]["teeth"] == (20 if pushes else 60)
+    torque = float(found["pair"]["I"]["torque"].split()[0])
+    assert torque == pytest.approx(100.0 if pushes else 300.0)
+
+
+def bearing(
+    number: int, at: float, way: str, rows: tuple[str, ...], angle: float = 15.0
+) -> tuple[list[dict], list[dict]]:
+    kind = "radial_tapered_roller_bearing" if angle else "radial_roller_bearing"
+    parts = [part(number, "rolling_bearing_with_detailed_geometry", f"bearing {number}", axial_force_absorption=way,
+                  bearing_type=kind, u_coordinate_on_shaft_inner_side=(at, "mm"),
+                  radial_dynamic_load_rating=(50.0, "kN"))]  # fmt: skip
+    links = [link(140 + number, "side", assembly=number, inner_part=3, outer_part=2)]
+    for n, one in enumerate(rows):
+        row, roll = 1000 + 10 * number + 2 * n, 1001 + 10 * number + 2 * n
+        parts += [
+            part(row, "rolling_bearing_row", number_of_rolling_elements=(18.0, "none"), reference_diameter=(50.0, "mm"),
+                 pressure_angle=(angle, "deg"), axial_force_absorption_of_row=one),
+            part(roll, "rolling_element", diameter_of_rolling_element=(7.0, "mm"),
+                 length_of_rolling_element=(10.0, "mm")),
+        ]  # fmt: skip
+        links += [
+            link(2000 + row, "assembly", assembly=number, part=row),
+            link(2000 + roll, "assembly", assembly=row, part=roll),
+        ]
+    return parts, links
+
+
+def held_by(*bearings: tuple) -> dict:
+    """Seats of the first shaft, on these bearings in place of its own."""
+    tree = two_stages()
+    parts = [one for one in tree["components"] if one["id"] not in (51, 52)]
+    links = [one for one in tree["relations"] if all(ref["id"] not in (51, 52) for ref in one["refs"])]
+    for one in bearings:
+        made = bearing(*one)
+        parts, links = [*parts, *made[0]], [*links, *made[1]]
+    return case({**tree, "components": parts, "relations": links})
+
+
+def test_tapered_bearings_face_the_ways_that_they_hold() -> None:
+    found = held_by((81, 10.0, "negative", ("negative",)), (82, 110.0, "positive", ("positive",)))
+    seats = found["shaft"]["shaft_3"]["bearings"]
+    assert [one.get("reversed", False) for one in seats] == [True, False]
+    assert "fixed" not in found["bearing"][seats[0]["bearing"]]
+
+
+def test_rows_are_bearings_in_one_place_that_share_the_rating() -> None:
+    found = held_by((81, 10.0, "both_directions", ("positive", "negative")), (82, 110.0, "no_direction", ("", "")))
+    seats = found["shaft"]["shaft_3"]["bearings"]
+    assert [(one["at"], one.get("reversed", False)) for one in seats] == [
+        ("10 mm", False), ("10 mm", True), ("110 mm", False), ("110 mm", False),
+    ]  # fmt: skip
+    first, second = (found["bearing"][seats[n]["bearing"]] for n in (0, 2))
+    assert float(first["life"]["dynamic_rating"].split()[0]) == pytest.approx(50.0 / 2.0 ** (7.0 / 9.0))
+    assert (first["elements"]["contact_angle"], "contact_angle" in second["elements"]) == ("15 deg", False)
+
+
+def test_a_shaft_that_rollers_leave_free_along_its_axis_is_stopped() -> None:
+    found = held_by((81, 10.0, "both_directions", ("",), 0.0), (82, 110.0, "no_direction", ("",), 0.0))
+    seats = [one["bearing"] for one in found["shaft"]["shaft_3"]["bearings"]]
+    assert found["bearing"][seats[1]] == {"radial": "0 N/um", "fixed": True}
+    assert len(seats) == 3
+
+
+def test_small_gaps_between_sections_are_closed_and_told() -> None:
+    tree = more(two_stages(), part(44, "shaft_section", length=(30.0, "mm"), outer_diameter_begin=(20.0, "mm"),
+                                   u_coordinate_on_shaft=(120.1, "mm")),
+                relations=(link(190, "ordered_assembly", assembly=3, part=44),))  # fmt: skip
+    assert "shaft 3: a gap of 0.1 mm between sections is closed" in text_of(tree)
+    assert [one["length"] for one in case(tree)["shaft"]["shaft_3"]["sections"]] == ["120.1 mm", "30 mm"]
+    with pytest.raises(InputError, match="leave a gap"):
+        case(put(tree, 44, u_coordinate_on_shaft=(121.0, "mm")))
+
+
+def test_a_stage_that_no_torque_passes_is_not_in_the_case() -> None:
+    """A loose gear beside the first stage, as of a speed that is not engaged."""
+    tree = more(
+        two_stages(),
+        shaft(6, -80.0 / 0.984807753012208, 0.0),
+        gear(17, 60, -10.0, at=50.0),
+        part(24, "cylindrical_stage", "idle"),
+        relations=(link(191, "assembly", assembly=6, part=17), link(192, "stage", stage=24, gear_1=11, gear_2=17)),
+    )
+    assert "No torque passes cylindrical_stage 24" in text_of(tree)
+    assert case(tree) == case(two_stages())
+
+
+def test_a_pair_without_a_distance_has_that_of_its_axes() -> None:
+    tree = two_stages()
+    bare = {**tree, "components": [
+        {**one, "attributes": []} if one["id"] == 22 else one for one in tree["components"]
+    ]}  # fmt: skip
+    assert case(bare)["pair"]["II"]["centre_distance"] == "84 mm"
+
+
+def test_a_helical_set_passes_torque_to_the_stages_beside_it() -> None:
+    """A set whose carrier drives a pair: 90 N m on the sun are 90 (1 + 66/18) on the carrier."""
+    tree = planetary_set()
+    helices = {11: 10.0, 12: -10.0, 13: -10.0, 14: -10.0, 15: -10.0}
+    for number, helix in helices.items():
+        tree = put(tree, number, helix_angle_reference_diameter=(helix, "deg"))
+    parts = [one for one in tree["components"] if one["id"] != 32]
+    links = [one for one in tree["relations"] if all(ref["id"] != 32 for ref in one["refs"])]
+    tree = more(
+        {**tree, "components": parts, "relations": links},
+        shaft(6, 80.0, 0.0),
+        gear(16, 40, 0.0),
+        gear(17, 40, 0.0),
+        part(27, "cylindrical_stage", "beside", center_distance=(80.0, "mm")),
+        part(33, "external_load", u_coordinate_on_shaft=(0.0, "mm"), transmits_torque="true"),
+        relations=(
+            link(400, "assembly", assembly=5, part=16),
+            link(401, "assembly", assembly=6, part=17),
+            link(402, "stage", stage=27, gear_1=16, gear_2=17),
+            link(403, "assembly", assembly=6, part=33),
+        ),
+    )
+    text = text_of(tree)
+    assert "planetary_stage 9 is not read, for it is helical" in text
+    found = case(tree)
+    assert "planetary" not in found
+    assert float(found["pair"]["I"]["torque"].split()[0]) == pytest.approx(90.0 * (1.0 + 66.0 / 18.0))
