@@ -1,9 +1,9 @@
-"""``[effects]``: what a case calls for; everything is off unless named."""
+"""``[effects]``: what a case calls for; everything is off unless named, or called for by what the case describes."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -13,11 +13,23 @@ from fegear.case.part import Part
 
 
 class Described(NamedTuple):
-    """A pair without effects: keys of its gears, its own keys, and whether it is loaded with its width."""
+    """A pair without effects.
+
+    Attributes
+    ----------
+    gears : collection of str
+        Keys of its gears.
+    pair : mapping
+        Its own keys.
+    wide, carried, moving : bool
+        Whether it is loaded with its width, shafts of the case carry its gears, and the case has a train.
+    """
 
     gears: Collection[str]
     pair: Mapping[str, Any]
     wide: bool
+    carried: bool = False
+    moving: bool = False
 
     def has(self, *keys: str) -> bool:
         """Whether a gear or the pair has one of these keys."""
@@ -35,7 +47,7 @@ class Effect:
     kernels : tuple of str
         Kernels of `fegear.base.tally.KERNELS` that run only with it, in scenes where nothing else calls for them.
     called : callable
-        Whether a question about a pair, asked without a case file, calls for it.
+        Whether a pair calls for it where effects start as described.
     of : {"teeth", "flanks", "motion"}
         Whether it is about how teeth give way and touch, about modifications and errors that their flanks have, or
         about how a train moves.
@@ -57,9 +69,18 @@ def _always(_pair: Described) -> bool:
     return True
 
 
+def _moving(pair: Described) -> bool:
+    return pair.moving
+
+
 class EffectsPart(Part):
     """Physical effects by name."""
 
+    start: Literal["none", "described"] = Field(
+        default="none",
+        description="Effects before those named here: none, or those that the described gears and pairs call for, as "
+        "questions from Python start.",
+    )
     corner_contact: Annotated[bool, Effect("no `friction`", ("corner searches", "corner contacts"), _always)] = Field(
         default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
     )
@@ -91,7 +112,7 @@ class EffectsPart(Part):
         bool,
         Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors"), of="flanks"),
     ] = Field(default=False, description="Whether spacing errors of the teeth count.")
-    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _always, of="motion")] = Field(
+    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _moving, of="motion")] = Field(
         default=False, description="Loss of contact and impacts in motion."
     )
     friction: Annotated[
@@ -101,7 +122,7 @@ class EffectsPart(Part):
             lambda _pair: False, of="motion",
         ),
     ] = Field(default=False, description="Sliding friction between the teeth.")  # fmt: skip
-    parametric: Annotated[bool, Effect("results in time", ("springs in time",), _always, of="motion")] = Field(
+    parametric: Annotated[bool, Effect("results in time", ("springs in time",), _moving, of="motion")] = Field(
         default=False, description="Whether the mesh stiffness varies in time."
     )
     misalignment: Annotated[
@@ -110,7 +131,7 @@ class EffectsPart(Part):
             "`misalignment` of a helical pair or of one with a width, `line_error` of one with a width, or shafts that "
             "carry both its gears",
             ("misaligned flanks",),
-            lambda pair: pair.wide and pair.has("misalignment", "line_error"),
+            lambda pair: pair.wide and (pair.carried or pair.has("misalignment", "line_error")),
             of="flanks",
             plane=False,
         ),
@@ -126,7 +147,12 @@ class EffectsPart(Part):
 
     def on(self) -> tuple[str, ...]:
         """Names of the effects that are on."""
-        return tuple(name for name in type(self).model_fields if self.is_on(name))
+        return tuple(name for name in EFFECTS if self.is_on(name))
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Names of the effects that the case itself switches on or off."""
+        return frozenset(self.model_fields_set)
 
     def only(self, names: Collection[str]) -> EffectsPart:
         """These effects as they are, the others off."""
@@ -137,6 +163,7 @@ class EffectsPart(Part):
 EFFECTS: dict[str, Effect] = {
     name: next(one for one in field.metadata if isinstance(one, Effect))
     for name, field in EffectsPart.model_fields.items()
+    if name != "start"
 }
 
 
@@ -149,6 +176,17 @@ AT_REST = tuple(name for name in PLANE_EFFECTS if EFFECTS[name].of == "teeth")
 GAPS = tuple(name for name in WIDE_EFFECTS if EFFECTS[name].of == "flanks")
 
 
-def called_for(pair: Described) -> dict[str, bool | str]:
-    """Effects that a question about a pair calls for, as a case file has them."""
-    return {name: effect.on for name, effect in EFFECTS.items() if effect.called(pair)}
+def started(effects: EffectsPart, pairs: Sequence[Described]) -> EffectsPart:
+    """Effects of a case with those that its pairs call for, where they start as described; named ones stay as they are.
+
+    What flanks have counts where one pair has it; how teeth give way and touch, where every pair can.
+    """
+    if effects.start == "none" or not pairs:
+        return effects
+    on = {
+        name: effect.on for name, effect in EFFECTS.items()
+        if name not in effects.model_fields_set
+        and (any if effect.of == "flanks" else all)(effect.called(pair) for pair in pairs)
+    }  # fmt: skip
+    # Not `model_copy`, which would take them for named ones.
+    return EffectsPart.model_construct(effects.model_fields_set, **{**dict(effects), **on})

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from fegear.base.errors import PATH, InputError, shown
+from fegear.case.effects import Described, started
 from fegear.case.model import Case
 from fegear.case.part import BARE_SI, check_references, nearest
 from fegear.case.planetary import with_set_pairs
@@ -202,6 +203,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
                 "give both the same helix_angle and opposite hands",
             )  # fmt: skip
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
+    case = _with_effects(case, pairs)
     helical_pairs = {
         key: pair.build_helical(
             pairs[key],
@@ -214,6 +216,21 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
     scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document, renamed=renamed)
     check_references(scene)
     return scene
+
+
+def _with_effects(case: Case, pairs: Mapping[str, GearPair]) -> Case:
+    """The case with the effects that its pairs call for, where ``effects.start`` asks for them."""
+    described = [
+        Described(
+            case.gear[part.driver].model_fields_set | case.gear[part.driven].model_fields_set,
+            part.model_dump(exclude_unset=True), part.width_in(pairs[key]) != "plane",
+            {part.driver, part.driven} <= {one.gear for shaft in case.shaft.values() for one in shaft.gears},
+            case.train is not None,
+        )
+        for key, part in case.pair.items()
+    ]  # fmt: skip
+    effects = started(case.effects, described)
+    return case if effects is case.effects else case.model_copy(update={"effects": effects})
 
 
 def apply_override(document: dict[str, Any], override: str) -> None:

@@ -43,9 +43,9 @@ def _complete_results(incomplete: str) -> list[str]:
 
 def complete_effects(incomplete: str) -> list[str]:
     """What an effect that is being typed may become."""
-    from fegear.case.effects import EffectsPart
+    from fegear.case.effects import EFFECTS
 
-    return [name for name in sorted(EffectsPart.model_fields) if name.startswith(incomplete)]
+    return [name for name in sorted(EFFECTS) if name.startswith(incomplete)]
 
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]

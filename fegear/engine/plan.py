@@ -126,7 +126,10 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         f'results: "{result}" is called "{former[result]}" now; fegear migrate writes it anew.'
         for result in scene.case.results if result in former
     ]  # fmt: skip
-    return Plan(steps, skipped, idle, (*scene.renamed, *said, *(_idle(effect, known) for effect in idle)))
+    # What the description calls for, and no wanted result uses, was not asked for.
+    named = idle if scene.case.effects.start == "none" else scene.case.effects.named
+    said += [_idle(effect, known) for effect in idle if effect in named]
+    return Plan(steps, skipped, idle, (*scene.renamed, *said))
 
 
 def _idle(effect: str, stages: Sequence[Stage]) -> str:

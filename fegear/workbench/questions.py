@@ -10,10 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.errors import InputError, shown
-from fegear.case.effects import Described, called_for
 from fegear.case.reading import build_scene
-from fegear.engine.plan import make_plan
-from fegear.results.catalogue import STAGES
 from fegear.workbench.gear import Gear
 from fegear.workbench.given import brief, cache_of, in_si, listed, table, taken, texts, working_folder
 from fegear.workbench.pair import Pair
@@ -61,15 +58,10 @@ def ask_of_pair(
     progress: bool | None,
     cache: SolutionCache | None,
 ) -> Results:
-    """Run the case with the effects that the description calls for and the result knows, and with those given."""
-    called = called_for(Described({*pair.driver.keys, *pair.driven.keys}, pair.keys, pair.is_wide))
-    given = table(effects, "effects")
-    known = cache_of(cache, pair.known)
-    scene = _scene(wanted, {**document, "effects": {**called, **given}}, tolerance)
-    idle = set(make_plan(scene, STAGES).idle_effects) - set(given)
-    on = {effect: state for effect, state in called.items() if effect not in idle}
-    scene = _scene(wanted, {**document, "effects": {**on, **given}}, tolerance)
-    return run_scene(scene, progress=progress, cache=known)
+    """Run the case with the effects that its description calls for, and with those given."""
+    start = {"start": "described", **table(effects, "effects")}
+    scene = _scene(wanted, {**document, "effects": start}, tolerance)
+    return run_scene(scene, progress=progress, cache=cache_of(cache, pair.known))
 
 
 def _one_load(pair: Pair, torque: object, load: object) -> None:
@@ -221,8 +213,9 @@ def transmission_error(
     load : force or iterable of forces
         Along the line of action, in place of the torque.
     effects : mapping, optional
-        Changes of the effects, which are on as the teeth really are: neighbours deform, contacts widen with load,
-        corners touch early; relief, spacing errors and misalignment where gears or pair have them.
+        Changes of the effects, which start as the pair is described (``start = "described"`` of a case file):
+        neighbours deform, contacts widen with load, corners touch early; relief, spacing errors and misalignment where
+        gears or pair have them. ``{"start": "none"}`` starts without any.
     tolerance : float, optional
         Relative error that the meshes are chosen for.
     progress, cache

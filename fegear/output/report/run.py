@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import fegear
+from fegear.case.effects import EFFECTS
 from fegear.engine.citation import bibliography
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Mark, Points
@@ -123,7 +124,7 @@ def _plan(results: Results) -> tuple[Block, ...]:
         )
         for step in plan.steps
     ]
-    off = [name for name in type(case.effects).model_fields if not case.effects.is_on(name)]
+    off = [name for name in EFFECTS if not case.effects.is_on(name)]
     facts = {
         "wanted": ", ".join(case.results),
         "tolerance": case.accuracy.tolerance,
