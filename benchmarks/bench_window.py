@@ -110,14 +110,15 @@ class Measured:
     browser: float = 0.0
 
 
-def _at(values: list[float], share: float) -> float:
+def at_share(values: list[float], share: float) -> float:
     return sorted(values)[min(int(share * len(values)), len(values) - 1)] if values else float("nan")
 
 
 class Window:
     """A server of one checkout with one case, and a browser that looks at it."""
 
-    def __init__(self, checkout: Path, case: str) -> None:
+    def __init__(self, checkout: Path, case: str | Path) -> None:
+        path = case if isinstance(case, Path) else ROOT / "cases" / f"{case}.toml"
         self._state = tempfile.TemporaryDirectory()
         self.scratch = Path(self._state.name) / "scratch"
         self.scratch.mkdir()
@@ -130,14 +131,14 @@ class Window:
         env.pop("PYTHONDONTWRITEBYTECODE", None)  # else every start compiles all of fegear's source
         self.started = time.monotonic()
         self.server = subprocess.Popen(
-            [sys.executable, "-m", "fegear", "open", "--no-browser", str(ROOT / "cases" / f"{case}.toml")],
+            [sys.executable, "-m", "fegear", "open", "--no-browser", str(path)],
             stdout=subprocess.PIPE, text=True, env=env, cwd=checkout,
         )  # fmt: skip
         self.address = self.server.stdout.readline().split()[-1]
         self.listening = time.monotonic() - self.started
         self.load()
         self.usable = time.monotonic() - self.started
-        self.text = (ROOT / "cases" / f"{case}.toml").read_text()
+        self.text = path.read_text()
 
     def load(self) -> None:
         """Open the page and wait until it can be used."""
@@ -290,10 +291,10 @@ def measure(case: str, count: int, checkouts: list[Path]) -> None:
                             window.settle()
             for window, checkout, one in zip(windows, checkouts, found, strict=True):
                 n = len(one.whole)
-                first = f"first {_at(one.first, 0.5):.0f} ms (asked {asked[0]}), " if asked[0] else ""
+                first = f"first {at_share(one.first, 0.5):.0f} ms (asked {asked[0]}), " if asked[0] else ""
                 print(
-                    f"  {kind}, {checkout.name}: {first}median {_at(one.whole, 0.5):.0f} ms (asked {asked[1]}), "
-                    f"95 % {_at(one.whole, 0.95):.0f} ms (asked {asked[2]}); "
+                    f"  {kind}, {checkout.name}: {first}median {at_share(one.whole, 0.5):.0f} ms (asked {asked[1]}), "
+                    f"95 % {at_share(one.whole, 0.95):.0f} ms (asked {asked[2]}); "
                     f"processor: server {one.server / n:.0f} ms, browser {one.browser / n:.0f} ms",
                     flush=True,
                 )
@@ -302,7 +303,7 @@ def measure(case: str, count: int, checkouts: list[Path]) -> None:
             delays = window.stroke(5.0)
             half = len(delays) // 2
             print(f"  ten changes a second, {checkout.name}: {len(delays)} answered, delay first half"
-                  f" {_at(delays[:half], 0.5):.0f} ms, second half {_at(delays[half:], 0.5):.0f} ms,"
+                  f" {at_share(delays[:half], 0.5):.0f} ms, second half {at_share(delays[half:], 0.5):.0f} ms,"
                   f" longest {max(delays, default=0.0):.0f} ms", flush=True)  # fmt: skip
             window.rest()
             print(f"  memory, {checkout.name}: {memory(window.server.pid):.0f} MB")

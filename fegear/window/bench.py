@@ -16,6 +16,7 @@ from fegear.window.document import Desk
 from fegear.window.drag_handles import moved_relief, own_name, without_relief
 from fegear.window.glance import keep_view, read_view
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Said
+from fegear.window.on_gears import UNASKED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -124,13 +125,15 @@ class Bench:
     def shown_now(self) -> list[tuple[str, _Content]]:
         """What a page that opens now has to be told."""
         told: list[tuple[str, _Content]] = [
-            (what, self._last[what]) for what in ("plan", "hands", "harris", "pinned") if what in self._last
+            (what, self._last[what])
+            for what in ("plan", "hands", "assemblies", "harris", "pinned")
+            if what in self._last
         ]
         for content in self._found.values():
             told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
             told += [("picture", picture) for picture in content.get("pictures", {}).values()]
         told += [
-            ("meshed", content) for key, content in self._meshed.items() if key[1] == "pressure" or key in self._shows
+            ("meshed", content) for key, content in self._meshed.items() if key[1] in UNASKED or key in self._shows
         ]
         told += [(what, self._last[what]) for what in ("done", "designed", "compared") if what in self._last]
         return [*told, ("asked", {"number": self._number, "moving": False})] if self._busy else told
@@ -348,16 +351,18 @@ class Bench:
         self._busy &= what not in ("refused", "done")
         if what == "plan":
             self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
-            for key in [key for key in self._meshed if key[1] == "pressure"]:
-                if f"loaded-flanks of {key[0]}" not in content["tasks"]:
-                    del self._meshed[key]
+            gone = [
+                key for key, one in self._meshed.items() if key[1] in UNASKED and one["task"] not in content["tasks"]
+            ]
+            for key in gone:
+                del self._meshed[key]
         elif what == "found":
             self._found[content["task"]] = {**whole(content, self._found.get(content["task"])), "pictures": {}}
         elif what == "meshed":
             self._meshed[content["pair"], content["kind"]] = content
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
-        if what in ("plan", "hands", "harris", "done"):
+        if what in ("plan", "hands", "assemblies", "harris", "done"):
             self._last[what] = self._with_gears(content) if what == "hands" else content
 
 

@@ -5,7 +5,7 @@ const fegearGlance = (() => {
   const { plot, plain } = fegearPlots;
   const $ = (id) => document.getElementById(id);
   const RATIOS = { transverse: "contact ratio", overlap: "overlap ratio" };
-  let told = null, view = {}, pair = null, pairs = {};
+  let told = null, view = {}, pair = null, pairs = {}, kind = "pair"; // the pair, or the set, that is shown
   let pinned = null; // of A: { specs, numbers }
   const specs = new Map(), numbers = new Map(); // key -> { spec, darker }; name -> number
   const plots = new Map(); // name of a picture -> what is drawn of it
@@ -38,13 +38,14 @@ const fegearGlance = (() => {
     if (id === "to-fold") { keep({ folded: !view.folded }); apply(); }
   });
   const chosen = () => {
-    const wide = pairs[pair]?.mesh?.wide, names = view.pictures?.length ? view.pictures : told?.usual[wide ? "wide" : "plane"] ?? [];
-    return names.filter((name) => told?.pictures[name]);
+    const usual = told?.usual[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"] ?? [];
+    const names = (view.pictures ?? []).filter((name) => told?.pictures[name]?.of === kind);
+    return names.length ? names : usual;
   };
 
   // ---- small pictures -----------------------------------------------------------------------------------------------
   function lay() {
-    const host = $("small"), names = chosen(), wanted = JSON.stringify([pair, names]);
+    const host = $("small"), names = chosen(), wanted = JSON.stringify([kind, pair, names]);
     if (!host || !told || host.dataset.laid === wanted) return;
     host.dataset.laid = wanted;
     host.replaceChildren();
@@ -64,10 +65,11 @@ const fegearGlance = (() => {
     }
     const choice = made("details", "choice"), list = made("div");
     choice.append(made("summary", "", "Choose pictures"), list);
-    for (const [name, one] of Object.entries(told.pictures)) {
+    for (const [name, one] of Object.entries(told.pictures).filter(([, { of }]) => of === kind)) {
       const label = made("label"), box = Object.assign(made("input"), { type: "checkbox", checked: names.includes(name) });
       box.onchange = () => {
-        const next = Object.keys(told.pictures).filter((other) => (other === name ? box.checked : chosen().includes(other)));
+        const before = new Set([...chosen(), ...view.pictures.filter((other) => told.pictures[other]?.of !== kind)]);
+        const next = Object.keys(told.pictures).filter((other) => (other === name ? box.checked : before.has(other)));
         keep({ pictures: next });
         host.dataset.laid = "";
         lay();
@@ -120,8 +122,8 @@ const fegearGlance = (() => {
     const host = $("strip");
     if (!host || !told) return;
     const wanted = told.numbers.map((name) => numbers.get(`${pair}.${name}`)).filter(Boolean);
-    const ratios = Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
-    const all = [...wanted, ...ratios], laid = JSON.stringify([pair, all.map((one) => one.name)]);
+    const ratios = kind === "set" ? [] : Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
+    const all = [...wanted, ...ratios], laid = JSON.stringify([kind, pair, all.map((one) => one.name)]);
     if (host.dataset.laid !== laid) {
       host.dataset.laid = laid;
       cells.clear();
@@ -153,7 +155,7 @@ const fegearGlance = (() => {
       specs.clear();
       numbers.clear();
       pinned = null;
-      pairs = {};
+      [pairs, pair, kind] = [{}, null, "pair"];
       apply();
     },
     view: () => view,
@@ -165,13 +167,13 @@ const fegearGlance = (() => {
     hands(content) {
       const before = Object.keys(pairs).length;
       pairs = Object.fromEntries(Object.entries(content).map(([name, one]) => [name, { ...one, mesh: one.mesh ?? pairs[name]?.mesh }]));
-      if (!(pair in pairs)) pair = Object.keys(pairs)[0] ?? null;
+      if (kind === "pair" && !(pair in pairs)) pair = Object.keys(pairs)[0] ?? null;
       if (before !== Object.keys(pairs).length || !document.body.dataset.pairs) apply();
       document.body.dataset.pairs = Object.keys(pairs).length;
       soon();
     },
     pair: () => pair,
-    choose(name) { pair = name; soon(); },
+    choose(name, of = "pair") { [pair, kind] = [name, of]; soon(); },
     pinned(content) {
       pinned = null;
       if (content.found) { pinned = { specs: new Map(), numbers: new Map() }; for (const one of content.found) gather(one, pinned); }

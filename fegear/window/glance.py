@@ -27,15 +27,16 @@ if TYPE_CHECKING:
 
 
 class Picture(NamedTuple):
-    """A small picture: what it is called, the stage that makes its figure, that figure's key, and its panel."""
+    """A small picture: what it is called, the stage that makes its figure, that figure's key, its panel, of what."""
 
     words: str
     stage: str
     key: str
     panel: int = 1
+    of: str = "pair"
 
 
-#: What the column on the right may show, by name; keys are followed by the pair's name.
+#: What the column on the right may show, by name; keys are followed by the name of the pair, or of the set.
 PICTURES = {
     "te": Picture("Transmission error", "transmission-error", "transmission_error_"),
     "sharing": Picture("Load on a tooth pair", "load-sharing", "load_sharing_"),
@@ -45,13 +46,18 @@ PICTURES = {
     "stiffness": Picture("Mesh stiffness", "transmission-error", "transmission_error_", 2),
     "line-load": Picture("Load over the face", "load-distribution", "load_over_face_"),
     "pattern": Picture("Contact pattern", "contact-pattern", "contact_pattern_"),
+    "planet-loads": Picture("Load of the planets", "planet-load-sharing", "planet_load_sharing_", of="set"),
+    "set-te": Picture("Transmission error of the set", "planet-load-sharing", "planet_load_sharing_", 2, of="set"),
+    "set-forces": Picture("Forces across the axis", "planet-load-sharing", "planet_forces_", of="set"),
 }
-#: What it shows where nobody has chosen: of plane pairs, and of those with a width.
+#: What it shows where nobody has chosen: of plane pairs, of those with a width, and of planetary sets.
 USUAL, USUAL_WIDE = ("te", "sharing", "root", "harmonics"), ("te", "line-load", "root", "harmonics")
+USUAL_SET = ("planet-loads", "set-te", "set-forces")
 
 #: The numbers of the strip by the end of a value's name, in their order, and how they are called.
 NUMBERS = {
     "te_peak_to_peak": "transmission error, p-p",
+    "K_gamma": "K_gamma, load of the planets",
     "mesh_stiffness_mean": "mesh stiffness, mean",
     "driver.largest_root_tension": "root tension, driver",
     "driven.largest_root_tension": "root tension, driven",
@@ -62,12 +68,12 @@ NUMBERS = {
     "driven.S_H": "S_H, driven",
 }
 #: The stages that these come from beside the ones that are shown; a rating is asked for by the case.
-_ALWAYS = ("transmission-error", "load-sharing", "root-stress-history")
+_ALWAYS = ("transmission-error", "load-sharing", "root-stress-history", "planet-load-sharing", "shaft-deflection")
 
 
 def keys_of(pictures: tuple[str, ...]) -> set[str]:
     """Keys of the figures that the small pictures are made of, without the pair's name, by names of `PICTURES`."""
-    return {PICTURES[one].key for one in pictures or (*USUAL, *USUAL_WIDE) if one in PICTURES}
+    return {PICTURES[one].key for one in pictures or (*USUAL, *USUAL_WIDE, *USUAL_SET) if one in PICTURES}
 
 
 def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
@@ -153,12 +159,15 @@ class View(NamedTuple):
         Whether the form is out of the way.
     report : bool
         Whether all results are shown in place of the glance.
+    middle : str
+        What stands in the middle: a pair, ``set NAME`` or ``gearbox``; empty for the usual.
     """
 
     pictures: tuple[str, ...] = ()
     measure: str = "mises"
     folded: bool = False
     report: bool = False
+    middle: str = ""
 
     def changed(self, told: Mapping[str, Any]) -> View:
         """The same with what a page says; what is none of its values stays."""
@@ -171,7 +180,8 @@ class View(NamedTuple):
 def told_of_view(view: View) -> dict[str, Any]:
     """What a page that opens has to know: how it was left, and what may be chosen."""
     return {
-        "view": view._asdict(), "usual": {"plane": USUAL, "wide": USUAL_WIDE}, "numbers": list(NUMBERS),
+        "view": view._asdict(), "numbers": list(NUMBERS),
+        "usual": {"plane": USUAL, "wide": USUAL_WIDE, "set": USUAL_SET},
         "pictures": {name: one._asdict() for name, one in PICTURES.items()},
     }  # fmt: skip
 

@@ -153,7 +153,7 @@ const fegearHands = (() => {
   fegearFigure.dark.addEventListener("change", () => { for (const kept of shown.values()) for (const one of kept.plots.values()) one.draw(); });
   async function show({ pairs }, { made, sections }) {
     for (const [pair, kept] of shown) {
-      if (!(pair in pairs) || !kept.host.isConnected) { fegearFigure.drop(kept.map); kept.host.remove(); shown.delete(pair); sections.delete(`hand map ${pair}`); }
+      if (!(pair in pairs) || !kept.host.isConnected) { fegearFigure.drop(kept.map); fegearMiddle.remove(pair); shown.delete(pair); sections.delete(`hand map ${pair}`); }
     }
     for (const [pair, content] of Object.entries(pairs)) {
       if (!shown.has(pair)) {
@@ -169,7 +169,7 @@ const fegearHands = (() => {
         kept.reliefs = made("div", "reliefs");
         kept.tools = made("p", "tools pair-tools");
         host.append(kept.reliefs, kept.tools);
-        document.getElementById("hands").append(host);
+        fegearMiddle.add(pair, host, `pair ${pair}`, () => fegearGlance.choose(pair));
         shown.set(pair, kept);
       }
       const kept = shown.get(pair);
@@ -205,22 +205,6 @@ const fegearHands = (() => {
       }
     }
     fegearGlance.hands(pairs);
-    const names = [...shown.keys()];
-    for (const [pair, kept] of shown) {
-      kept.host.hidden = pair !== fegearGlance.pair();
-      const title = kept.host.querySelector("h2"), laid = names.join();
-      if (names.length < 2 || title.dataset.laid === laid) continue;
-      title.dataset.laid = laid;
-      const choice = document.createElement("select");
-      choice.setAttribute("aria-label", "Pair");
-      choice.append(...names.map((name) => Object.assign(document.createElement("option"), { value: name, textContent: `pair ${name}`, selected: name === pair })));
-      choice.onchange = () => {
-        fegearGlance.choose(choice.value);
-        for (const [name, other] of shown) other.host.hidden = name !== choice.value;
-        choice.value = pair;
-      };
-      title.replaceChildren(choice);
-    }
   }
   // ---- the Harris map: made at rest, its present load followed while the slider moves -----------------------------------
   async function harris({ pairs }, { paint, sections }) {

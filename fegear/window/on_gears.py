@@ -103,7 +103,7 @@ def _deformed(data: DeformedInMeshData) -> dict[str, Any]:
         "pairs": data.pairs.tolist(),
         "ahead": np.round(data.transmission_error * 1e3, 8).tolist(),
         "largest": data.largest * 1e6,
-        "factor": _round_factor(_DRAWN * module / data.largest) if data.largest > 0.0 else 1.0,
+        "factor": round_factor(_DRAWN * module / data.largest) if data.largest > 0.0 else 1.0,
         "gears": {
             member: {"places": millimetres(data.places[member]), "moved": packed(data.moved[member] * 1e3)}
             for member in data.places
@@ -169,14 +169,18 @@ def _along(places: Array, stress: Array) -> tuple[Array, Array]:
     return at, values
 
 
-def _round_factor(value: float) -> float:
-    """1, 2 or 5 times a power of ten, no larger than a value, within 1 and 1000."""
+def round_factor(value: float, most: float = 1000.0) -> float:
+    """1, 2 or 5 times a power of ten, no larger than a value, within 1 and `most`."""
     power = 10.0 ** np.floor(np.log10(max(value, 1.0)))
-    return float(min(1000.0, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= max(value, 1.0))))
+    return float(min(most, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= max(value, 1.0))))
 
 
 #: What is switched on at the gears, and the stage that computes it.
 _STAGES = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
+
+
+#: Kinds that are shown whenever they are computed: on flanks, of planets, of shafts.
+UNASKED = ("pressure", "loads", "bent")
 
 
 #: Why deformed teeth are not shown of gears with a width.

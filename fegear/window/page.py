@@ -44,7 +44,20 @@ _STILL = 0.4
 
 
 #: Its own scripts, in their order.
-_SCRIPTS = ("moved", "window", "layers", "flanks", "field", "plots", "glance", "gears", "hands")
+_SCRIPTS = (
+    "moved",
+    "window",
+    "layers",
+    "flanks",
+    "field",
+    "plots",
+    "glance",
+    "middle",
+    "gears",
+    "sets",
+    "gearbox",
+    "hands",
+)
 
 
 #: Where the page's own files are served.

@@ -158,7 +158,8 @@ const fegear = (() => {
       }, FOLLOWED);
       loadsNow.set(content.pair, content);
     },
-    meshed(content) { fegearGears.meshed(content); },
+    meshed(content) { ({ loads: fegearSets, bent: fegearGearbox }[content.kind] ?? fegearGears).meshed(content); },
+    assemblies({ sets, gearbox }) { fegearSets.show(sets); fegearGearbox.show(gearbox); },
     asked(content) {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
       document.body.classList.add("computing");
@@ -279,6 +280,7 @@ const fegear = (() => {
       sections.delete("compared");
     },
     laid() {
+      fegearMiddle.clear();
       sections.clear();
       unpainted.clear();
       seen.clear();

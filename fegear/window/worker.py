@@ -15,6 +15,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
 from fegear.results.pair.loaded_teeth import teeth_of
+from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
 from fegear.window.designs import design_asked, designed, draft_of
 from fegear.window.drag_handles import hands_of
@@ -70,6 +71,7 @@ class Worker:
         store = Store(self._folder, _MOST_ON_DISK)
         self._cache = SolutionCache(store, check=lambda: self._inbox.look(), at_leisure=True)
         self._meshes: dict[str, object] = {}
+        self._assemblies: dict[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._laid, self._sent = 0, Sent()
         self._maps = HarrisMaps()
@@ -180,6 +182,7 @@ class Worker:
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}
+                self._assemblies = {}
                 self._maps = HarrisMaps()
             tasks = [str(step.task) for step in plan.steps]
             self._say("plan", tasks=tasks)
@@ -214,6 +217,9 @@ class Worker:
                 one["mesh"] = None
         self._say("hands", pairs=pairs)
         self._meshes = meshes
+        if (drawn := assemblies_of(scene)) != self._assemblies:
+            self._say("assemblies", **drawn)
+            self._assemblies = drawn
 
     def _draft(self, asked: Asked, scene: Scene, plan: Plan) -> None:
         """Tell a first answer where a gear has to be solved anew."""
@@ -273,9 +279,12 @@ class Worker:
             self._say("found", **news)
         if draft:
             return
-        if self._on_gears.get(task) is not outcome.data and (shown := on_the_gears(task, outcome.data)) is not None:
-            self._on_gears[task] = outcome.data  # what is recalled is on the page already
-            self._say("meshed", **shown)
+        if self._on_gears.get(task) is outcome.data:
+            return  # what is recalled is on the page already
+        shown = on_the_gears(task, outcome.data) or on_the_assembly(task, outcome.data, scene)
+        if shown is not None:
+            self._on_gears[task] = outcome.data
+            self._say("meshed", task=str(task), **shown)
 
     def _waits(self, task: Task, figure: str) -> bool:
         """Whether a figure is drawn when all is at rest: out of sight while a value moves, and known of before."""

@@ -520,3 +520,84 @@ def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser
         assert moved[name] == one, name
     assert [name for name, one in fresh.items() if settled[name] == one] == []
     served.end()
+
+
+ASSEMBLED = """results = ["planet-load-sharing", "shaft-deflection"]
+gear.sun = { teeth = 25, module = "2 mm", face_width = "25 mm" }
+gear.planet = { teeth = 29, module = "2 mm", face_width = "25 mm" }
+gear.a = { teeth = 25, module = "2 mm", face_width = "25 mm" }
+gear.b = { teeth = 29, module = "2 mm", face_width = "25 mm" }
+pair.I = { driver = "a", driven = "b", load = "2 kN", compliance = { source = "weber-banaschek" } }
+pair.P_sun = { driver = "sun", driven = "planet", compliance = { source = "weber-banaschek" } }
+bearing.one = { radial = "300 N/um", fixed = true }
+[planetary.P]
+sun = "sun"
+planet = "planet"
+ring_teeth = 83
+planets = 4
+torque = "320 N*m"
+stiffness = { sun_mesh = "400 N/um", ring_mesh = "480 N/um", pin = "250 N/um" }
+pin_errors = { tangential = ["20 um", "0 um", "-10 um", "0 um"] }
+[shaft.in]
+sections = [{ length = "120 mm", outer = "30 mm" }]
+gears = [{ gear = "a", at = "40 mm" }]
+bearings = [{ bearing = "one", at = "10 mm" }, { bearing = "one", at = "110 mm" }]
+coupling = "0 mm"
+[shaft.out]
+axis = ["0 mm", "54 mm"]
+sections = [{ length = "120 mm", outer = "30 mm" }]
+gears = [{ gear = "b", at = "40 mm" }]
+bearings = [{ bearing = "one", at = "10 mm" }, { bearing = "one", at = "110 mm" }]
+coupling = "120 mm"
+"""
+
+
+def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(browser, serve, tmp_path):
+    path = tmp_path / "both.toml"
+    path.write_text(ASSEMBLED)
+    served = serve(str(path))
+    browser.size(1300, 800)
+    go(browser, served.address)
+    # The set comes first: colours of the planets by their loads, numbers and pictures of the set.
+    canvas = "document.querySelector('[data-set=P] canvas')"
+    browser.until(f"{IDLE} && document.querySelector('[data-set=P] .mesh-scale i') !== null")
+    browser.until("document.querySelector('[data-number=K_gamma] b') !== null")
+    browser.until("document.querySelector('[data-picture=planet-loads] .small-plot path') !== null")
+    at_rest = browser.run(f"{canvas}.toDataURL()")
+    browser.run("(one => { one.value = 40; one.oninput(); })(document.querySelector('[data-set=P] input[type=range]'))")
+    assert browser.run(f"{canvas}.toDataURL()") != at_rest  # 2 degrees on
+    unequal = browser.run("fegearSets.of('P').loads.shares")
+    assert sum(unequal) == pytest.approx(4.0, abs=1e-5)
+    assert max(unequal) > 1.05
+    browser.click("[...document.querySelectorAll('[data-set=P] button')].find(one => one.textContent === 'Nearer')")
+    assert browser.run("fegearSets.of('P').focus") == 0
+
+    # The gearbox: bent, by a factor that is said and can be changed; a mesh that is pressed opens its pair.
+    browser.run(
+        "(one => { one.value = 'gearbox'; one.onchange(); })(document.querySelector('.hand:not([hidden]) h2 select'))"
+    )
+    told = "document.querySelector('.hand:not([hidden]) .mesh-told').textContent"
+    browser.until(f"{told}.includes('times as large')")
+    box = "document.querySelector('.hand:not([hidden]) canvas')"
+    browser.until("fegearGearbox.of().places.length === 1")
+    bent = browser.run(f"{box}.toDataURL()")
+    browser.run(
+        "(one => { one.value = 0; one.oninput(); })(document.querySelector('.hand:not([hidden]) .mesh-factor input'))"
+    )
+    assert browser.run(f"{box}.toDataURL()") != bent
+    assert "0 times" in browser.run(told)
+    assert serious(browser) == []
+    x, y = browser.run(f"(b => [b.x, b.y])({box}.getBoundingClientRect())")
+    px, py = browser.run("fegearGearbox.of().places[0].slice(1)")
+    for kind, pressed in (("mouseMoved", "none"), ("mousePressed", "left"), ("mouseReleased", "left")):
+        browser("Input.dispatchMouseEvent", type=kind, x=x + px, y=y + py, button=pressed, clickCount=1)
+    browser.until("document.querySelector('.hand:not([hidden])').dataset.pair === 'I'")
+    browser.until("document.querySelector('[data-picture=te] .small-plot path') !== null")
+    assert browser.run("fegearGlance.pair()") == "I"
+    go(browser, served.address)  # it is the window's to remember
+    browser.until("document.querySelector('.hand:not([hidden])')?.dataset.pair === 'I'")
+    browser.size(1300, 900)
+    assert [
+        one for one in browser.complaints if "favicon" not in one and "WebSocket" not in one and "ERR_" not in one
+    ] == []
+    served.end()
