@@ -31,7 +31,7 @@ _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
 
 
 def read_only(content: Mapping[K, V]) -> MappingProxyType[K, V]:
-    """Copy a mapping into one that nobody changes, which travels between processes as other data do."""
+    """Copy a mapping into one that no one changes, which travels between processes as other data do."""
     return MappingProxyType(dict(content))
 
 

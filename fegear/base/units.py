@@ -34,7 +34,7 @@ class Dimension(NamedTuple):
 
     si: str
     example: str
-    also: dict[str, float] = {}  # noqa: RUF012  (nobody changes it)
+    also: dict[str, float] = {}  # noqa: RUF012  (no one changes it)
 
 
 _TURN = 2.0 * math.pi

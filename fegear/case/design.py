@@ -216,7 +216,7 @@ class FlankGridPart(Part):
     def _complete(self) -> Self:
         for amounts, lengths in (("tip_amounts", "tip_lengths"), ("end_amounts", "end_lengths")):
             if bool(getattr(self, amounts)) != bool(getattr(self, lengths)):
-                raise refuse(f"needs {lengths} beside it, and these need it", "give both or neither", key=amounts)
+                raise refuse(f"needs {lengths} with it, and these need it", "give both or neither", key=amounts)
         tips = 1 + len(self.tip_amounts) * len(self.tip_lengths)
         ends = 1 + len(self.end_amounts) * len(self.end_lengths)
         others = [1 + len(values) for values in (self.crownings, self.slopes, self.biases)]

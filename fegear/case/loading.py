@@ -2,7 +2,7 @@
 
 ``[load_distribution]``, and ``line_error`` of a pair: what keeps flanks apart over the face.
 
-``[transmission_error]``: whether a method from the literature is computed beside the exact one.
+``[transmission_error]``: whether a method from the literature is computed in addition to the exact one.
 """
 
 from __future__ import annotations

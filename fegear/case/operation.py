@@ -1,6 +1,6 @@
 """``operation`` and ``shafts`` of a pair: what it has to bear, for how long, and what carries it.
 
-``[rating]``: what stands beside the rating by ISO 6336.
+``[rating]``: what is compared with the rating by ISO 6336.
 """
 
 from __future__ import annotations

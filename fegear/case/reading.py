@@ -57,7 +57,7 @@ class Scene:
     document : mapping
         The same as plain tables, ``--set`` options included.
     estimates : bool
-        Whether errors and the sizes of neglected effects are estimated beside the numbers of loaded pairs, which do not
+        Whether errors and the sizes of neglected effects are estimated with the numbers of loaded pairs, which do not
         depend on that: a first answer while a value is being moved does without.
     drafts : mapping of str to float
         Gears of which a draft is enough, with its relative tolerance: their teeth are solved once, as that tolerance
@@ -146,7 +146,10 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
     """Read the text of a case file, called `name` in messages, as plain tables."""
     try:
         document = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # beside what TOML forbids, numbers and nests that Python cannot hold
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # besides what TOML forbids, numbers and nests that Python cannot hold
         raise InputError("case", name, f"is no valid TOML: {error}", "quantities stand in quotes") from None
     _refuse_decimal_commas(text)
     return document

@@ -26,7 +26,7 @@ class Entry(NamedTuple):
     about : str
         What its results say, in a line; empty for stages that only serve others.
     extra : str
-        What of `fegear.engine.extras` it needs beside fegear itself; empty for most.
+        What of `fegear.engine.extras` it needs besides fegear itself; empty for most.
     formerly : str
         Name by which older cases ask for it; empty for most.
     """

@@ -199,7 +199,7 @@ def with_least_errors(values: Iterable[Value]) -> tuple[Value, ...]:
     for value in every:
         least = ROUND_OFF * (largest.get(value.unit, 0.0) if value.unit else abs(value.si))
         if value.si_error is not None and not value.si_error >= least:
-            # what is not a number nobody has estimated
+            # what is not a number no one has estimated
             error = None if np.isnan(value.si_error) else least if value.si_error > 0.0 else value.si_error
             value = replace(value, si_error=error)  # noqa: PLW2901
         found.append(value)

@@ -64,7 +64,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     scene : Scene
     stages : sequence of Stage
     more : sequence of Task
-        Wanted beside the case's results, after them: what a page shows on request.
+        Wanted besides the case's results, after them: what a page shows on request.
 
     Raises
     ------

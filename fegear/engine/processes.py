@@ -231,7 +231,7 @@ def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
             for future in as_completed(futures):
                 yield futures[future], future.result()
         except BaseException:
-            # An interrupt, or whoever asks for the replies has failed: nobody waits for what is under way.
+            # An interrupt, or whoever asks for the replies has failed: no one waits for what is under way.
             for child in active_children():
                 if child.pid not in others:
                     child.terminate()

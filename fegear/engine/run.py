@@ -186,7 +186,7 @@ def run_plan(
         title = f"{step.stage.title} ({step.task.subject})" if step.task.subject else step.stage.title
         watcher.begin(title, number, len(plan.steps) + following)
         done[step.task] = _finish(scene, step, done, work)
-        if step.reasons != (ON_REQUEST,):  # what is shown beside may be a result of the case found in another way
+        if step.reasons != (ON_REQUEST,):  # what is shown in addition may be a result of the case found in another way
             own[step.task] = done[step.task]
             _refuse_one_name_for_two(own, step.task)
         watcher.end(done[step.task].timing.seconds)

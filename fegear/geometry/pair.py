@@ -110,7 +110,7 @@ class GearPair:
             )
         if not self.face_width > 1e-3 * min(a.face_width, b.face_width):
             raise GeometryError(
-                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces beside each other",
+                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces next to each other",
                 f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
             )  # fmt: skip
         self._check_tips()

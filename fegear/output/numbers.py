@@ -80,7 +80,7 @@ def with_error(value: float, error: float) -> tuple[str, str]:
 _MISLEADING = 0.01
 #: So many values are named whose errors are too large; of the others it is said how many.
 _NAMED = 4
-#: A value so small beside its error is the round-off of zero.
+#: A value so small compared with its error is the round-off of zero.
 _ROUND_OFF = 1e-9
 
 

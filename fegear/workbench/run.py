@@ -103,7 +103,7 @@ def _scene(case: str | os.PathLike[str] | Mapping[str, Any], changes: Mapping[st
 
 @contextlib.contextmanager
 def _watching(progress: bool | None) -> Iterator[Watcher]:
-    """Who shows the progress: a bar on a terminal and in a notebook, nobody elsewhere."""
+    """Who shows the progress: a bar on a terminal and in a notebook, no one elsewhere."""
     notebook = "ipykernel" in sys.modules
     if progress is False or (progress is None and not notebook and not sys.stderr.isatty()):
         yield Silence()

@@ -226,7 +226,7 @@ def test_pressure_stands_on_the_loaded_flanks_of_both_teeth(outcome):
 @pytest.mark.parametrize(
     ("override", "word"),
     [
-        ('pair.I.axial_offset="8 mm"', "axial_offset = 8 mm: puts the faces beside each other"),
+        ('pair.I.axial_offset="8 mm"', "axial_offset = 8 mm: puts the faces next to each other"),
         ("pair.I.line_error={}", "line_error"),
         ('pair.I.line_error={file="nowhere.csv"}', "nowhere.csv"),
         ("load_distribution.positions=1", "positions"),

@@ -1,4 +1,4 @@
-"""What a case neglects: the size of each effect that is off, beside the case's tolerance, and the remedy.
+"""What a case neglects: the size of each effect that is off, compared with the case's tolerance, and the remedy.
 
 What a moving train neglects: contact loss and friction, from one motion with them at the speed where they matter.
 """
@@ -51,7 +51,7 @@ def percent(share: float) -> str:
 
 
 def remark(who: str, effects: EffectsPart, tolerance: float, effect: str, sizes: Iterable[str]) -> str:
-    """Say which effect is off, how much it would change, beside what tolerance, and what to write to have it."""
+    """Say which effect is off, how much it would change, for which tolerance, and what to write to have it."""
     now = 'is "linear"' if effects.is_on(effect) else "is off"
     return (
         f"{who}: {effect} {now}; it would change {', '.join(sizes)}. "

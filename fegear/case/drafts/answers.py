@@ -67,7 +67,7 @@ _ALL = {
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """Checked answers, as texts; what nobody gave is assumed, and said to be.
+    """Checked answers, as texts; what no one gave is assumed, and said to be.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Answers:
         return self.given.get(name) or next(q.default for q in questions(self.kind, self.given) if q.name == name)
 
     def assumed(self, name: str) -> bool:
-        """Whether nobody gave it."""
+        """Whether no one gave it."""
         return not self.given.get(name)
 
     def has(self, name: str) -> bool:
@@ -225,7 +225,7 @@ class Kind(NamedTuple):
     gears : tuple of str
         Names of its gears.
     asks : tuple of str
-        Names of the questions that it asks beside the numbers of teeth and the module.
+        Names of the questions that it asks besides the numbers of teeth and the module.
     """
 
     about: str

@@ -1,4 +1,4 @@
-"""ISO 6336's nominal root stress of both gears of a pair beside finite elements of the same (virtual) spur tooth.
+"""ISO 6336's nominal root stress of a pair's gears compared with finite elements of the same (virtual) spur tooth.
 
 Finite elements of the virtual spur gear of a helical one, whose number of teeth is not whole.
 

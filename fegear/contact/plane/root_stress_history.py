@@ -161,7 +161,7 @@ def _rows(source: RootStressInfluence, reach: int, radius: Array, side: Side) ->
     return evaluate(radius) if kept is None else kept.setdefault((side, reach), StressRows()).at(radius, evaluate)
 
 
-#: Contacts that nobody asked for now are kept until there are so many times those that are.
+#: Contacts that no one asked for now are kept until there are so many times those that are.
 _MOST = 4
 
 

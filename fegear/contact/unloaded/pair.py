@@ -97,7 +97,7 @@ class HelicalPair:
         reach = 0.5 * (a.face_width + b.face_width) - abs(self.axial_offset)
         if not (math.isfinite(self.axial_offset) and reach > 1e-3 * min(a.face_width, b.face_width)):
             raise GeometryError(
-                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces beside each other",
+                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces next to each other",
                 f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
             )  # fmt: skip
         _ = self.flank  # refuses a modification that leaves no flank

@@ -358,7 +358,7 @@ class FlankBenches:
         """What comes of a pair whose centre distance is off by `moved` [m], in the order of `FLANK_OUTCOMES`.
 
         Straight between the centre distances that are solved: contact lines move along the teeth by about three times
-        as much as the gears do, which is little beside what they cross.
+        as much as the gears do, which is little compared with what they cross.
         """
         found = flank_outcomes(self.nominal, gaps)
         beside = self.nearer if moved < 0.0 else self.farther

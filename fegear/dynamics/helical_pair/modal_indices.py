@@ -47,7 +47,7 @@ class ModeTable:
         abs(Delta_eta + kappa Delta_theta) and abs(kappa Delta_eta + mu Delta_theta): what the mesh transmits in the
         mode, for unit-norm shapes.
     frequency_doubt, shape_doubt : ndarray
-        Relative round-off of each frequency and shape as the eigenvalue problem leaves it: a soft mode beside stiff
+        Relative round-off of each frequency and shape as the eigenvalue problem leaves it: a soft mode among stiff
         ones loses digits of its frequency, a mode near another's frequency those of its shape (where they coincide
         the shapes, and the indices that follow from them, are one choice of many).
     """

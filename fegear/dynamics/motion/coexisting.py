@@ -1,4 +1,4 @@
-"""Stable motions that exist beside one that does not repeat: continued from more damping, where motions are simple.
+"""Stable motions that exist with one that does not repeat: continued from more damping, where motions are simple.
 
 A chaotic or endless motion says nothing of whether the same train, started otherwise, runs quietly at the same speed.
 With more damping on the gear pairs every start leads to a motion of few periods; damping is then taken away in steps,
@@ -31,7 +31,7 @@ FROM, STEP = (3.0, 9.0), 3.0**-0.25
 SETTLING, MULTIPLES = 60, (1, 2, 3)
 
 
-#: Distance of two states, beside the static deflection, below which they are one.
+#: Distance of two states, relative to the static deflection, below which they are one.
 SAME = 1e-4
 
 

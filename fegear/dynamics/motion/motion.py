@@ -74,7 +74,7 @@ def propagate(
     duration, start : float
         Time to integrate over and where it begins, in time units.
     tolerance : float
-        Largest truncated term of a step, beside the static deflection.
+        Largest truncated term of a step, relative to the static deflection.
     tangents : bool
         Whether to carry the monodromy matrix.
     peaks : bool
@@ -255,7 +255,7 @@ def simulate(
         From the static state under load, from rest without load (the torques then strike), or from a state in the
         coordinates of `pack`.
     tolerance : float
-        Largest truncated term of a step, beside the static deflection.
+        Largest truncated term of a step, relative to the static deflection.
     max_steps : int
         Room for the record.
     """

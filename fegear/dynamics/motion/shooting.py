@@ -28,7 +28,7 @@ BENT, NEAR = 0.1, 1.0
 STRAIGHT, FARTHEST = 1e-3, 1e3
 #: Bend that round-off and the steps of the integration leave of a straight way.
 LEAST_BENT = 1e-6
-#: Distances from an orbit at which the motion is on it, beside the static deflection.
+#: Distances from an orbit at which the motion is on it, relative to the static deflection.
 ON_IT = 1e-6
 
 
@@ -155,7 +155,7 @@ class Way:
     Attributes
     ----------
     far : float
-        Largest distance of a coordinate from the orbit, beside the static deflection.
+        Largest distance of a coordinate from the orbit, relative to the static deflection.
     bent : float
         Share of the distance by which the periods take it elsewhere than the monodromy matrix says.
     shrinks : float
@@ -199,7 +199,7 @@ def leads_to(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
 
 
 def straight(orbit: Orbit) -> float:
-    """Share of the way by which it may bend and still count as straight: little beside what the multipliers make of it.
+    """Share of the way by which it may bend and still count as straight: far less than the multipliers make of it.
 
     Next to a bifurcation neighbours hardly grow or shrink in a period, and a bend as small as that decides where they
     end: a motion of two periods round an unstable one of multiplier -1.0005 bends by five parts in 10,000.

@@ -74,7 +74,7 @@ class SteadyState:
     changes : int
         Changes of contact in the motion's period (in the measured periods if it does not repeat).
     residual : float
-        What the motion misses closing by, beside the static deflection; nan if it does not repeat.
+        What the motion misses closing by, relative to the static deflection; nan if it does not repeat.
     x, v : ndarray
         State at time zero, in the coordinates of `motion.pack`.
     per_period : ndarray, shape (N, meshes)
@@ -83,7 +83,7 @@ class SteadyState:
     drift : float
         Change of the spread of a motion that does not repeat from its last window to the measured periods, as a share.
     coexisting : tuple of SteadyState
-        Stable motions that repeat and exist at this speed beside one that does not (those that were found, not all).
+        Stable motions that repeat and exist at this speed with one that does not (those that were found, not all).
     """
 
     model: Moving
@@ -173,7 +173,7 @@ def steady_state(
     start : {"static", "rest"} or (x, v)
         Where the motion begins; a state of another speed continues its branch.
     tolerance : float
-        Accuracy of the largest forces of a motion that repeats, beside the mean force; steps and closure are held well
+        Accuracy of the largest forces of a repeating motion, relative to the mean force; steps and closure stay well
         below it.
     settling : int
         Periods integrated before Newton (when contact is lost).
@@ -395,7 +395,7 @@ def speed_sweep(
     start : {"follow", "static", "rest"}
         Whether each speed starts from the motion of the one before, or afresh.
     tolerance : float
-        Accuracy of the largest forces, beside the mean force.
+        Accuracy of the largest forces, relative to the mean force.
     """
     found: list[SteadyState] = []
     begin: str | tuple[Array, Array] = "static" if start == "follow" else start

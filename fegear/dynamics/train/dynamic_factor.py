@@ -57,7 +57,7 @@ def linear_chart(
     return SpeedChart.linear(speeds, tooth, mesh)
 
 
-#: Effective errors that differ by less, beside the larger, do not tell two dynamic factors apart.
+#: Effective errors that differ by less, relative to the larger, do not tell two dynamic factors apart.
 _ALIKE = 1e-6
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 
-#: Accuracy of the fit beside the largest value, and length of its shortest pieces [base pitches].
+#: Accuracy of the fit relative to the largest value, and length of its shortest pieces [base pitches].
 FIT, SHORTEST = 1e-7, 2e-4
 #: A pair this much less stiff than the mesh is none, and its separation means nothing.
 _NO_SPRING = 1e-6

@@ -158,7 +158,7 @@ def with_friction(
     coefficient : callable
         Friction coefficient from sliding speed [m/s], sum of rolling speeds [m/s] and static tooth force [N], arrays.
     tolerance : float
-        Accuracy of the fitted torques beside the largest.
+        Accuracy of the fitted torques relative to the largest.
     a_drives : bool
         Whether the mesh's body `a` drives, and not body `b` (see `train_mesh.a_drives`).
 

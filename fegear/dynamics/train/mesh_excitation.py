@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.engagement import Engagement, Loaded
     from fegear.contact.plane.roll_grids import RollGrid
 
-#: Accuracy of the fitted stiffness, separation and transmission error beside their largest value.
+#: Accuracy of the fitted stiffness, separation and transmission error relative to their largest value.
 FIT = 1e-9
 #: The same where load sharing with coupled teeth is solved at every point.
 FIT_SHARED = 1e-7

@@ -45,7 +45,7 @@ def modes(train: Train) -> Modes:
     """Natural frequencies and mode shapes.
 
     They are the singular values of sqrt(k) G / sqrt(J), element by body, and not the square roots of eigenvalues of
-    the stiffness matrix: a soft mode beside stiff ones keeps its digits.
+    the stiffness matrix: a soft mode among stiff ones keeps its digits.
     """
     parts = [e for e in elements(train) if e.stiffness > 0.0]
     root = np.sqrt(train.inertia)

@@ -81,13 +81,13 @@ class Periodic:
         degree : int
             Degree of each piece (Chebyshev interpolation).
         tolerance : float
-            Largest error beside the largest value.
+            Largest error relative to the largest value.
         pitches : int
             Base pitches in one period.
         shortest : float
             Pieces of at most this length [periods] are taken as they are (a square root's tip, a clipped logarithm).
         scale : float
-            Size beside which errors count where the function itself is smaller: a difference of things so large.
+            Size relative to which errors count where the function itself is smaller: a difference of things so large.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class Periodic:
             if error > tolerance * scale and h > shortest and not narrow:
                 if h < 1e-9:
                     raise ConvergenceError(
-                        f"A periodic function cannot be fitted near s = {a:.9g}: error {error:.3g} beside {scale:.3g}. "
+                        f"A periodic function cannot be fitted near s = {a:.9g}: error {error:.3g} of {scale:.3g}. "
                         "Name its jump among the break points."
                     )
                 middle = 0.5 * (a + b)

@@ -10,7 +10,7 @@ The equations of a train solved as they stand, for frequencies at which eliminat
 
 On a loop a body whose own springs hold it at its own resonance leaves nothing to divide by. Gaussian elimination with
 pivots finds its way round; steps of refinement with residuals in long floats give back the digits. At low frequency,
-where inertia disappears beside stiffness, `star_mesh` is far better: whoever asks compares the bounds of round-off.
+where inertia disappears next to stiffness, `star_mesh` is far better: whoever asks compares the bounds of round-off.
 """
 
 from __future__ import annotations

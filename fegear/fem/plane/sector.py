@@ -29,7 +29,7 @@ _STRAIGHT = 1e-12
 #: Each corner of the boundary is drawn on a grid this share of its shorter edge wide: its last bits, which another
 #: processor's rounding changes, do not reach gmsh.
 _GRID = 1e-3
-#: How fast edges inside grow with the distance from the boundary where nobody says: level 0's `side_growth`.
+#: How fast edges inside grow with the distance from the boundary where no one says: level 0's `side_growth`.
 _GROWTH = 0.4
 #: What a mesh depends on. Algorithm 5 is Delaunay's: the frontal one (6) leaves triangles of quality .05 at sharp
 #: fillets. Sizes come from a function of the place alone.

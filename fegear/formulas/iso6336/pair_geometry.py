@@ -242,7 +242,7 @@ class PairGeometry:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """What of a gear's body ISO 6336 counts, beside its bore; lengths [m].
+    """What of a gear's body ISO 6336 counts, besides its bore; lengths [m].
 
     Parameters
     ----------

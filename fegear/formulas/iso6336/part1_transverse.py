@@ -1,7 +1,7 @@
 """ISO 6336-1, clause 8: transverse load factors K_Halpha and K_Falpha by method B.
 
 Source: ISO 6336-1:2006, 8.3; the edition of 2019 keeps the formulas. How unevenly several tooth pairs share the load
-follows from the base pitch deviation that running in leaves, beside what the load deflects; a form deviation of the
+follows from the base pitch deviation that running in leaves, besides what the load deflects; a form deviation of the
 profile that is larger stands for it (footnote 12).
 
 ISO 6336-1: what running in takes off misalignment (y_beta) and pitch and profile deviations (y_alpha, y_p, y_f).

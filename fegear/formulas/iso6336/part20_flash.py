@@ -2,7 +2,7 @@
 
 Source: ISO/TR 13989-1:2000, Calculation of scuffing load capacity - Part 1: Flash temperature method, from which ISO/TS
 6336-20 was made; clauses and equations are numbered as there, and known here from secondary sources. External gears,
-unmodified profiles: a relief counts in the approach factor, and in the computed load sharing beside the standard's.
+unmodified profiles: a relief counts in the approach factor, and in the computed load sharing besides the standard's.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""ISO/TS 6336-22: micropitting, by the thickness of the lubricant film beside the roughness.
+"""ISO/TS 6336-22: micropitting, by the thickness of the lubricant film compared with the roughness.
 
 Source: ISO/TR 15144-1:2014, Calculation of micropitting load capacity of cylindrical spur and helical gears - Part 1,
 from which ISO/TS 6336-22:2018 was made; formulas are numbered as there, and known here from secondary sources, of which

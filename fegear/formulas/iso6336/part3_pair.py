@@ -18,7 +18,7 @@ from fegear.geometry.pair import GearPair, Member
 
 @dataclass(frozen=True, slots=True)
 class RatingChoice:
-    """What the standard asks for beside the geometry.
+    """What the standard asks for besides the geometry.
 
     Parameters
     ----------

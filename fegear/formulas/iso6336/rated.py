@@ -1,4 +1,4 @@
-"""What ISO 6336 asks of gears beside their geometry: strength, quality and duty, as plain data in SI.
+"""What ISO 6336 asks of gears besides their geometry: strength, quality and duty, as plain data in SI.
 
 Pairs of values are those of pinion and wheel, as the standard numbers them: the pinion is the gear with fewer teeth.
 
@@ -160,7 +160,7 @@ class Duty:
                     raise RangeError(name, value, "must be positive")
 
 
-#: X_S, lubrication: how hot the teeth become beside the oil (ISO/TR 13989-1, clause 6; 15144-1, clause 10).
+#: X_S, lubrication: how hot the teeth become against the oil (ISO/TR 13989-1, clause 6; 15144-1, clause 10).
 SUPPLY_FACTOR = {"dip": 1.0, "spray": 1.2, "spray-with-dip": 1.0, "submerged": 0.2}
 
 

@@ -1,6 +1,6 @@
 """The page of a run: what was asked, the numbers and their errors, each stage's plots and tables, plan, cost.
 
-Accuracy and its cost: seconds, errors beside the tolerance, settings.
+Accuracy and its cost: seconds, errors compared with the tolerance, settings.
 
 The data of the gears as on a drawing, and each pair drawn in mesh.
 """

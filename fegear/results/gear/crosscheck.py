@@ -1,10 +1,10 @@
-"""Result ``crosscheck``: every closed form beside the finite elements, over load positions.
+"""Result ``crosscheck``: every closed form compared with the finite elements, over load positions.
 
 What the result ``crosscheck`` reads and what it finds, by the names of gears and pairs.
 
 Tables and single values of the result ``crosscheck``: closed forms over finite elements.
 
-Figures of closed forms beside finite elements.
+Figures of closed forms compared with finite elements.
 """
 
 from __future__ import annotations
@@ -241,7 +241,7 @@ class CrosscheckInputs:
 
 @dataclass(frozen=True, slots=True)
 class GearAnswers:
-    """Closed forms of a gear beside its finite elements, and Cornell's root section or why it has none."""
+    """Closed forms of a gear compared with its finite elements, and Cornell's root section or why it has none."""
 
     table: StiffnessTable
     root_stress: Mapping[str, RootStressAnswers]
@@ -252,7 +252,7 @@ class GearAnswers:
 
 @dataclass(frozen=True, slots=True)
 class PairAnswers:
-    """Closed forms of a pair beside its finite elements; ISO's stiffness or the reason why there is none."""
+    """Closed forms of a pair compared with its finite elements; ISO's stiffness or the reason why there is none."""
 
     reference: PairReference
     compliance: Mapping[str, ComplianceAnswers]
@@ -414,7 +414,7 @@ _AGREEMENT = (0.95, 1.05)
 
 
 def crosscheck_figure(table: Table) -> Figure:
-    """Every formula of a table beside the finite elements, their ratio, and of a root stress its place."""
+    """Every formula of a table compared with the finite elements, their ratio, and of a root stress its place."""
     shown = {column.name: column.values for column in table.columns}
     formulas = list(dict.fromkeys(str(name) for name in shown["formula"]))
     stress = "root_tension" in shown

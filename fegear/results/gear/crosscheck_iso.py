@@ -133,7 +133,7 @@ def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tup
             ]
         remarks.append(
             f"Crosscheck of pair {name}: the helical teeth are compared through their virtual spur teeth; finite "
-            "elements are interpolated between the whole numbers of teeth beside z_n and know no helix."
+            "elements are interpolated between the whole numbers of teeth next to z_n and know no helix."
         )
     return table, tuple(values), tuple(remarks)
 

@@ -1,4 +1,4 @@
-"""Stage ``measured-flanks``: slope, form and total deviation of measured traces beside the flank tolerance class."""
+"""Stage ``measured-flanks``: slope, form and total deviation of measured traces, and their tolerance class."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ _KEYS = ("teeth", "profile_shift", "rack_tip_radius", "load_position")
 _FULL, _TILE, _BIN, _WIDEST = 0.4, 0.1, 0.05, 2.0
 
 
-#: Share of the room of a number of teeth in which the formulas stand beside each other.
+#: Share of the room of a number of teeth in which the formulas stand next to each other.
 _LANES = 0.8
 
 

@@ -97,7 +97,7 @@ def tolerance_remarks(who: str, label: str, relative: Array, radius: Array, tole
 
 def _remarks(asked: StiffnessInputs, t: StiffnessTable) -> tuple[str, ...]:
     remarks: list[str] = []
-    # The neighbour's deflection is small beside the loaded tooth's, to which it is added: that is its scale.
+    # The neighbour's deflection is small compared with the loaded tooth's, to which it is added: that is its scale.
     for label, value, error in (
         ("c_self", t.c_self, t.errors["c_self"]),
         ("c_next over c_self", t.c_self, t.errors["c_neighbour"]),

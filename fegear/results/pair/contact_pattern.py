@@ -35,7 +35,7 @@ _LIGHT = 0.01
 
 @dataclass(frozen=True)
 class ContactPatternInputs:
-    """What is read of the case beside the loaded flanks: the thickness of the coat [m]."""
+    """What is read of the case besides the loaded flanks: the thickness of the coat [m]."""
 
     coat: float = field(compare=False)
     name: str = field(compare=False)

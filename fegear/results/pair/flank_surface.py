@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FlankSurfaceInputs:
-    """What is read of the case beside the loaded pair.
+    """What is read of the case besides the loaded pair.
 
     Parameters
     ----------

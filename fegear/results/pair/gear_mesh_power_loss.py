@@ -57,7 +57,7 @@ _NEGLECTED = "bearings, churning, windage and seals are neglected"
 
 @dataclass(frozen=True)
 class ToothLossInputs:
-    """What is read of the case beside the loaded pair.
+    """What is read of the case besides the loaded pair.
 
     Parameters
     ----------

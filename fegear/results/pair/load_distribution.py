@@ -47,7 +47,7 @@ _ALSO_OF = {
 
 @dataclass(frozen=True)
 class LoadDistributionInputs:
-    """What is read of the case beside the loaded flanks.
+    """What is read of the case besides the loaded flanks.
 
     Parameters
     ----------

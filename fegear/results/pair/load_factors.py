@@ -1,4 +1,4 @@
-"""Stage ``flank-load-factors``: K_Halpha, K_Fbeta, K_Falpha of solved flanks, with ISO 6336-1's factors beside them."""
+"""Stage ``flank-load-factors``: K_Halpha, K_Fbeta, K_Falpha of solved flanks, compared with ISO 6336-1's factors."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class Kind:
     effects : tuple of str
         That change them.
     check : callable
-        What results of such a pair refuse beside what its maker refuses.
+        What results of such a pair refuse besides what its maker refuses.
     solutions : callable
         Gears to the tasks that solve them.
     """

@@ -1,4 +1,4 @@
-"""Mark's way to the transmission error beside the exact one: series, closed forms of spacing errors, what they miss."""
+"""Mark's transmission error compared with the exact one: series, closed forms of spacing errors, what they miss."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class MarkData:
 
 
 def mark_data(pair: LoadedPair, terms: int) -> MarkData:
-    """Compute the series beside the exact transmission error of plane teeth under their nominal load."""
+    """Compute the series compared with the exact transmission error of plane teeth under their nominal load."""
     from dataclasses import replace
 
     from fegear.contact.plane.mark_series import spacing_series, static_error_series

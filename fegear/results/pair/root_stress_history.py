@@ -186,7 +186,7 @@ _FORMULA_SECONDS = {"cornell-trochoid": 0.2, "heywood": 0.15, "agma-908": 0.12, 
 
 
 def stress_sources(scene: Scene, pair: str) -> tuple[str, ...]:
-    """Names of a pair's sources of root stress; the first is the result, the others stand beside it."""
+    """Names of a pair's sources of root stress; the first is the result, the others are compared with it."""
     return scene.case.pair[pair].root_stress.source
 
 

@@ -298,7 +298,7 @@ _STEP = 0.019
 
 @dataclass(frozen=True)
 class MeshInputs:
-    """What these stages read of the case beside the loaded pair.
+    """What these stages read of the case besides the loaded pair.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ _REACH = 3
 
 @dataclass(frozen=True)
 class PairInputs:
-    """What stress inside the teeth of a pair depends on beside that of its gears."""
+    """What stress inside the teeth of a pair depends on besides that of its gears."""
 
     pair: GearPair
     face_width: float

@@ -64,7 +64,7 @@ class TransmissionErrorData:
 
 @dataclass(frozen=True)
 class TransmissionErrorInputs:
-    """What is read of the case beside the loaded pair."""
+    """What is read of the case besides the loaded pair."""
 
     part: TransmissionErrorPart
     name: str = field(compare=False)

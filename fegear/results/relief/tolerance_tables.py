@@ -67,7 +67,7 @@ _TOLD = (
 
 
 def told(data: ToleranceData) -> tuple[str, ...]:
-    """Outcomes of a pair that are given beside its tables."""
+    """Outcomes of a pair that are given in addition to its tables."""
     return tuple(name for name in _TOLD if name in data.outcomes)
 
 

@@ -104,7 +104,7 @@ def _present(found: SweepData, asked: SweepInputs) -> Outcome:
 
 
 def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
-    """What is to be known of motions that do not repeat, of those that grow, and of stable ones beside them."""
+    """What is to be known of motions that do not repeat, of those that grow, and of stable ones with them."""
 
     def rpm(state: SteadyState) -> str:
         return f"{state.model.speed * data.speed_ratio * _RPM:.6g} rpm"

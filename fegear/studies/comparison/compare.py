@@ -2,7 +2,7 @@
 
 Where two cases differ: in what they mean, not in how it is written.
 
-Single values of two runs beside each other.
+Single values of two runs, compared.
 
 One side of a comparison, from a run in memory; `fegear.output.comparison` reads one from a folder.
 """

@@ -139,7 +139,7 @@ def _edge_groups(ladder: Ladder) -> Iterable[list[Configuration]]:
 _EVEN = (8, 13, 21, 34, 55, 89, 144, 233, 377, 610)
 
 
-#: Placements of evenly spaced positions beside the jumps: a single one may be lucky.
+#: Placements of evenly spaced positions in addition to the jumps: a single one may be lucky.
 _PLACEMENTS = 8
 
 
@@ -221,7 +221,7 @@ def _counted(
 
 
 def _error_knobs(engagement: Engagement, load: float) -> list[Knob]:
-    """Transmission error and mesh stiffness: evenly spaced positions beside Gauss points between the jumps."""
+    """Transmission error and mesh stiffness: evenly spaced positions compared with Gauss points between the jumps."""
     best = transmission_error(engagement, load, HARMONICS, order=_ALL_GAUSS)
     stiffness = _stiffness(best)
     second = transmission_error(engagement, load, HARMONICS, order=_ALL_GAUSS // 2)

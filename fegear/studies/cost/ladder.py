@@ -233,7 +233,7 @@ BODIES = {"thin-slices": "thin slices", "coupled-slices": "coupled slices", "sol
 
 
 #: Tolerances whose settings are tried, the last without neighbours and slices with other panels, too; that of the
-#: reference, and by how much the check beside it is coarser.
+#: reference, and by how much the check of it is coarser.
 _WIDE_TOLERANCES, _REFERENCE, _WIDE_CHECK = (1e-1, 3e-2, 1e-2), 3e-3, 1.35
 
 

@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 _REFERENCE_ORDER = 48
 
 
-#: The check beside the reference loads the mesh with a pressure so much wider.
+#: The check of the reference loads the mesh with a pressure so much wider.
 _WIDER = 1.25
 
 
