@@ -244,6 +244,7 @@ def set_teeth(case: Case, part: PlanetaryPart) -> SetTeeth:
 
 
 Mesh = Literal["sun", "ring"]
+MESHES: tuple[Mesh, Mesh] = ("sun", "ring")
 
 
 def set_pair(name: str, mesh: Mesh) -> str:

@@ -124,6 +124,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     "Planetary sets": (
         Entry("planet-set", "planetary.planet_set.PLANET_SET", "Planetary set", ("planet-set",),
               "speeds, torques, frequencies and mesh phases of a planetary set, and what phasing cancels"),
+        Entry("set-cycle", "planetary.planet_load_sharing.SET_CYCLE", "Meshes of a planetary set over their cycle"),
         Entry("meshed-set", "planetary.planet_load_sharing.MESHED_SET", "Teeth of a planetary set"),
         Entry("planet-load-sharing", "planetary.planet_load_sharing.PLANET_LOAD_SHARING",
               "Load sharing of planets", ("planet-load-sharing",),

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.dynamics.planetary.phases import mesh_phases
-from fegear.dynamics.planetary.planet_loads import MeshedSet
 from fegear.dynamics.planetary.planet_set import Central, PlanetarySet, even_angles
+from fegear.dynamics.planetary.set_cycle import MeshedSet
 from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic

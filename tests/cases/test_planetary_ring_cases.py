@@ -54,14 +54,16 @@ def test_one_planet_between_rigid_bearings_adds_up_both_transmission_errors(driv
     results = run(input=driving)
     found, phase = of(results, "planet_loads_P"), float(of(results, "planet_phases_P")["gamma_rn"][0])
     phase += next(value.si for value in results.values if value.name == "P.gamma_rs")
-    s = found["s"]
+    s = found["s"] + 1e-7 * np.array([[0.0], [1.0], [-1.0]])
     expected = np.zeros_like(s)
     for mesh, delay in (("sun", 0.0), ("ring", phase)):
         one = of(results, f"transmission_error_P_{mesh}")
         pitch = results.scene.pairs[f"P_{mesh}"].base_pitch
         x, te = np.asarray(one["x"]) * 1e-3 / pitch, np.asarray(one["te"])
         expected += np.interp((s - delay - x[0]) % 1.0 + x[0], np.append(x, x[0] + 1.0), np.append(te, te[0]))
-    assert np.max(np.abs(found["te"] - expected)) < 0.01 * np.ptp(expected)
+    jumps = np.ptp(expected, axis=0) > 0.001 * np.ptp(expected)  # which the table of the pair has at one place
+    assert 0 < np.count_nonzero(jumps) < 0.1 * s.shape[1]
+    assert np.max(np.abs(found["te"] - expected[0])[~jumps]) < 0.003 * np.ptp(expected)
 
 
 def test_a_planet_is_loaded_alike_by_sun_and_ring():

@@ -1,116 +1,34 @@
-"""How the planets of a set share the torque over a mesh cycle: floating members, pin errors, teeth that part.
+"""How the planets of a set share the load over a mesh cycle, quasi-static, and the transmission error of the set.
 
-Statics: every tooth pair is a one-sided spring at its place on the path, each mesh delayed by its phase.
+The meshes are one-sided springs at their places (`set_cycle`), each planet's at its phase; pins and bearings are
+springs, or hold. Pins may stand off their places. Every number knows its error: by that of the teeth's compliances and
+of their law between two forces, to first order, and by the places of the cycle.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.errors import InputError, RangeError
+from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
-from fegear.dynamics.planetary.one_sided import equilibrium
-from fegear.dynamics.planetary.phases import common_parts
+from fegear.dynamics.planetary.one_sided import equilibrium, guarded, spring_forces, tangent
 from fegear.dynamics.planetary.planet_set import CENTRALS
+from fegear.dynamics.planetary.set_cycle import MeshedSet
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Callable
 
     from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.planetary.phases import Phases
     from fegear.dynamics.planetary.planet_set import Central
-    from fegear.dynamics.planetary.set_model import SetModel
-    from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.planetary.set_cycle import SetCycle
 
-#: Gauss points of each piece between break points, and pieces above which two of them do.
-_POINTS, _MANY = 4, 150
-#: Positions between two break points at least, where there are few of them.
-_FINEST = 1.0 / 48.0
-
-
-@dataclass(frozen=True)
-class MeshedSet:
-    """A set with the teeth of its meshes and the torque that it carries.
-
-    Parameters
-    ----------
-    model : SetModel
-    sun, ring : MeshExcitation
-        Teeth of the first planet's meshes, as springs over the base pitch.
-    phases : Phases
-    sun_torque : float
-        Size of the torque on the sun [N m].
-    driving : {"sun", "ring", "carrier"}
-        Whose rotation the transmission error is; the other two do not turn.
-    """
-
-    model: SetModel
-    sun: MeshExcitation
-    ring: MeshExcitation
-    phases: Phases
-    sun_torque: float
-    driving: Central
-
-    def __post_init__(self) -> None:
-        """Refuse teeth that differ from one another, and torques that carry nothing."""
-        if not (math.isfinite(self.sun_torque) and self.sun_torque > 0.0):
-            raise RangeError("torque", self.sun_torque, "must be positive and finite")
-        for name, one in (("sun", self.sun), ("ring", self.ring)):
-            if any(part.pitches != 1 for part in (*one.stiffness, *one.separation)):
-                raise InputError(name, "spacing errors", "are not known to a planetary set: teeth must be alike")
-
-    @property
-    def teeth(self) -> tuple[MeshExcitation, MeshExcitation]:
-        """Of the sun's and of the ring's mesh."""
-        return self.sun, self.ring
-
-    @property
-    def mean_force(self) -> float:
-        """Force in every mesh where all planets carry alike [N]."""
-        return self.sun_torque / (self.model.found.base_radius("sun") * self.model.count)
-
-    @cached_property
-    def delays(self) -> Array:
-        """Of every mesh behind the first planet's with the sun [base pitches], shape (2, planets)."""
-        return self.phases.delays
-
-    def positions(self) -> tuple[Array, Array]:
-        """Gauss points of a mesh cycle and their weights [base pitches], shapes (M,).
-
-        Break points of the teeth are ends of pieces, and the whole grid repeats after the common part of all delays:
-        what the phases cancel then cancels in the sums as well, to round-off.
-        """
-        parts = common_parts(self.model.found)
-        cuts = [np.arange(0.0, 1.0, _FINEST)]
-        for mesh, one in enumerate(self.teeth):
-            own = np.unique(np.concatenate([part.breaks for part in (*one.stiffness, *one.separation)]))
-            cuts.append((own[:, None] + self.delays[mesh]).ravel())
-        first = np.sort(np.concatenate(cuts) % (1.0 / parts))
-        first = first[np.append(True, np.diff(first) > 1e-9)]
-        starts = (first[None, :] + np.arange(parts)[:, None] / parts).ravel()
-        lengths = np.diff(np.append(starts, starts[0] + 1.0))
-        points, weights = np.polynomial.legendre.leggauss(_POINTS if starts.size <= _MANY else 2)
-        s = starts[:, None] + 0.5 * lengths[:, None] * (1.0 + points)
-        return s.ravel(), (0.5 * lengths[:, None] * weights).ravel()
-
-    def springs(self, s: Array) -> tuple[Array, Array, NDArray[np.intp]]:
-        """One-sided springs at places of the cycle: stiffness and separation, shapes (M, springs), mesh and planet.
-
-        The last has shape (springs, 2).
-        """
-        stiffness, separation, owner = [], [], []
-        for mesh, one in enumerate(self.teeth):
-            for n in range(self.model.count):
-                at = s + one.phase - self.delays[mesh, n]
-                stiffness += [part(at) for part in one.stiffness]
-                separation += [part(at) for part in one.separation]
-                owner += [(mesh, n)] * len(one.stiffness)
-        return np.array(stiffness).T, np.array(separation).T, np.array(owner, dtype=np.intp)
+#: Places within a piece at which the polynomial through its points is looked at for its largest value.
+_BETWEEN = np.linspace(-1.0, 1.0, 17)
 
 
 @dataclass(frozen=True)
@@ -119,9 +37,7 @@ class PlanetLoads:
 
     Parameters
     ----------
-    meshed : MeshedSet
-    weights : ndarray, shape (M,)
-        Shares of the cycle that the places stand for.
+    cycle : SetCycle
     mesh_force : ndarray, shape (2, planets, M)
         At sun (0) and ring (1) [N]. Without inertia and friction both are alike.
     pin_force : ndarray, shape (2, planets, M)
@@ -135,21 +51,28 @@ class PlanetLoads:
     te : ndarray, shape (M,)
         How far the driving member turns ahead of the rigid motion, as a length at its base circle (of the carrier: at
         the pins) [m].
+    shifted : tuple of PlanetLoads
+        The same with the teeth off by one of their errors each, to first order.
     """
 
-    meshed: MeshedSet
-    weights: Array
+    cycle: SetCycle
     mesh_force: Array
     pin_force: Array
     member_force: Array
     displacement: Array
     s: Array = shown("", "place in the mesh cycle, in base pitches of the first planet's mesh with the sun")
     te: Array = shown("um", "transmission error of the set: of the driving member, at its base circle or the pins")
+    shifted: tuple[PlanetLoads, ...] = ()
+
+    @property
+    def weights(self) -> Array:
+        """Shares of the cycle that the places stand for, shape (M,)."""
+        return self.cycle.weights
 
     @property
     def mean_force(self) -> float:
         """Force in every mesh where all planets carry alike [N]."""
-        return self.meshed.mean_force
+        return self.cycle.mean_force
 
     @cached_property
     @shows("", "load of each planet over that of an equal share, mean of the cycle")
@@ -168,6 +91,12 @@ class PlanetLoads:
     def largest_share(self) -> float:
         """Its largest value over the cycle."""
         return float(self.mesh_force.max()) / self.mean_force
+
+    @cached_property
+    @shows("N", "largest mesh force over the cycle")
+    def largest_load(self) -> Array:
+        """Shape (planets,)."""
+        return np.asarray(self.mesh_force[0].max(axis=1))
 
     @property
     @shows("um", "transmission error of the set, peak to peak")
@@ -188,16 +117,89 @@ class PlanetLoads:
 
     def harmonics(self, values: Array, orders: Array) -> Complex:
         """Fourier coefficients of something over the cycle, its last axis: sum alpha_l exp(2 pi i l s)."""
+        return self._series(values, orders, self.weights)
+
+    def _series(self, values: Array, orders: Array, weights: Array) -> Complex:
         turn = np.exp(-2j * math.pi * np.outer(self.s, orders))
-        return np.asarray((values * self.weights) @ turn)
+        return np.asarray((values * weights) @ turn)
+
+    def shift(self, answer: Callable[[PlanetLoads], Array | float]) -> Array:
+        """Changes of an answer by the errors of the teeth, added up."""
+        here = np.asarray(answer(self), dtype=float)
+        changes = (np.abs(np.asarray(answer(one), dtype=float) - here) for one in self.shifted)
+        return np.asarray(sum(changes, start=np.zeros_like(here)))
+
+    def mean_error(self, values: Callable[[PlanetLoads], Array]) -> Array:
+        """Estimated error of a mean over the cycle, the last axis of values."""
+        rough = values(self) * (self.weights - self.cycle.coarse)
+        pieces = rough.reshape(*rough.shape[:-1], -1, self.cycle.points).sum(axis=-1)
+        return np.asarray(np.abs(pieces).sum(axis=-1) + self.shift(lambda one: values(one) @ self.weights))
+
+    def peak_error(self, values: Callable[[PlanetLoads], Array]) -> Array:
+        """Estimated error of a largest value over the cycle, the last axis of values."""
+        own = values(self)
+        pieces = own.reshape(*own.shape[:-1], -1, self.cycle.points)
+        nodes = np.linspace(-1.0, 1.0, 3) if self.cycle.points == 3 else _LOBATTO
+        through = _polynomial(nodes, _BETWEEN)
+        # what a piece may hide: beyond its points, and by a kink of which its points do not lie on one parabola
+        parabola = pieces[..., ::2] @ _polynomial(nodes[::2], nodes).T if nodes.size > 3 else pieces
+        least = pieces.max(axis=-1)
+        hidden = np.maximum((pieces @ through.T).max(axis=-1) - least, 0.0)
+        bound = least + hidden + np.abs(pieces - parabola).max(axis=-1)
+        return np.asarray(bound.max(axis=-1) - own.max(axis=-1) + self.shift(lambda one: values(one).max(axis=-1)))
+
+    def harmonics_error(self, values: Callable[[PlanetLoads], Array], orders: Array) -> Array:
+        """Estimated error of the size of Fourier coefficients, shape of `harmonics`."""
+        rough = np.abs(self._series(values(self), orders, self.weights - self.cycle.coarse))
+        return np.asarray(rough + self.shift(lambda one: np.abs(one.harmonics(values(one), orders))))
+
+    @property
+    def shares_error(self) -> Array:
+        """Of `shares`, shape (planets,)."""
+        return self.mean_error(lambda one: one.mesh_force[0]) / self.mean_force
+
+    @property
+    def mesh_load_factor_error(self) -> float:
+        """Of K_gamma."""
+        return float(self.shares_error.max())
+
+    @property
+    def largest_load_error(self) -> Array:
+        """Of `largest_load` [N], shape (planets,)."""
+        return self.peak_error(lambda one: one.mesh_force[0])
+
+    @property
+    def largest_share_error(self) -> float:
+        """Of `largest_share`."""
+        return float(self.peak_error(lambda one: one.mesh_force).max()) / self.mean_force
+
+    @property
+    def te_mean_error(self) -> float:
+        """Of `te_mean` [m]."""
+        return float(self.mean_error(lambda one: one.te))
+
+    @property
+    def te_peak_to_peak_error(self) -> float:
+        """Of `te_peak_to_peak` [m]: what its ends hide, and its changes by the errors of the teeth."""
+        ends = [self.peak_error(lambda one, sign=sign: sign * one.te) for sign in (1.0, -1.0)]  # type: ignore[misc]
+        teeth = [self.shift(lambda one, sign=sign: (sign * one.te).max()) for sign in (1.0, -1.0)]  # type: ignore[misc]
+        return float(sum(ends) - sum(teeth) + self.shift(lambda one: one.te_peak_to_peak))
 
 
-def planet_loads(meshed: MeshedSet, pin_errors: Array | None = None) -> PlanetLoads:
+def _polynomial(nodes: Array, at: Array) -> Array:
+    """Values of Lagrange's polynomials of nodes, shape (at, nodes)."""
+    return np.asarray(np.vander(at, nodes.size) @ np.linalg.inv(np.vander(nodes, nodes.size)))
+
+
+_LOBATTO = np.array([-1.0, -math.sqrt(3.0 / 7.0), 0.0, math.sqrt(3.0 / 7.0), 1.0])
+
+
+def planet_loads(teeth: MeshedSet | SetCycle, pin_errors: Array | None = None) -> PlanetLoads:
     """Equilibrium of a set over a mesh cycle.
 
     Parameters
     ----------
-    meshed : MeshedSet
+    teeth : MeshedSet or SetCycle
     pin_errors : ndarray, shape (2, planets), optional
         How far each pin stands from its place, radially outward and counter-clockwise [m].
 
@@ -206,28 +208,53 @@ def planet_loads(meshed: MeshedSet, pin_errors: Array | None = None) -> PlanetLo
     ConvergenceError
         If the planets find no equilibrium.
     """
-    model = meshed.model
-    sense = -1.0 if model.mirrored else 1.0
+    cycle = teeth.cycle if isinstance(teeth, MeshedSet) else teeth
+    model = cycle.model
     errors = np.zeros((2, model.count)) if pin_errors is None else np.array(pin_errors, dtype=float)
     if errors.shape != (2, model.count):
         raise InputError("pin_errors", errors.shape, f"must be {model.count} radial and {model.count} tangential ones")
-    errors[1] *= sense
-    free = model.freed(member for member in CENTRALS if member != meshed.driving)
+    errors[1] *= -1.0 if model.mirrored else 1.0
+    free = model.freed(member for member in CENTRALS if member != cycle.driving)
     start = model.with_pin_errors(errors)
-    s, weights = meshed.positions()
-    stiffness, separation, owner = meshed.springs(s)
-    rows = model.mesh_rows[owner[:, 0], owner[:, 1]]
-    load = model.torque_load(meshed.sun_torque)
-    pins = model.pin_rows.reshape(-1, model.size)
+    rows = model.mesh_rows.reshape(-1, model.size)
+    load = model.torque_load(cycle.sun_torque)
     if math.isfinite(model.planet.pin):
-        load = load - model.planet.pin * errors.ravel() @ pins
-    z = equilibrium(
-        free.T @ model.held_stiffness() @ free, rows @ free, stiffness, separation - rows @ start, load @ free
+        load = load - model.planet.pin * errors.ravel() @ model.pin_rows.reshape(-1, model.size)
+    linear, bearing_rows = free.T @ model.held_stiffness() @ free, rows @ free
+    separation = cycle.separation - (rows @ start)[:, None]
+    z = equilibrium(linear, bearing_rows, cycle.stiffness, separation, load @ free)
+    force, bearing = spring_forces(z @ bearing_rows.T, cycle.stiffness, separation)
+    found = _put_together(cycle, start + z @ free.T, force)
+    off = _off(cycle, force)
+    # k (row dq - d) at every mesh, in balance with what always bears
+    known = np.einsum("kmr,mr,ri->mik", off, bearing, bearing_rows, optimize=True)
+    stiff = tangent(linear, bearing_rows, bearing) + guarded(linear, cycle.stiffness)
+    moved = np.linalg.solve(stiff, known).transpose(2, 0, 1)
+    changed = bearing * (moved @ bearing_rows.T - off)
+    shifted = tuple(
+        _put_together(cycle, start + (z + dz) @ free.T, force + df) for dz, df in zip(moved, changed, strict=True)
     )
-    q = start + z @ free.T
-    force = stiffness * np.maximum(q @ rows.T - separation, 0.0)
-    mesh = np.zeros((2, model.count, s.size))
-    np.add.at(mesh, (owner[:, 0], owner[:, 1]), force.T)
+    return replace(found, shifted=shifted)
+
+
+def _off(cycle: SetCycle, force: Array) -> Array:
+    """Changes of the approach of each mesh by each error [m], shape (K, M, 2N); the last is the law's between forces.
+
+    Errors of compliances grow with the force.
+    """
+    level = np.hstack([cycle.level, np.full((len(cycle.level), 1), np.inf)])
+    at = np.maximum((force[..., None] > level).sum(axis=2) - 1, 0)
+    own = np.arange(force.shape[1])
+    share = (force - level[own, at]) / (level[own, at + 1] - level[own, at])
+    bent = 4.0 * share * (1.0 - share) * np.take_along_axis(cycle.bent, at[..., None], 2)[..., 0]
+    return np.concatenate([cycle.off * (force / cycle.mean_force), bent[None]])
+
+
+def _put_together(cycle: SetCycle, q: Array, force: Array) -> PlanetLoads:
+    """Forces on planets and members of coordinates and forces in the meshes, shapes (M, size) and (M, 2N)."""
+    model = cycle.model
+    sense = -1.0 if model.mirrored else 1.0
+    mesh = force.T.reshape(2, model.count, -1).copy()
     # a planet is held by its pin against both meshes
     pushed = np.einsum("anm,ani->mi", mesh, model.mesh_rows)
     planets = pushed[:, 9:].reshape(-1, model.count, 3)[:, :, :2].transpose(2, 1, 0).copy()
@@ -237,10 +264,9 @@ def planet_loads(meshed: MeshedSet, pin_errors: Array | None = None) -> PlanetLo
     forces = np.concatenate([members, carrier[None]])
     for one in (planets, forces.swapaxes(0, 1), moved.swapaxes(0, 1)):
         one[1] *= sense
-    driven = q[:, 3 * CENTRALS.index(meshed.driving) + 2]
-    return PlanetLoads(
-        meshed, weights, mesh, planets, forces, moved, s, driven * (-1.0 if meshed.driving == "carrier" else 1.0)
-    )
+    driven = q[:, 3 * CENTRALS.index(cycle.driving) + 2]
+    te = driven * (-1.0 if cycle.driving == "carrier" else 1.0)
+    return PlanetLoads(cycle, mesh, planets, forces, moved, cycle.s, te)
 
 
 def force_on(loads: PlanetLoads, member: Central) -> Array:

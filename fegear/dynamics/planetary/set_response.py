@@ -6,7 +6,7 @@ Linear, with mean mesh stiffnesses: all fluctuation of the teeth stands in their
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,11 +18,13 @@ from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.dynamics.planetary.set_modes import set_modes
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.planetary.planet_loads import MeshedSet
     from fegear.dynamics.planetary.planet_set import Central
+    from fegear.dynamics.planetary.set_cycle import MeshedSet
     from fegear.dynamics.planetary.set_modes import SetModes
 
 #: Places of the cycle at which harmonics are added up for their largest value.
@@ -41,8 +43,13 @@ class LinearSet:
     modes : SetModes
     damping_ratio : float
         Of every mode.
-    error : ndarray, complex, shape (2, planets, harmonics)
-        Harmonics 1.. of each mesh's static transmission error under the mean force, with its phase [m].
+    error : ndarray, complex, shape (2, planets, 2 harmonics)
+        Harmonics 1.. of each mesh's static transmission error under the mean force, with its phase [m]: those that
+        count, and as many again that tell what is missing.
+    stiffness_error : (float, float)
+        Estimated errors of the stiffnesses, as shares of them.
+    amplitude_error : ndarray, shape (2, 2 harmonics)
+        Of the amplitudes, as shares of them.
     """
 
     meshed: MeshedSet
@@ -50,10 +57,52 @@ class LinearSet:
     modes: SetModes
     damping_ratio: float
     error: Complex
+    stiffness_error: tuple[float, float] = (0.0, 0.0)
+    amplitude_error: Array = field(default_factory=lambda: np.zeros((2, 1)))
+
+    @property
+    def harmonics(self) -> int:
+        """Those that count."""
+        return self.error.shape[2] // 2
+
+    @cached_property
+    @shows("Hz", "estimated error of the natural frequency, by that of the mesh stiffnesses", name="frequency_error")
+    def frequency_error(self) -> Array:
+        """By Rayleigh's quotient: half of each mesh's share of the strain energy, shape (modes,) [Hz]."""
+        of_sun, of_ring = self.stiffness_error
+        modes = self.modes
+        return np.asarray(0.5 * modes.frequency * (modes.sun_mesh * of_sun + modes.ring_mesh * of_ring))
+
+    @cached_property
+    def shifted(self) -> tuple[LinearSet, ...]:
+        """The same with the stiffness of each mesh, and with the amplitudes of each, off by their error."""
+        found = []
+        for mesh, off in enumerate(self.stiffness_error):
+            sun, ring = (k * (1.0 + off) if mesh == i else k for i, k in enumerate(self.stiffness))
+            if off:
+                found.append(replace(self, stiffness=(sun, ring), modes=set_modes(self.meshed.model, sun, ring)))
+        for mesh, amplitude in enumerate(self.amplitude_error):
+            if amplitude.any():
+                error = self.error.copy()
+                error[mesh] *= 1.0 + amplitude
+                found.append(replace(self, error=error))
+        return tuple(found)
 
 
-def linear_set(meshed: MeshedSet, damping_ratio: float, harmonics: int) -> LinearSet:
+def linear_set(
+    meshed: MeshedSet, damping_ratio: float, harmonics: int,
+    exactness: tuple[tuple[float, Array], tuple[float, Array]] | None = None,
+) -> LinearSet:  # fmt: skip
     """The set about its mean load.
+
+    Parameters
+    ----------
+    meshed : MeshedSet
+    damping_ratio : float
+    harmonics : int
+        Of the mesh frequency that count.
+    exactness : pair of (float, ndarray of shape (2 harmonics,)), optional
+        Estimated errors of the stiffness of each mesh and of the amplitudes of its transmission error, as shares.
 
     Raises
     ------
@@ -62,14 +111,18 @@ def linear_set(meshed: MeshedSet, damping_ratio: float, harmonics: int) -> Linea
     """
     if not 0.0 <= damping_ratio < 1.0:
         raise RangeError("damping_ratio", damping_ratio, "must lie in [0, 1)")
-    order = np.arange(1, harmonics + 1)
+    order = np.arange(1, 2 * harmonics + 1)
     stiffness, error = [], []
     for one, delay in zip(meshed.teeth, meshed.delays, strict=True):
         compliance, fluctuation = one.linearised(meshed.mean_force)
         stiffness.append(1.0 / compliance)
         error.append(fluctuation.fourier(order) * np.exp(2j * math.pi * order * (one.phase - delay[:, None])))
     modes = set_modes(meshed.model, stiffness[0], stiffness[1])
-    return LinearSet(meshed, (stiffness[0], stiffness[1]), modes, damping_ratio, np.array(error))
+    found = LinearSet(meshed, (stiffness[0], stiffness[1]), modes, damping_ratio, np.array(error))
+    if exactness is None:
+        return found
+    (sun, of_sun), (ring, of_ring) = exactness
+    return replace(found, stiffness_error=(sun, ring), amplitude_error=np.array([of_sun, of_ring]))
 
 
 @dataclass(frozen=True)
@@ -85,12 +138,20 @@ class ForcedResponse:
     mean_force : float
         In every mesh [N].
     mesh_frequency : ndarray, shape (speeds,)
+    others : tuple of ForcedResponse
+        The same with the teeth off by one of their errors each, and with twice as many harmonics.
     """
 
     coordinate: Complex
     dynamic: Complex
     mean_force: float
     mesh_frequency: Array = shown("Hz", "mesh frequency at which the set runs")
+    others: tuple[ForcedResponse, ...] = ()
+
+    def shift(self, answer: Callable[[ForcedResponse], Array]) -> Array:
+        """Estimated error of an answer: its changes by the errors of the teeth and by harmonics that are missing."""
+        here = answer(self)
+        return np.asarray(sum((np.abs(answer(one) - here) for one in self.others), start=np.zeros_like(here)))
 
     @cached_property
     def _force(self) -> Array:
@@ -110,6 +171,12 @@ class ForcedResponse:
     def ring_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force[:, 1].max(axis=1))
+
+    @property
+    @shows("N", "largest dynamic force in a mesh, over the mean force")
+    def largest_force(self) -> Array:
+        """Shape (speeds,)."""
+        return np.asarray(self._force.max(axis=(1, 2)))
 
     @property
     @shows("", "smallest force in any mesh over the mean force; below zero teeth part, which is neglected")
@@ -144,13 +211,19 @@ def forced_response(linear: LinearSet, mesh_frequency: ArrayLike) -> ForcedRespo
     frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if not np.all(frequency > 0.0):
         raise RangeError("speed", float(frequency.min()), "must be positive", "at standstill the static answer holds")
-    model, modes = linear.meshed.model, linear.modes
-    harmonics = np.arange(1, linear.error.shape[2] + 1)
+    own = _response(linear, frequency, linear.harmonics)
+    others = [_response(one, frequency, linear.harmonics) for one in linear.shifted]
+    return replace(own, others=(*others, _response(linear, frequency, 2 * linear.harmonics)))
+
+
+def _response(linear: LinearSet, frequency: Array, count: int) -> ForcedResponse:
+    model, modes, error = linear.meshed.model, linear.modes, linear.error[..., :count]
+    harmonics = np.arange(1, count + 1)
     omega = 2.0 * math.pi * frequency[:, None] * harmonics  # (speeds, harmonics)
     natural = 2.0 * math.pi * modes.frequency
     stiffness = np.array(linear.stiffness)
     approach = model.mesh_rows @ modes.shapes  # (2, planets, modes)
-    force = np.einsum("a,anl,anj->lj", stiffness, linear.error, approach)
+    force = np.einsum("a,anl,anj->lj", stiffness, error, approach)
     dynamic_stiffness = natural**2 - omega[..., None] ** 2 + 2j * linear.damping_ratio * natural * omega[..., None]
     if np.any(np.abs(dynamic_stiffness) <= 1e-12 * np.maximum(natural**2, omega[..., None] ** 2)):
         raise RangeError(
@@ -158,6 +231,6 @@ def forced_response(linear: LinearSet, mesh_frequency: ArrayLike) -> ForcedRespo
             "give damping_ratio or leave this speed out",
         )  # fmt: skip
     modal = force / dynamic_stiffness
-    relative = np.einsum("anj,wlj->wlan", approach, modal) - linear.error.transpose(2, 0, 1)
+    relative = np.einsum("anj,wlj->wlan", approach, modal) - error.transpose(2, 0, 1)
     dynamic = stiffness[:, None] * relative
     return ForcedResponse(modal @ modes.shapes.T, dynamic, linear.meshed.mean_force, frequency)

@@ -1,4 +1,7 @@
-"""Stages ``meshed-set`` and ``planet-load-sharing``: the teeth of a set, and how its planets share the torque."""
+"""Stages ``set-cycle`` and ``planet-load-sharing``: the teeth of a set, and how its planets share the torque.
+
+Stage ``meshed-set`` has the same teeth as springs for motion: linear about an equal share.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,14 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
 from fegear.case.effects import PLANE_EFFECTS
-from fegear.case.planetary import set_pair
-from fegear.dynamics.planetary.planet_loads import MeshedSet, force_on, planet_loads
+from fegear.case.planetary import MESHES, set_pair
+from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
+from fegear.dynamics.planetary.phases import phasing
+from fegear.dynamics.planetary.planet_loads import force_on, planet_loads
 from fegear.dynamics.planetary.planet_set import CENTRALS
+from fegear.dynamics.planetary.set_cycle import MeshedSet, mean_force, set_cycle
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_of, curve_of, value_of
+from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.outcome import Outcome
@@ -25,16 +31,21 @@ from fegear.results.pair.loaded_teeth import loaded_pair
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fegear.base.arrays import Array
     from fegear.case.built.planetary import SetInputs
     from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
+    from fegear.dynamics.planetary.phases import Phasing
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
+    from fegear.dynamics.planetary.planet_set import Central
+    from fegear.dynamics.planetary.set_cycle import MeshTeeth, SetCycle
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.engine.stage import Upstream, Work
 
-#: Springs of the sun's mesh [s], and the equilibrium over the cycle.
-_TEETH, _LOADS = 0.6, 0.03
+#: Springs of the sun's mesh [s], the laws of both meshes, and the equilibrium over the cycle.
+_TEETH, _LAWS, _LOADS = 0.6, 0.3, 0.05
 #: A force or an error of a smaller share of the mean force, or of the largest error, is none.
 _ROUND_OFF = 1e-10
 
@@ -52,11 +63,12 @@ def meshed_set(upstream: Upstream, name: str) -> MeshedSet:
 def _solved(scene: Scene, name: str) -> tuple[Mesh, ...]:
     """Meshes of a set whose teeth are solved: those of gears of the case without a given stiffness."""
     part = planetary_part(scene, name)
-    meshes: tuple[Mesh, ...] = ("sun", "ring") if part.ring is not None else ("sun",)
+    meshes: tuple[Mesh, ...] = MESHES if part.ring is not None else ("sun",)
     return tuple(mesh for mesh in meshes if getattr(part.stiffness, f"{mesh}_mesh") is None)
 
 
-def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The loaded pairs of its solved meshes."""
     return tuple(Task("loaded-pair", set_pair(name, mesh)) for mesh in _solved(scene, name))
 
 
@@ -76,10 +88,46 @@ def _check(scene: Scene, name: str) -> None:
             )  # fmt: skip
 
 
+def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
+    load = mean_force(asked.model, asked.sun_torque)
+
+    def teeth(mesh: Mesh) -> MeshTeeth:
+        given = asked.given[mesh]
+        if given is not None:
+            return SlotSprings(given_teeth(given))
+        pair = loaded_pair(upstream, set_pair(asked.name, mesh))
+        return LawSprings(pair.engagement, pair.shifted, load, asked.model.count)
+
+    return set_cycle(asked.model, (teeth("sun"), teeth("ring")), asked.phases, asked.sun_torque, asked.run.input)
+
+
+def _present_cycle(data: SetCycle, asked: SetInputs) -> Outcome:
+    said = []
+    if asked.given["ring"] is not None:
+        said.append(f"Set {asked.name}: the mesh stiffness of planet and ring is the given one.")
+    if asked.run.mesh_efficiency < 1.0:
+        said.append(f"Set {asked.name}: planets share the torque without friction.")
+    return Outcome(data, remarks=tuple(said))
+
+
+SET_CYCLE = Stage(
+    subjects=planetary_sets,
+    needs=needs_teeth,
+    inputs=set_inputs,
+    compute=_cycle,
+    present=_present_cycle,
+    check=_check,
+    effects=PLANE_EFFECTS,
+    cites=citing(Citation("mark", "load sharing of coupled tooth pairs", "App. A")),
+    forecast=lambda _scene, _name: forecasts.constant(_LAWS),
+    internal=True,
+)
+
+
 def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
-    force = asked.sun_torque / (asked.found.base_radius("sun") * asked.found.count)
+    force = mean_force(asked.model, asked.sun_torque)
 
     def teeth(mesh: Mesh) -> MeshExcitation:
         given = asked.given[mesh]
@@ -91,20 +139,14 @@ def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
 
 
 def _present_meshed(data: MeshedSet, asked: SetInputs) -> Outcome:
-    said = []
-    solved = [one for mesh, one in zip(("sun", "ring"), data.teeth, strict=True) if asked.given[mesh] is None]
-    if any(not one.slotted for one in solved):
-        said.append(f"Set {asked.name}: coupled teeth and contacts off the path are linear about an equal share.")
-    if asked.given["ring"] is not None:
-        said.append(f"Set {asked.name}: the mesh stiffness of planet and ring is the given one.")
-    if asked.run.mesh_efficiency < 1.0:
-        said.append(f"Set {asked.name}: planets share the torque without friction.")
-    return Outcome(data, remarks=tuple(said))
+    solved = [one for mesh, one in zip(MESHES, data.teeth, strict=True) if asked.given[mesh] is None]
+    said = f"Set {asked.name}: for vibration, coupled teeth and contacts off the path are linear about an equal share."
+    return Outcome(data, remarks=(said,) if any(not one.slotted for one in solved) else ())
 
 
 MESHED_SET = Stage(
     subjects=planetary_sets,
-    needs=_needs,
+    needs=needs_teeth,
     inputs=set_inputs,
     compute=_meshed,
     present=_present_meshed,
@@ -124,56 +166,86 @@ class LoadInputs:
     ----------
     errors : ndarray, shape (2, planets)
         Of the pins, radial and counter-clockwise [m].
-    harmonics : int
+    phasing : Phasing
+        What the phases of the meshes cancel.
     name : str
     """
 
     errors: Array
-    harmonics: int
+    phasing: Phasing
     name: str
 
 
 def _load_inputs(scene: Scene, name: str) -> LoadInputs:
     part = planetary_part(scene, name)
-    return LoadInputs(pin_errors(part), part.harmonics, name)
+    return LoadInputs(pin_errors(part), phasing(set_inputs(scene, name).found, part.harmonics), name)
 
 
 def _compute(inputs: LoadInputs, upstream: Upstream, _work: Work) -> PlanetLoads:
-    return planet_loads(meshed_set(upstream, inputs.name), inputs.errors)
+    return planet_loads(cast("SetCycle", upstream[Task("set-cycle", inputs.name)]), inputs.errors)
 
 
 def _tables(data: PlanetLoads, inputs: LoadInputs) -> tuple[Table, ...]:
     name, count = inputs.name, data.mesh_force.shape[1]
-    order = np.arange(1.0, inputs.harmonics + 1.0)
-    over = [*columns_of(data, "s", "te")]
-    over += [Column(f"load_{n + 1}", data.mesh_force[0, n], "N", "in the meshes of this planet, along the line of "
-                    "action") for n in range(count)]  # fmt: skip
+    known = bool(data.cycle.off.size)
+
+    def with_error(column: Column, error: Array) -> tuple[Column, ...]:
+        return column, error_column(column, error)
+
+    def over(column: Column, answer: Callable[[PlanetLoads], Array]) -> tuple[Column, ...]:
+        return with_error(column, data.shift(answer)) if known else (column,)
+
+    cycle = [*columns_of(data, "s"), *over(column_of(data, "te"), lambda one: one.te)]
+    for n in range(count):
+        load = Column(f"load_{n + 1}", data.mesh_force[0, n], "N", "in the meshes of this planet, along the line of "
+                      "action")  # fmt: skip
+        cycle += over(load, lambda one, n=n: one.mesh_force[0, n])  # type: ignore[misc]
     pins = data.pin_force @ data.weights
     pins = np.where(np.abs(pins) < _ROUND_OFF * data.mean_force, 0.0, pins)
+    of_pins = data.mean_error(lambda one: one.pin_force)
     shares = (
         Column("planet", np.arange(1, count + 1), "", "counter-clockwise"),
         Column("tangential_error", inputs.errors[1], "um", "of its pin, counter-clockwise"),
         Column("radial_error", inputs.errors[0], "um", "of its pin, outward"),
-        *columns_of(data, "shares"),
-        Column("largest_load", data.mesh_force[0].max(axis=1), "N", "largest mesh force over the cycle"),
+        *with_error(column_of(data, "shares"), data.shares_error),
+        *with_error(column_of(data, "largest_load"), data.largest_load_error),
         Column("apart_sun", data.lifted[0], "", "share of the cycle without contact with the sun"),
         Column("apart_ring", data.lifted[1], "", "share of the cycle without contact with the ring"),
-        Column("pin_radial", pins[0], "N", "mean force of the pin on the planet, outward"),
-        Column("pin_tangential", pins[1], "N", "mean force of the pin on the planet, counter-clockwise"),
+        *with_error(Column("pin_radial", pins[0], "N", "mean force of the pin on the planet, outward"), of_pins[0]),
+        *with_error(Column("pin_tangential", pins[1], "N", "mean force of the pin on the planet, counter-clockwise"),
+                    of_pins[1]),
+    )  # fmt: skip
+    return (
+        Table(f"planet_loads_{name}", tuple(cycle), f"Loads of the planets of {name} over the mesh cycle"),
+        Table(f"planet_shares_{name}", shares, f"Load sharing of the planets of {name}", printed=True),
+        _forces(data, inputs),
     )
-    forces = [
-        Column("n", order.astype(int), "", "mesh harmonic"),
-        Column("te", _size(data, data.te, order), "um", "0-peak"),
+
+
+def _forces(data: PlanetLoads, inputs: LoadInputs) -> Table:
+    """Harmonics of the transmission error and of the forces on each member, and which of them phasing cancels."""
+    rule = inputs.phasing
+    order = rule.harmonic.astype(float)
+    te = Column("te", _size(data, data.te, order), "um", "0-peak")
+    columns = [
+        Column("n", rule.harmonic, "", "mesh harmonic"),
+        te,
+        error_column(te, 2.0 * data.harmonics_error(lambda one: one.te, order)),
     ]
     for member in CENTRALS:
-        force = np.hypot(*_size(data, force_on(data, member), order))
-        forces.append(Column(f"force_{member}", force, "N", f"on the {member} across the axis, root of the sum of "
-                             "squares of both directions, 0-peak"))  # fmt: skip
-    return (
-        Table(f"planet_loads_{name}", tuple(over), f"Loads of the planets of {name} over the mesh cycle"),
-        Table(f"planet_shares_{name}", shares, f"Load sharing of the planets of {name}", printed=True),
-        Table(f"planet_forces_{name}", tuple(forces), f"Harmonics of the transmission error and of forces in {name}"),
-    )
+
+        def force_of(one: PlanetLoads, member: Central = member) -> Array:
+            return force_on(one, member)
+
+        said = f"on the {member} across the axis, root of the sum of squares of both directions, 0-peak"
+        force = Column(f"force_{member}", np.hypot(*_size(data, force_of(data), order)), "N", said)
+        columns += [force, error_column(force, 2.0 * np.hypot(*data.harmonics_error(force_of, order)))]
+    words = {(True, True): "nothing", (False, True): "te", (True, False): "forces", (False, False): "te and forces"}
+    cancelled = [words[t > 0.0, f > 0.0] for t, f in zip(rule.torque, rule.force, strict=True)]
+    said = "what the phases of equal planets cancel: transmission error and torque, forces across the axis, or both"
+    columns.append(Column("cancels", np.array(cancelled), "", said))
+    title = f"Harmonics of the transmission error and of forces in {inputs.name}"
+    return Table(f"planet_forces_{inputs.name}", tuple(columns), title)
 
 
 def _size(data: PlanetLoads, values: Array, order: Array) -> Array:
@@ -185,12 +257,14 @@ def _size(data: PlanetLoads, values: Array, order: Array) -> Array:
 
 def _present(data: PlanetLoads, inputs: LoadInputs) -> Outcome:
     name = inputs.name
-    values = [value_of(data, key, name)
+    values = [value_of(data, key, name, getattr(data, f"{key}_error"))
               for key in ("mesh_load_factor", "largest_share", "te_mean", "te_peak_to_peak")]  # fmt: skip
     said = []
     apart = [f"planet {n + 1} ({share:.0%} of the cycle)" for n, share in enumerate(data.lifted.max(axis=0)) if share]
     if apart:
         said.append(f"Set {name}: without contact: {', '.join(apart)}.")
+    if not data.cycle.off.size:
+        said.append(f"Set {name}: given stiffnesses are taken as exact; errors are those of the places in the cycle.")
     return Outcome(data, _tables(data, inputs), tuple(values), {"positions": int(data.s.size)}, tuple(said),
                    (_over_cycle(name, data), _harmonics(name, data, inputs)))  # fmt: skip
 
@@ -205,7 +279,7 @@ def _over_cycle(name: str, data: PlanetLoads) -> Figure:
     return Figure(
         f"planet_load_sharing_{name}", f"Load sharing of the planets of {name}",
         f"Set {name}: force in the meshes of each planet over a mesh cycle, and the transmission error of the set at "
-        f"its {data.meshed.driving}. K_gamma = {data.mesh_load_factor:.4g}.",
+        f"its {data.cycle.driving}. K_gamma = {data.mesh_load_factor:.4g}.",
         (
             Panel(x, Axis("mesh force", "N", zero=True), curves),
             Panel(x, axis_of(type(data), "te", "transmission error"), (curve_of(data, "s", "te"),)),
@@ -214,7 +288,7 @@ def _over_cycle(name: str, data: PlanetLoads) -> Figure:
 
 
 def _harmonics(name: str, data: PlanetLoads, inputs: LoadInputs) -> Figure:
-    order = np.arange(1.0, inputs.harmonics + 1.0)
+    order = inputs.phasing.harmonic.astype(float)
     bars = tuple(
         Bars(order, np.hypot(*_size(data, force_on(data, member), order)), member, f"series:{k}")
         for k, member in enumerate(CENTRALS)
@@ -233,7 +307,7 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 PLANET_LOAD_SHARING = Stage(
     subjects=planetary_sets,
-    needs=needs_meshed,
+    needs=lambda _scene, name: (Task("set-cycle", name),),
     inputs=_load_inputs,
     compute=_compute,
     present=_present,

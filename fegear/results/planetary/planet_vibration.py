@@ -12,16 +12,18 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.case.built.planetary import check_masses, planetary_part, set_inputs
+from fegear.case.planetary import MESHES, set_pair
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import columns_of
+from fegear.engine.declared import column_of, columns_of, error_column
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
-from fegear.results.planetary.planet_load_sharing import meshed_set, needs_meshed
+from fegear.results.pair.loaded_teeth import loaded_pair
+from fegear.results.planetary.planet_load_sharing import meshed_set, needs_meshed, needs_teeth
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
@@ -68,7 +70,30 @@ def _inputs(scene: Scene, name: str) -> VibrationInputs:
 def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearSet:
     from fegear.dynamics.planetary.set_response import linear_set
 
-    return linear_set(meshed_set(upstream, inputs.name), inputs.damping_ratio, inputs.harmonics)
+    meshed = meshed_set(upstream, inputs.name)
+    sun, ring = (
+        _exactness(upstream, Task("loaded-pair", set_pair(inputs.name, mesh)), meshed.mean_force, 2 * inputs.harmonics)
+        for mesh in MESHES
+    )
+    return linear_set(meshed, inputs.damping_ratio, inputs.harmonics, (sun, ring))
+
+
+def _exactness(upstream: Upstream, task: Task, load: float, harmonics: int) -> tuple[float, Array]:
+    """Errors of a mesh's mean stiffness and of the amplitudes of its transmission error, as shares of them."""
+    from fegear.contact.plane.shifted_compliance import transmission_error_shift
+    from fegear.contact.plane.transmission_error import mean_secant_stiffness, transmission_error
+
+    none = 0.0, np.zeros(harmonics)
+    if task not in upstream:
+        return none
+    pair = loaded_pair(upstream, task.subject)
+    te = transmission_error(pair.engagement, load, harmonics)
+    shift = transmission_error_shift(te, pair.shifted)
+    if shift is None:
+        return none
+    amplitude = te.series.amplitude
+    share = np.divide(shift.amplitude, amplitude, out=np.zeros_like(amplitude), where=amplitude > 0.0)
+    return shift.stiffness / mean_secant_stiffness(te), np.minimum(share, 1.0)
 
 
 def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
@@ -77,13 +102,15 @@ def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
     columns = (
         Column("mode", number, "", "by rising frequency"),
         *columns_of(data, "frequency"),
+        *columns_of(linear, "frequency_error"),
         Column("kind", np.array(data.kind), "", declared(type(data), "kind").meaning),
         Column("speed", data.frequency / inputs.teeth_per_turn * 2.0 * math.pi, "rpm",
                f"of the {inputs.driving}, at which the mesh frequency meets it"),
         *columns_of(data, "turning", "moving", "sun_mesh", "ring_mesh"),
     )  # fmt: skip
     values = tuple(
-        Value(f"{name}.natural_frequency_{k}", float(data.frequency[k]), "Hz", None, f"undamped, {data.kind[k]}")
+        Value(f"{name}.natural_frequency_{k}", float(data.frequency[k]), "Hz", float(linear.frequency_error[k]),
+              f"undamped, {data.kind[k]}")
         for k in number if data.frequency[k] > 0.0
     )  # fmt: skip
     counted = ", ".join(f"{count} of kind {kind}" for kind, count in Counter(data.kind).items())
@@ -115,7 +142,7 @@ def _modes_figure(name: str, data: SetModes) -> Figure:
 
 PLANET_MODES = Stage(
     subjects=planetary_sets,
-    needs=needs_meshed,
+    needs=lambda scene, name: (*needs_meshed(scene, name), *needs_teeth(scene, name)),
     inputs=_inputs,
     compute=_linear,
     present=_present_modes,
@@ -146,27 +173,33 @@ def _vibration(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> Forc
 def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome:
     name = inputs.name
     speed = Column("speed", inputs.speeds, "rpm", f"of the {inputs.driving}")
-    moves = [
-        Column(f"{member}_{word}", data.amplitude(member, axis), "um", "root of the sum of squares of its harmonics, "
-               "0-peak" + ("; at the base circle or the pins" if axis == 2 else ""))
-        for member in CENTRALS for axis, word in enumerate(_ALONG)
-    ]  # fmt: skip
-    columns = (speed, *columns_of(data, "mesh_frequency", "sun_force", "ring_force", "least_share"), *moves)
-    top = int(np.argmax(np.maximum(data.sun_force, data.ring_force)))
+    columns = [speed, *columns_of(data, "mesh_frequency")]
+    for key in ("sun_force", "ring_force", "least_share"):
+        column = column_of(data, key)
+        columns += [column, error_column(column, data.shift(lambda one, key=key: getattr(one, key)))]  # type: ignore[misc]
+    for member in CENTRALS:
+        for axis, word in enumerate(_ALONG):
+            said = "root of the sum of squares of its harmonics, 0-peak" + (
+                "; at the base circle or the pins" if axis == 2 else "")  # fmt: skip
+            column = Column(f"{member}_{word}", data.amplitude(member, axis), "um", said)
+            off = data.shift(lambda one, member=member, axis=axis: one.amplitude(member, axis))  # type: ignore[misc]
+            columns += [column, error_column(column, off)]
+    top = int(np.argmax(data.largest_force))
+    off = data.shift(lambda one: one.largest_force)
     values = (
-        Value(f"{name}.dynamic_force", float(max(data.sun_force[top], data.ring_force[top])), "N", None,
+        Value(f"{name}.dynamic_force", float(data.largest_force[top]), "N", float(off[top]),
               "largest dynamic force in a mesh over all speeds"),
         Value(f"{name}.dynamic_force_speed", float(inputs.speeds[top]), "rpm", None, "speed at which it stands"),
     )  # fmt: skip
-    said = [f"Set {name}: linear about the mean load, all modes damped by {inputs.damping_ratio:.3g} of critical."]
+    remarks = [f"Set {name}: linear about the mean load, all modes damped by {inputs.damping_ratio:.3g} of critical."]
     low = int(np.argmin(data.least_share))
     if data.least_share[low] < 0.0:
-        said.append(
+        remarks.append(
             f"Set {name}: at {inputs.speeds[low] * 30.0 / math.pi:.5g} rpm the linear mesh force falls to "
             f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; planet-motion has it."
         )
-    table = Table(f"planet_vibration_{name}", columns, f"Vibration of set {name} over speed")
-    return Outcome(data, (table,), values, {}, tuple(said), (_figure(name, data, inputs),))
+    table = Table(f"planet_vibration_{name}", tuple(columns), f"Vibration of set {name} over speed")
+    return Outcome(data, (table,), values, {}, tuple(remarks), (_figure(name, data, inputs),))
 
 
 def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:

@@ -138,7 +138,7 @@ class TurningLoads(ReadOnlyArrays):
 def turning_loads(data: PlanetLoads) -> TurningLoads:
     """Loads of the planets in the order of the cycle."""
     order = np.argsort(data.s)
-    return TurningLoads(data.s[order], data.mesh_force[:, :, order], data.meshed.mean_force, data.shares)
+    return TurningLoads(data.s[order], data.mesh_force[:, :, order], data.mean_force, data.shares)
 
 
 def turning_set(scene: Scene, name: str) -> TurningSet:

@@ -1,0 +1,133 @@
+"""How far the teeth of a mesh approach under any force, at places of the base pitch, and how exactly that is known.
+
+The law is solved load sharing: with contact loss of every tooth pair, coupled teeth, corners and Hertzian contact at
+the force that a planet really carries. Between forces at which it is solved it is straight: springs that only push.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.contact.plane.shifted_compliance import solve_again
+from fegear.contact.plane.transmission_error import contact_changes
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.dynamics.train.excitation import MeshExcitation
+
+#: Forces at which a law is solved, over that of an equal share; those above the number of planets are not needed.
+_LEVELS = (0.001, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0, 1.15, 1.35, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 7.0, 10.0, 20.0)
+#: A spring that adds less than this share of the stiffness of all is none.
+_NOTHING = 1e-12
+
+
+class MeshSprings(NamedTuple):
+    """One-sided springs of a mesh at Q places of its base pitch, L of them.
+
+    Attributes
+    ----------
+    stiffness, separation : ndarray, shape (Q, L)
+        [N/m], [m]
+    level : ndarray, shape (L,)
+        Force at which each spring begins to bear, where all places have one [N]; else infinite after the first.
+    off : ndarray, shape (K, Q)
+        How far the approach under the mean force is off by each of K errors [m].
+    bent : ndarray, shape (Q, L)
+        How far the law is off half-way between the force at which a spring begins to bear and that of the next [m].
+    """
+
+    stiffness: Array
+    separation: Array
+    level: Array
+    off: Array
+    bent: Array
+
+
+@dataclass(frozen=True)
+class SlotSprings:
+    """Teeth whose springs are functions of the place: those of `MeshExcitation`, taken as exact."""
+
+    teeth: MeshExcitation
+
+    @property
+    def breaks(self) -> Array:
+        """Places of jumps and kinks [base pitches]."""
+        parts = (*self.teeth.stiffness, *self.teeth.separation)
+        return np.asarray(np.concatenate([part.breaks for part in parts]) - self.teeth.phase)
+
+    def at(self, place: Array) -> MeshSprings:
+        """Springs at places [base pitches from the pitch point], shape (Q,)."""
+        s = place + self.teeth.phase
+        stiffness, separation = (
+            np.array([part(s) for part in parts]).T for parts in (self.teeth.stiffness, self.teeth.separation)
+        )
+        level = np.where(np.arange(stiffness.shape[1]) == 0, 0.0, np.inf)
+        return MeshSprings(stiffness, separation, level, np.zeros((0, place.size)), np.zeros_like(stiffness))
+
+
+@dataclass(frozen=True)
+class LawSprings:
+    """Teeth whose load sharing is solved at every place and for forces up to that of all planets together.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    shifted : tuple of Engagement
+        The same with one compliance each off by its estimated error.
+    load : float
+        Mean mesh force: that of an equal share [N].
+    planets : int
+        Which may all come to rest on one.
+    """
+
+    engagement: Engagement
+    shifted: tuple[Engagement, ...]
+    load: float
+    planets: int
+
+    def __post_init__(self) -> None:
+        """Refuse teeth that differ from one another."""
+        if self.engagement.cycles != 1:
+            raise InputError("spacing_errors", "(given)", "are not known to a planetary set", "give it teeth alike")
+
+    @property
+    def breaks(self) -> Array:
+        """Places where tooth pairs enter, leave, come to bear or let go under the mean force [base pitches]."""
+        pitch = self.engagement.pair.base_pitch
+        return np.array([*self.engagement.breaks, *contact_changes(self.engagement, self.load)]) / pitch
+
+    def at(self, place: Array) -> MeshSprings:
+        """Springs at places [base pitches from the pitch point], shape (Q,)."""
+        few = [one for one in _LEVELS if one <= self.planets] + [one for one in _LEVELS if one > self.planets][:1]
+        force = self.load * np.array(few)
+        grid = self.engagement.grid(place * self.engagement.pair.base_pitch, again=False)
+        state = self.engagement.solve(grid, force)
+        approach, at_mean = state.transmission_error, few.index(1.0)
+        first = approach[:, :1] - force[0] / state.local_stiffness[:, :1]
+        approach, force = np.hstack([first, approach]), np.append(0.0, force)
+        slope = np.diff(force) / np.diff(approach, axis=1)
+        added = np.diff(slope, axis=1, prepend=0.0)
+        added = np.where(added > _NOTHING * slope[:, -1:], added, 0.0)  # teeth never soften: less is round-off
+        mean = state.transmission_error[:, at_mean]
+        alone = self.engagement.solve(grid, force[at_mean + 1 : at_mean + 2])
+        off = [solve_again(other, alone).transmission_error[:, 0] - mean for other in self.shifted]
+        changes = np.array(off).reshape(len(self.shifted), place.size)
+        return MeshSprings(added, approach[:, :-1], force[:-1], changes, _bent(force, approach))
+
+
+def _bent(force: Array, approach: Array) -> Array:
+    """A law's miss between its forces: a quarter of that of the law with every other force, shape (Q, L)."""
+    low, at, high = force[:-2], force[1:-1], force[2:]
+    share = (at - low) / (high - low)
+    chord = approach[:, :-2] * (1.0 - share) + approach[:, 2:] * share
+    # of a parabola the miss goes with the square of the length of the chord
+    curve = np.abs(approach[:, 1:-1] - chord) / ((at - low) * (high - at))
+    length = 0.25 * np.diff(force) ** 2
+    # a tooth pair that comes to bear between two forces bends the law at one end alone: both ends are added
+    own = np.pad(curve, ((0, 0), (1, 0)), mode="edge") + np.pad(curve, ((0, 0), (0, 1)), mode="edge")
+    return np.asarray(own * length)

@@ -1,0 +1,220 @@
+"""The springs of all meshes of a set over its mesh cycle, each mesh at its phase."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.planetary.mesh_law import SlotSprings
+from fegear.dynamics.planetary.phases import common_parts
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.dynamics.planetary.mesh_law import MeshSprings
+    from fegear.dynamics.planetary.phases import Phases
+    from fegear.dynamics.planetary.planet_set import Central
+    from fegear.dynamics.planetary.set_model import SetModel
+    from fegear.dynamics.train.excitation import MeshExcitation
+
+#: Lobatto's rules, with the ends of every piece, and the rule on every other point that tells their error: five points
+#: and three, and of cycles with many pieces three points and two.
+_FIVE = (
+    np.array([-1.0, -math.sqrt(3.0 / 7.0), 0.0, math.sqrt(3.0 / 7.0), 1.0]),
+    np.array([0.1, 49.0 / 90.0, 32.0 / 45.0, 49.0 / 90.0, 0.1]),
+    np.array([1.0, 0.0, 4.0, 0.0, 1.0]) / 3.0,
+)
+_THREE = np.array([-1.0, 0.0, 1.0]), np.array([1.0, 4.0, 1.0]) / 3.0, np.array([1.0, 0.0, 1.0])
+_MANY = 200
+#: Positions between two break points at least, where there are few of them.
+_FINEST = 1.0 / 48.0
+#: Breaks closer than this are one, and ends of pieces stand so far inside them [base pitches].
+_ONE, _INSIDE = 1e-9, 3e-10
+
+
+class MeshTeeth(Protocol):
+    """Teeth of a mesh as springs over the base pitch."""
+
+    @property
+    def breaks(self) -> Array:
+        """Places of jumps and kinks [base pitches]."""
+
+    def at(self, place: Array) -> MeshSprings:
+        """Springs at places [base pitches from the pitch point], shape (Q,)."""
+
+
+@dataclass(frozen=True)
+class SetCycle:
+    """A set, the torque that it carries, and the springs of its meshes at M places of the mesh cycle.
+
+    The meshes stand in the order sun 1, 2, ..., ring 1, 2, ... (2N of them).
+
+    Parameters
+    ----------
+    model : SetModel
+    sun_torque : float
+        Size of the torque on the sun [N m].
+    driving : {"sun", "ring", "carrier"}
+        Whose rotation the transmission error is; the other two do not turn.
+    s : ndarray, shape (M,)
+        Places [base pitches of the first planet's mesh with the sun], piece by piece between break points.
+    weights, coarse : ndarray, shape (M,)
+        Shares of the cycle that the places stand for, and those of every other place.
+    points : int
+        Places of one piece.
+    stiffness, separation, bent : ndarray, shape (M, 2N, L)
+        See `MeshSprings`.
+    level : ndarray, shape (2N, L)
+        See `MeshSprings`.
+    off : ndarray, shape (K, M, 2N)
+        How far the approach of each mesh under the mean force is off by each of K errors [m].
+    """
+
+    model: SetModel
+    sun_torque: float
+    driving: Central
+    s: Array
+    weights: Array
+    coarse: Array
+    points: int
+    stiffness: Array
+    separation: Array
+    bent: Array
+    level: Array
+    off: Array
+
+    @property
+    def mean_force(self) -> float:
+        """Force in every mesh where all planets carry alike [N]."""
+        return mean_force(self.model, self.sun_torque)
+
+
+def mean_force(model: SetModel, sun_torque: float) -> float:
+    """Force in every mesh where all planets carry alike [N]."""
+    return sun_torque / (model.found.base_radius("sun") * model.count)
+
+
+def set_cycle(
+    model: SetModel, teeth: tuple[MeshTeeth, MeshTeeth], phases: Phases, sun_torque: float, driving: Central
+) -> SetCycle:
+    """Springs of a set over its mesh cycle.
+
+    Parameters
+    ----------
+    model : SetModel
+    teeth : (MeshTeeth, MeshTeeth)
+        Of the first planet's meshes with sun and ring.
+    phases : Phases
+    sun_torque : float
+        Size of the torque on the sun [N m].
+    driving : {"sun", "ring", "carrier"}
+
+    Raises
+    ------
+    RangeError
+        If the torque carries nothing.
+    """
+    if not (math.isfinite(sun_torque) and sun_torque > 0.0):
+        raise RangeError("torque", sun_torque, "must be positive and finite")
+    s, weights, coarse = _places(common_parts(model.found), teeth, phases.delays)
+    points, s, weights, coarse = s.shape[1], s.ravel(), weights.ravel(), coarse.ravel()
+    found: list[MeshSprings] = []
+    for one, delays in zip(teeth, phases.delays, strict=True):
+        # planets follow each other by whole parts of the grid: most places are those of another planet as well
+        places = np.round(s - delays[:, None], 12) % 1.0
+        known, back = np.unique(places, return_inverse=True)
+        springs = one.at(known)
+        found += [
+            springs._replace(**{key: getattr(springs, key)[own] for key in ("stiffness", "separation", "bent")},
+                             off=springs.off[:, own])
+            for own in back.reshape(places.shape)
+        ]  # fmt: skip
+    most = max(one.stiffness.shape[1] for one in found)
+    stiffness, separation, bent = (
+        np.stack([np.pad(getattr(one, key), ((0, 0), (0, most - getattr(one, key).shape[1]))) for one in found], axis=1)
+        for key in ("stiffness", "separation", "bent")
+    )
+    level = np.stack([np.pad(one.level, (0, most - one.level.size), constant_values=np.inf) for one in found])
+    count, errors = model.count, [found[0].off.shape[0], found[-1].off.shape[0]]
+    off = np.zeros((sum(errors), s.size, 2 * count))
+    for n, springs in enumerate(found):
+        first = 0 if n < count else errors[0]
+        off[first : first + errors[n // count], :, n] = springs.off
+    return SetCycle(model, sun_torque, driving, s, weights, coarse, points, stiffness, separation, bent, level, off)
+
+
+def _places(parts: int, teeth: tuple[MeshTeeth, MeshTeeth], delays: Array) -> tuple[Array, Array, Array]:
+    """Places of a mesh cycle, their weights and coarser ones [base pitches], shape (pieces, points).
+
+    Break points of the teeth are ends of pieces, and the whole grid repeats after the common part of all delays:
+    what the phases cancel then cancels in the sums as well, to round-off.
+    """
+    cuts = [np.arange(0.0, 1.0, _FINEST)]
+    cuts += [(one.breaks[:, None] + of).ravel() for one, of in zip(teeth, delays, strict=True)]
+    first = np.sort(np.concatenate(cuts) % (1.0 / parts))
+    first = first[np.append(True, np.diff(first) > _ONE)]
+    starts = (first[None, :] + np.arange(parts)[:, None] / parts).ravel()
+    lengths = np.diff(np.append(starts, starts[0] + 1.0))
+    points, weights, coarse = _FIVE if starts.size <= _MANY else _THREE
+    # a jump is seen from both of its sides
+    half = 0.5 * lengths[:, None]
+    inside = half - np.minimum(_INSIDE, 0.1 * half)
+    s = starts[:, None] + half + inside * points
+    return s, half * weights, half * coarse
+
+
+@dataclass(frozen=True)
+class MeshedSet:
+    """A set with the teeth of its meshes as springs over the base pitch, and the torque that it carries.
+
+    Parameters
+    ----------
+    model : SetModel
+    sun, ring : MeshExcitation
+        Teeth of the first planet's meshes.
+    phases : Phases
+    sun_torque : float
+        Size of the torque on the sun [N m].
+    driving : {"sun", "ring", "carrier"}
+        Whose rotation the transmission error is; the other two do not turn.
+    """
+
+    model: SetModel
+    sun: MeshExcitation
+    ring: MeshExcitation
+    phases: Phases
+    sun_torque: float
+    driving: Central
+
+    def __post_init__(self) -> None:
+        """Refuse teeth that differ from one another, and torques that carry nothing."""
+        if not (math.isfinite(self.sun_torque) and self.sun_torque > 0.0):
+            raise RangeError("torque", self.sun_torque, "must be positive and finite")
+        for name, one in (("sun", self.sun), ("ring", self.ring)):
+            if any(part.pitches != 1 for part in (*one.stiffness, *one.separation)):
+                raise InputError(name, "spacing errors", "are not known to a planetary set: teeth must be alike")
+
+    @property
+    def teeth(self) -> tuple[MeshExcitation, MeshExcitation]:
+        """Of the sun's and of the ring's mesh."""
+        return self.sun, self.ring
+
+    @property
+    def mean_force(self) -> float:
+        """Force in every mesh where all planets carry alike [N]."""
+        return mean_force(self.model, self.sun_torque)
+
+    @cached_property
+    def delays(self) -> Array:
+        """Of every mesh behind the first planet's with the sun [base pitches], shape (2, planets)."""
+        return self.phases.delays
+
+    @property
+    def cycle(self) -> SetCycle:
+        """The same at places of the mesh cycle."""
+        teeth = SlotSprings(self.sun), SlotSprings(self.ring)
+        return set_cycle(self.model, teeth, self.phases, self.sun_torque, self.driving)
