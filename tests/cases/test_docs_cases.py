@@ -21,7 +21,8 @@ DOCS = ROOT / "docs"
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
     "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export",
-    "gear-with-its-width", "helical-misalignment", "load-over-the-face", "python", "python-mechanics", "several-meshes",
+    "gear-with-its-width", "helical", "helical-misalignment", "load-over-the-face", "proofs", "python",
+    "python-mechanics", "several-meshes",
     "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table", "sweep-on-a-cluster",
     "sweeps", "tutorial",
     "rate-a-pair", "tolerances", "use-my-own-compliance", "use-my-own-mesh", "validate-root-stress-formula",

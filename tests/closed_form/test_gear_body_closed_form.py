@@ -1,5 +1,6 @@
 """Gears whose teeth stand on rim, web and hub: limits, symmetries and sums that hold whatever the shape."""
 
+import functools
 import math
 from dataclasses import replace
 
@@ -36,6 +37,7 @@ def band(place):
     return bands(9.0, place, place - low, 0.25, after=high - place)
 
 
+@functools.cache  # several tests ask the same gear
 def solved(given, tau=0.0, **more):
     return solve_solid(TOOTH, tau, WIDTH, NU, BORE, COARSE, body=given, **more)
 

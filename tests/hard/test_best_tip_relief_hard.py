@@ -271,7 +271,7 @@ def scaled(e, load, by):
 
 
 PAIRS = [
-    ((17, 60), {"shift": 0.3}, "linear", 3),
+    pytest.param((17, 60), {"shift": 0.3}, "linear", 3, marks=pytest.mark.long),
     # Descents that end early miss the deepest valley under one load and find it under the next.
     ((44, 61), {"shift": 0.246, "hertz": "load-dependent"}, "linear", 2),
     pytest.param((17, 60), {"shift": 0.3}, "linear", 8, marks=pytest.mark.long),

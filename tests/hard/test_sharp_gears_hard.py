@@ -18,7 +18,7 @@ from fegear.geometry.tooth import Tooth
 
 HALF_WIDTH = 0.02
 TOLERANCES = (1e-2, 1e-3, 1e-2, 1e-3, 1e-4)
-ORDINARY, DRAWS = (6, 171), 300
+ORDINARY, DRAWS = (171,), 300
 
 
 def drawn(i):

@@ -135,7 +135,11 @@ def solved(folder, ccx, steps, parts, layer, kind):
 
 @pytest.mark.parametrize(
     ("steps", "within", "twisted"),
-    [(PRISM, 2e-3, 3e-3), (GENTLE, 6e-3, 6e-3), pytest.param(STEEP, 3e-2, 2.5e-2, marks=pytest.mark.long)],
+    [
+        (PRISM, 2e-3, 3e-3),
+        pytest.param(GENTLE, 6e-3, 6e-3, marks=pytest.mark.long),
+        pytest.param(STEEP, 3e-2, 2.5e-2, marks=pytest.mark.long),
+    ],
     ids=["prism", "gentle", "steep"],
 )
 def test_shafts_bend_and_twist_like_solids(steps, within, twisted, tmp_path, program):

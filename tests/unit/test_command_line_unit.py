@@ -125,7 +125,7 @@ def test_export_writes_drawings_and_meshes(case, tmp_path):
 
 
 def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
-    assert fegear("run", case, cwd=tmp_path).returncode == 0
+    assert fegear("run", case, "--no-plots", cwd=tmp_path).returncode == 0
     out = tmp_path / "results" / "one"
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     slow = (
@@ -204,7 +204,7 @@ def test_a_terminal_gets_a_bar(case, tmp_path):
     import pty
 
     master, slave = pty.openpty()
-    command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case)]
+    command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case), "--no-plots"]
     done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=slave, check=True, timeout=60)
     os.close(slave)
     text = os.read(master, 65536).decode(errors="ignore")  # a slow machine redraws past the end of what is read

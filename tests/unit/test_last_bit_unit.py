@@ -1,13 +1,17 @@
 """The tool that stands for another processor: noise of one unit in the last place, where rounding enters."""
 
+import inspect
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
+import fegear
 
 OTHER = Path(__file__).parents[1] / "helpers" / "other_processor"
 
@@ -39,37 +43,33 @@ def test_noise_depends_on_the_digits_alone(noisy):
     assert np.array_equal(noisy(kept, 3), kept)
 
 
-_SOLVED = """
-import json
-import fegear
-gear = fegear.Gear(21, "2 mm", face_width="2 mm")
-table = fegear.stiffness_table(gear, positions=3, tolerance=1e-1).tables["stiffness_a"]
-print(json.dumps(table.to_pandas()["c_self [um.mm/N]"].tolist()))
-"""
+def solved():
+    gear = fegear.Gear(21, "2 mm", face_width="2 mm")
+    table = fegear.stiffness_table(gear, positions=3, tolerance=1e-1).tables["stiffness_a"]
+    return table.to_pandas()["c_self [um.mm/N]"].tolist()
 
 
+@pytest.mark.skipif("last_bit" in sys.modules, reason="the process of this test computes with noise itself")
 def test_a_process_that_is_started_under_noise_computes_with_it():
-    def solved(seed):
-        paths = [str(OTHER)] if seed else []
-        paths += [p for p in sys.path if p]
-        given = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "FEGEAR_LAST_BIT": str(seed)}
-        if not seed:
-            del given["FEGEAR_LAST_BIT"]
-        run = subprocess.run([sys.executable, "-c", _SOLVED], env=given, capture_output=True, text=True, check=True)
-        return np.array(json.loads(run.stdout))
-
-    assert not np.array_equal(solved(0), solved(11))
+    paths = os.pathsep.join([str(OTHER), *filter(None, sys.path)])
+    given = {**os.environ, "PYTHONPATH": paths, "FEGEAR_LAST_BIT": "11"}
+    program = f"import json, fegear\n{inspect.getsource(solved)}\nprint(json.dumps(solved()))"
+    run = subprocess.run([sys.executable, "-c", program], env=given, capture_output=True, text=True, check=True)
+    found = json.loads(run.stdout)
+    assert found == pytest.approx(solved(), rel=1e-6)
+    assert found != solved()
 
 
-def test_hard_cases_run_under_noise_whole_and_others_in_part():
-    def collected(*options):
-        files = ["tests/hard/test_pairs_hard.py", "tests/closed_form/test_hertz_closed_form.py"]
-        usual = ["-n", "0", "-p", "no:cacheprovider", "--collect-only"]
-        command = [sys.executable, "-m", "pytest", *usual, *options, *files]
-        root = Path(__file__).parents[2]
-        done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True)
-        return [sum(line.startswith(file) for line in done.stdout.splitlines()) for file in files]
+def test_hard_cases_run_under_noise_whole_and_others_in_part(request):
+    """What `--last-bit` keeps of what is collected; that it computes with noise then is the test above."""
+    root = Path(__file__).parents[1] / "conftest.py"
+    (ours,) = (one for one in request.config.pluginmanager.get_plugins() if getattr(one, "__file__", "") == str(root))
 
-    every, noisy = collected(), collected("--last-bit", "1")
-    assert noisy[0] == every[0]
-    assert noisy[1] < every[1]
+    def kept(marked):
+        item = SimpleNamespace(get_closest_marker=lambda name: (marked and name == "last_bit") or None)
+        return [ours._is_for_last_bit(request.config, setattr(item, "nodeid", f"a.py::b[{i}]") or item)
+                for i in range(2000)]  # fmt: skip
+
+    assert all(kept(marked=True))
+    assert np.mean(kept(marked=False)) == pytest.approx(1.0 / request.config.getoption("last_bit_every"), abs=0.02)
+    assert kept(marked=False) == kept(marked=False)

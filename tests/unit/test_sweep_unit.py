@@ -118,7 +118,7 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
         "--over",
         "gear.a.profile_shift=0,0.3",
     )
-    done = fegear(case, *axes, "--no-plots", "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
+    done = fegear(case, *axes, "--workers", 1, "--no-plots", "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
     assert done.returncode == 0, done.stderr
     assert sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()) == [
         ".fegear-files.json", "report.html", "summary.json", "sweep.nc", "tables/sweep.csv",
@@ -165,7 +165,7 @@ def test_the_best_point_is_told_with_those_that_may_be_as_good_and_where_a_bette
 def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path):
     import xarray
 
-    done = fegear(case, "--over", "gear.a.profile_shift=0:2:5", cwd=tmp_path, cache=tmp_path / "cache")
+    done = fegear(case, "--over", "gear.a.profile_shift=0:2:5", "--workers", 1, cwd=tmp_path, cache=tmp_path / "cache")
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stdout.splitlines() if "failed" in line]
     with xarray.open_dataset(tmp_path / "results" / "two_sweep" / "sweep.nc") as data:
@@ -181,7 +181,9 @@ def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path
     told = page.split("<section id='failures'")[1].split("</section>")[0]
     assert [int(row.split("<td>")[1].split("</td>")[0]) for row in told.split("<tr>")[2:]] == counts
     assert (tmp_path / "results" / "two_sweep" / "plots" / "sweep_I.contact_ratio.png").is_file()
-    nothing = fegear(case, "--over", "gear.a.profile_shift=5:6:2", cwd=tmp_path, cache=tmp_path / "cache")
+    nothing = fegear(
+        case, "--over", "gear.a.profile_shift=5:6:2", "--workers", 1, cwd=tmp_path, cache=tmp_path / "cache"
+    )
     assert nothing.returncode == 1
     assert "0 of 2 points have results." in nothing.stdout
 
@@ -218,7 +220,7 @@ def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case
     kept = tmp_path / "two"
     environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(kept)}
     process = subprocess.Popen(
-        command(case, *asked, "--out", "resumed"),
+        command(case, *asked, "--workers", 1, "--out", "resumed"),
         cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     for _ in range(6000):
@@ -231,7 +233,7 @@ def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case
     assert early <= finished < points
     assert not (tmp_path / "resumed").exists()
 
-    resumed = fegear(case, *asked, "--out", "resumed", cwd=tmp_path, cache=kept)
+    resumed = fegear(case, *asked, "--workers", 1, "--out", "resumed", cwd=tmp_path, cache=kept)
     assert resumed.returncode == 0, resumed.stderr
     told = json.loads((tmp_path / "resumed" / "summary.json").read_text())["timings"]
     assert early <= told["points_kept_from_earlier"] < points
@@ -267,7 +269,7 @@ def test_a_changed_file_that_the_case_names_is_computed_anew(tmp_path):
 
 
 def test_sweeps_work_from_python_too(case):
-    found = sweep_case(case, [read_axis("gear.a.teeth=20:22:3")], executor=Executor(workers=2))
+    found = sweep_case(case, [read_axis("gear.a.teeth=20:22:3")], executor=Executor(workers=1))
     assert [point.values[0].name for point in found.points] == ["I.contact_ratio"] * 3
     assert found.kept == 0
     assert found.place(2) == "gear.a.teeth = 22"

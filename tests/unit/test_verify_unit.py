@@ -10,8 +10,19 @@ from fegear.cli import app
 from fegear.verify.row import AGAINST, Compared, Outcome, Row, near, printed, run
 from fegear.verify.rows import ALL, chosen
 
+#: Rows that take seconds: the site runs them for its page of proofs; what they compare has tests with smaller gears
+#: (test_check_command_unit.py here, test_loaded_flanks_calculix.py and test_solid_gear_calculix.py of other_codes).
+DEAR = {
+    "whole-gear-compliance", "whole-gear-root-stress", "calculix-flanks", "calculix-flank-shares",
+    "calculix-flank-root-stress", "calculix-solid-deflection", "calculix-solid-root-stress",
+}  # fmt: skip
 
-@pytest.mark.parametrize("row", ALL, ids=lambda row: row.name)
+
+@pytest.mark.parametrize(
+    "row",
+    [pytest.param(row, marks=[pytest.mark.long] * (row.name in DEAR)) for row in ALL],
+    ids=[row.name for row in ALL],
+)
 def test_every_row_holds(row):
     found = run(row)
     assert found.holds, found.wrong
@@ -23,6 +34,7 @@ def test_there_are_rows_of_every_kind_and_no_name_twice():
     assert len(ALL) >= 60
     assert len({row.name for row in ALL}) == len(ALL)
     assert {row.against for row in ALL} == set(AGAINST)
+    assert {row.name for row in ALL} > DEAR
 
 
 def test_a_printed_number_holds_within_half_a_unit_of_its_last_digit():
