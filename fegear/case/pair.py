@@ -224,11 +224,6 @@ class PairPart(Part):
             )  # fmt: skip
         if self.width_in(pair) == "plane":
             return
-        if pair.internal and self.width is not None:
-            raise InputError(
-                f"{prefix}.width", f'"{self.width}"', "is not computed for internal pairs, whose teeth are plane",
-                "remove width",
-            )  # fmt: skip
         if "compliance" in self.model_fields_set:
             raise InputError(
                 f"{prefix}.compliance", "(given)",

@@ -134,10 +134,11 @@ def flank_speeds(pair: GearPair, x: ArrayLike, speed: float) -> FlankSpeeds:
     place = np.asarray(x, dtype=float)
     one, other = (np.asarray(pair.flank_curvature_radius(place, member)) for member in ("driver", "driven"))
     # Beyond the base circle there is no flank; on it the radius is zero, and so is the flank's speed.
-    one, other = np.maximum(one, 0.0), np.maximum(other, 0.0)
+    sides = pair.driver.tooth.side, pair.driven.tooth.side
+    one, other = (side * np.maximum(side * rho, 0.0) for side, rho in zip(sides, (one, other), strict=True))
     relative = one * other / (one + other) / math.cos(pair.driver.base_helix_angle)
     slow = speed * pair.driver.teeth / pair.driven.teeth
-    return FlankSpeeds(place, one, other, np.asarray(relative), speed * one, slow * other)
+    return FlankSpeeds(place, one, other, np.asarray(relative), speed * np.abs(one), slow * np.abs(other))
 
 
 def contact_ratios(pair: GearPair) -> tuple[float, float]:

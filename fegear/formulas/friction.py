@@ -139,8 +139,9 @@ _SPUR = 1e-9
 
 
 def _scale(pair: GearPair) -> float:
-    """pi (1/z_1 + 1/z_2) / cos(beta_b)."""
-    return math.pi * (1.0 / pair.driver.teeth + 1.0 / pair.driven.teeth) / math.cos(pair.driver.base_helix_angle)
+    """pi (1/z_1 + 1/z_2) / cos(beta_b), of an internal pair with the difference."""
+    sum_ = abs(1.0 / pair.driver.teeth + pair.side / pair.driven.teeth)
+    return math.pi * sum_ / math.cos(pair.driver.base_helix_angle)
 
 
 def ohlendorf(pair: GearPair) -> float:
@@ -151,9 +152,11 @@ def ohlendorf(pair: GearPair) -> float:
     Raises
     ------
     RangeError
-        Unless the contact ratio lies between 1 and 2.
+        Unless the contact ratio lies between 1 and 2, and the path holds the pitch point.
     """
     one, two = contact_ratios(pair)
+    if min(one, two) < 0.0:
+        raise RangeError("path of contact", "(beside the pitch point)", "is not known to Ohlendorf's H_V")
     if not 1.0 <= one + two <= 2.0:
         raise RangeError("contact ratio", f"{one + two:.4g}", "must lie between 1 and 2 for Ohlendorf's H_V")
     return _scale(pair) * (1.0 - one - two + one * one + two * two)
@@ -206,5 +209,5 @@ def _mean_distance(at: Array, start: float, end: float, half: float) -> Array:
 
 def computed(pair: GearPair, mean_of_share_times_distance: float) -> float:
     """H_V from the mean over a base pitch of sum(share abs(x)) [m], the shares being whatever was computed."""
-    curvature = 1.0 / pair.driver.base_radius + 1.0 / pair.driven.base_radius
-    return curvature * mean_of_share_times_distance / math.cos(pair.driver.base_helix_angle)
+    sliding = abs(1.0 / pair.driver.base_radius + pair.side / pair.driven.base_radius)  # over x and the driver's speed
+    return sliding * mean_of_share_times_distance / math.cos(pair.driver.base_helix_angle)

@@ -220,6 +220,15 @@ class Gear:
         return -size if self.hand == "left" else size
 
     @property
+    def flank_twist(self) -> float:
+        """Twist of the section whose tooth stands on +y with its loaded flank on the right, as it is solved [rad/m].
+
+        Seen with the tip up, the loaded flank of an external and of an internal tooth is the right one. That of an
+        internal tooth, whose tip points to the axis, is then drawn as a mirror image, which has the other hand.
+        """
+        return self.tooth.side * self.twist
+
+    @property
     def lead(self) -> float:
         """p_z, height of one turn of the helix [m]; infinite for a spur gear."""
         return math.inf if self.twist == 0.0 else 2.0 * math.pi / abs(self.twist)

@@ -293,6 +293,11 @@ class InternalTooth(InvoluteTooth):
         return self.generating_distance + self._cutter_tip
 
     @property
+    def dedendum(self) -> float:
+        """Depth of the root circle below the reference circle that the profile shift moves [modules]."""
+        return self.root_radius - self.pitch_radius + self.profile_shift
+
+    @property
     def root_land_half_angle(self) -> float:
         """Half the angle of the root land between the two fillets of one tooth space [rad]."""
         return self.fillet.start * self.cutter.teeth / self.teeth

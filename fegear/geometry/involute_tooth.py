@@ -59,6 +59,11 @@ class InvoluteTooth(ABC):
 
     @property
     @abstractmethod
+    def dedendum(self) -> float:
+        """h_fP of the basic rack [modules]; of an internal tooth what its cutter makes of it."""
+
+    @property
+    @abstractmethod
     def form_radius(self) -> float:
         """r_Ff, where the involute starts on the generated flank [modules]."""
 

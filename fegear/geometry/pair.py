@@ -54,7 +54,7 @@ class GearPair:
         without backlash.
     axial_offset : float
         Height of the driven gear's mid face above the driver's, toward the end from which the driver turns clockwise
-        [m].
+        (a ring that drives: counter-clockwise) [m].
 
     Raises
     ------

@@ -23,7 +23,8 @@ class ShaftTilt:
     Parameters
     ----------
     in_plane : float
-        f_Sigma_delta per length: in the plane of the axes, which move apart toward end II [rad].
+        f_Sigma_delta per length: in the plane of the axes, which move apart toward end II [rad]. In an internal pair
+        that closes the gap.
     out_of_plane : float
         f_Sigma_beta per length: across that plane, the driven gear moving ahead of the driver toward end II [rad].
 
@@ -47,9 +48,12 @@ class ShaftTilt:
                 )  # fmt: skip
 
     def in_plane_of_action(self, pair: GearPair) -> float:
-        """kappa [rad], turn about the normal of the plane of action: the in-plane part with sin(alpha_wt)."""
+        """kappa [rad], turn about the normal of the plane of action: the in-plane part with sin(alpha_wt).
+
+        The flank of a ring gear comes nearer as the axes move apart: that part counts negative.
+        """
         angle = pair.working_pressure_angle
-        return self.in_plane * math.sin(angle) + self.out_of_plane * math.cos(angle)
+        return pair.side * self.in_plane * math.sin(angle) + self.out_of_plane * math.cos(angle)
 
     def gap(self, pair: GearPair, x: ArrayLike, z: ArrayLike) -> Array:
         """Gap at places in the plane of action, along the transverse line of action [m].
@@ -65,7 +69,7 @@ class ShaftTilt:
         x, z : array_like
             From the pitch point along the line of action, from the middle of the face [m].
         """
-        lean = pair.driver.twist * pair.driver.base_radius
+        lean = pair.driver.flank_twist * pair.driver.base_radius
         along = np.asarray(z, dtype=float) - lean * np.asarray(x, dtype=float)
         return np.asarray(self.in_plane_of_action(pair) * along)
 

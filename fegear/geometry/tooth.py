@@ -146,6 +146,11 @@ class Tooth(InvoluteTooth):
         return transverse_angle(self.rack.pressure_angle, self.helix_angle)
 
     @property
+    def dedendum(self) -> float:
+        """h_fP of the basic rack [modules]."""
+        return self.rack.dedendum
+
+    @property
     def root_radius(self) -> float:
         """r_f [modules]."""
         return self.pitch_radius + self.generating_shift - self.rack.dedendum

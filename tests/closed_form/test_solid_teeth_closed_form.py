@@ -20,11 +20,15 @@ from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import flank_nodes, solve_solid
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.7 * TOOTH.root_radius
+#: And a ring.
+RING = InternalTooth(36, PinionCutter(20, tip_radius=0.25), profile_shift=-0.1, tip_radius=17.3)
+OUTSIDE = RING.root_radius + 3.0
 TAU = math.tan(math.radians(20.0)) / 14.0
 NU = 0.3
 COARSE = SolidSettings().scaled(1.3)
@@ -37,17 +41,28 @@ def solved(tau, width=4.0, settings=COARSE, **how):
     return solve_solid(TOOTH, tau, width, NU, BORE, settings, **how)
 
 
-@pytest.fixture(scope="module")
+@functools.cache
+def meshed(tooth, held):
+    return mesh_sector(tooth, held, COARSE.section)
+
+
+@pytest.fixture
 def mesh():
-    return mesh_sector(TOOTH, BORE, COARSE.section)
+    return meshed(TOOTH, BORE)
 
 
-def test_without_twist_and_axial_motion_it_is_plane_strain(mesh):
-    plane = solve_influence(TOOTH, mesh, NU, "strain", order=3, margin=0.0)
-    solid = solve_solid(TOOTH, 0.0, 2.0, NU, BORE, CUBIC, mesh=mesh, plane_strain=True)
-    radius, width = np.array([13.3, 13.7, 14.0, 14.5]), np.full(4, 0.2)
+@pytest.mark.parametrize(
+    ("tooth", "held", "radius"),
+    [(TOOTH, BORE, [13.3, 13.7, 14.0, 14.5]), (RING, OUTSIDE, [17.6, 18.0, 18.5, 18.8])],
+    ids=["gear", "ring"],
+)
+def test_without_twist_and_axial_motion_it_is_plane_strain(tooth, held, radius):
+    mesh = meshed(tooth, held)
+    plane = solve_influence(tooth, mesh, NU, "strain", order=3, margin=0.0)
+    solid = solve_solid(tooth, 0.0, 2.0, NU, held, CUBIC, mesh=mesh, plane_strain=True)
+    radius, width = np.array(radius), np.full(4, 0.2)
     everywhere = bands(radius, 0.0, 1.0, width, profile="even")
-    section = make_section(mesh, 3, 0.0, NU, TOOTH.base_radius)
+    section = make_section(mesh, 3, 0.0, NU, tooth.base_radius, side=tooth.side)
     inward = section.axes[flank_nodes(section), :2, 0]
     up = plane.flank.normal_patches(plane.flank.arc_of_radius(radius), width)
     at_nodes = np.concatenate([up * inward[:, :1], up * inward[:, 1:]])
@@ -84,9 +99,10 @@ def rigid_motions(section, face, tau):
     return np.einsum("kq,mnqa->nkma", coefficients, v)
 
 
+@pytest.mark.parametrize(("tooth", "held"), [(TOOTH, BORE), (RING, OUTSIDE)], ids=["gear", "ring"])
 @pytest.mark.parametrize("tau", [0.0, TAU, -3 * TAU])
-def test_rigid_motions_are_free_of_strain(mesh, tau):
-    section = make_section(mesh, 3, tau, NU, TOOTH.base_radius)
+def test_rigid_motions_are_free_of_strain(tooth, held, tau):
+    section = make_section(meshed(tooth, held), 3, tau, NU, tooth.base_radius, side=tooth.side)
     left = []
     for degree in (3, 5, 14):
         face = face_functions(4.0, degree)
@@ -105,9 +121,12 @@ def test_rigid_motions_are_free_of_strain(mesh, tau):
     assert left[0] < 1e-12 if tau == 0.0 else left[0] > 20.0 * left[1] > 400.0 * left[2] > 0.0
 
 
-def test_what_acts_there_shows_here():
-    one, other = hats(14.0, np.linspace(-2.0, 2.0, 6), 0.2, slope=0.1), bands([13.4, 14.3], [-1.2, 0.9], 0.7, 0.15)
-    known = solved(TAU)
+@pytest.mark.parametrize("tooth", [TOOTH, RING], ids=["gear", "ring"])
+def test_what_acts_there_shows_here(tooth):
+    high = tooth.pitch_radius
+    one = hats(high, np.linspace(-2.0, 2.0, 6), 0.2, slope=0.1)
+    other = bands([high - 0.3, high + 0.3], [-1.2, 0.9], 0.7, 0.15)
+    known = solved(TAU) if tooth is TOOTH else solve_solid(RING, TAU, 4.0, NU, OUTSIDE, COARSE)
     for k in (-1, 0, 1):
         there, back = known.deflection(k, one, other), known.deflection(-k, other, one)
         np.testing.assert_allclose(there, back.T, rtol=1e-10)

@@ -15,10 +15,12 @@ from fegear.fem.solid.bands import bands
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solve_thin_slices
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
+RING = InternalTooth(42, PinionCutter(20, 0.1, 1.25, tip_radius=0.2), profile_shift=-0.2, tip_radius=20.4)
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH, LOAD = 3e-3, 24e-3, 4000.0
 MISALIGNED = FlankGaps(face_position=np.array([-0.5, 0.5]) * WIDTH, line_gap=np.array([0.0, 12e-6]))
@@ -55,6 +57,30 @@ def test_under_an_even_load_they_are_the_plane_pair(spur):
         for s in found.lines.at(p):
             of_line = found.line_load[p, s, 1]
             np.testing.assert_allclose(of_line, of_line.mean(), rtol=1e-9)
+
+
+def test_under_an_even_load_a_planet_and_its_ring_are_the_plane_pair():
+    outside = Gear(RING, MODULE, (RING.root_radius + 2.5) * MODULE, WIDTH, STEEL)
+    planet = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.2)
+    inside = Gear(planet, MODULE, 0.5 * planet.root_radius * MODULE, WIDTH, STEEL)
+    pair = GearPair(inside, outside)
+    found = FlankPair(pair, {"driver": thin(inside), "driven": thin(outside)}, panel=1.0, positions=4).solve([LOAD])
+    plane = [finite_element_compliance(solve_gear(one, reach=1)) for one in (inside, outside)]
+    engagement = Engagement(PairCompliance(pair, *plane))
+    wanted = engagement.solve(engagement.grid(found.lines.roll), np.array([LOAD]))
+    np.testing.assert_allclose(found.transmission_error, wanted.transmission_error, rtol=1e-3)
+
+
+def test_what_the_pressed_width_leaves_on_a_hollow_flank_goes_with_its_square():
+    """The flank's curvature is taken off with its sign: with the other one a first order is left."""
+    settings = SolidSettings().scaled(0.3)
+    body = solve_thin_slices(RING, 0.0, 1.0, 0.3, RING.root_radius + 2.5, settings, reach=0)
+    at, left = np.array([21.3]), []
+    for width in (np.array([0.4]), np.array([0.2]), np.array([0.1])):
+        load = body.flank.normal_patches(body.flank.arc_of_radius(at), width)
+        known = body.contact_slope * (0.5 + 2.0 * np.log(width)) - body.bend(at) * width
+        left.append(((load * (body.compliance[0] @ load)).sum() + known).item())
+    assert left[0] - left[1] == pytest.approx(4.0 * (left[1] - left[2]), rel=0.25)
 
 
 def test_no_slice_knows_of_the_next(spur):

@@ -8,6 +8,7 @@ from the displacements of the fillet itself (CalculiX's nodal stresses, extrapol
 import math
 import re
 import subprocess
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -16,6 +17,8 @@ from fegear.fem.plane.gear_section import uneven_section
 from fegear.fem.plane.root_stress import extreme
 from fegear.fem.solid.extruded import extruded, pressed_band
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.output.solid_export import write_solid_inp
@@ -23,6 +26,20 @@ from fegear.output.solid_export import write_solid_inp
 TEETH, SHIFT, BORE, FACE = 10, 0.55, 2.5, 4.0
 RADIUS, HALF_WIDTH, SPACING = 5.5, 0.25, 0.5
 TOOTH = Tooth(TEETH, BasicRack(1.0, 1.25, 0.25), SHIFT)
+
+
+class Shape(NamedTuple):
+    """A gear: its tooth, where it is held and where bands press [modules]; teeth of a row with free sides, or 0."""
+
+    tooth: InvoluteTooth
+    bore: float
+    radius: float
+    row: int = 0
+
+
+EXTERNAL = Shape(TOOTH, BORE, RADIUS)
+#: Five of the 20 teeth of a ring that is held 1.5 modules outside its root circle.
+RING = Shape(InternalTooth(20, PinionCutter(14, 0.4, 1.0, tip_radius=0.25), profile_shift=-0.5), 13.0, 10.3, 5)
 YOUNG = 200e9
 NU = 0.3
 #: Hats on tooth 0 and on its neighbours, by name: tooth, station of the top along the face [modules].
@@ -44,9 +61,9 @@ OTHERS = 2.8
 _GAUSS = np.polynomial.legendre.leggauss(2)[0]
 
 
-def twist_of(beta):
+def twist_of(beta, shape=EXTERNAL):
     """tau of a helix angle on the reference circle [rad/module]."""
-    return math.tan(beta) / TOOTH.pitch_radius
+    return math.tan(beta) / shape.tooth.pitch_radius
 
 
 def hat(place):
@@ -55,21 +72,23 @@ def hat(place):
     return max(place - SPACING, -half), place, min(place + SPACING, half)
 
 
-def solid(beta, coarseness, ends, inside):
+def solid(beta, coarseness, ends, inside, shape=EXTERNAL):
     """The solid and the nodal forces of each band; its layers from an end of the face, and inside it [modules]."""
     depth = 0.5 * FACE - np.cumsum(ends)
     inner = np.linspace(-depth[-1], depth[-1], round(2.0 * depth[-1] / inside) + 1)
     stations = np.unique(np.round([-0.5 * FACE, *-depth, *inner, *depth, 0.5 * FACE], 12))
-    mesh = extruded(uneven_section(TOOTH, BORE, coarseness, max(coarseness, OTHERS)), stations, twist_of(beta))
+    section = uneven_section(shape.tooth, shape.bore, coarseness, max(coarseness, OTHERS), row=shape.row)
+    mesh = extruded(section, stations, twist_of(beta, shape))
     bands = {
-        name: pressed_band(mesh, TOOTH, RADIUS, HALF_WIDTH, hat(place), tooth) for name, (tooth, place) in BANDS.items()
+        name: pressed_band(mesh, shape.tooth, shape.radius, HALF_WIDTH, hat(place), tooth)
+        for name, (tooth, place) in BANDS.items()
     }
     return mesh, bands
 
 
-def solve(folder, name, mesh, bands, loaded, ccx="ccx", timeout=None):
+def solve(folder, name, mesh, bands, loaded, ccx="ccx", timeout=None, shape=EXTERNAL):
     """Displacements (3, P), module 1 and E = 1, of the printed nodes by load; NaN elsewhere."""
-    gear = Gear(TOOTH, 1e-3, BORE * 1e-3, FACE * 1e-3, Material(YOUNG, NU))
+    gear = Gear(shape.tooth, 1e-3, shape.bore * 1e-3, FACE * 1e-3, Material(YOUNG, NU))
     boundaries = mesh.section.boundaries
     wanted = [boundaries[n, k] for n in ("flank", "fillet", "back_fillet") for k in (-1, 0, 1)]
     printed = {"WANTED": np.unique(np.concatenate([mesh.nodes_of(edges) for edges in wanted]))}
@@ -92,7 +111,7 @@ def deflection(u, forces):
     return float((u[:, at] * forces[:, at]).sum())
 
 
-def surface_stress(mesh, u, edges):
+def surface_stress(mesh, u, edges, side=1):
     """Stress on a free surface over edges of the section, at the Gauss points of its faces, E = 1.
 
     Returns
@@ -101,9 +120,9 @@ def surface_stress(mesh, u, edges):
     stress : ndarray, shape (3, 2 L, 2 n)
         Tangential (in the transverse section), across it in the surface, and shear between both.
     """
-    edges = edges[:, np.argsort(np.hypot(*mesh.section.points[:, edges[2]]))]
-    radius = np.hypot(*mesh.section.points)
-    up = radius[edges[0]] < radius[edges[1]]
+    height = side * np.hypot(*mesh.section.points)
+    edges = edges[:, np.argsort(height[edges[2]])]
+    up = height[edges[0]] < height[edges[1]]
     edges = np.where(up, edges, edges[[1, 0, 2]])
     nodes = mesh.faces(edges)
     g = 0.5 + 0.5 * _GAUSS
@@ -143,14 +162,14 @@ def _slopes(g):
     return 2 * np.array(d_eta), 2 * np.array(d_xi)
 
 
-def largest_along(mesh, u, name, sign):
+def largest_along(mesh, u, name, sign, side=1):
     """Largest tangential stress over one fillet of tooth 0 at `STATIONS`."""
-    zeta, arc, stress = surface_stress(mesh, u, mesh.section.boundaries[name, 0])
+    zeta, arc, stress = surface_stress(mesh, u, mesh.section.boundaries[name, 0], side)
     value, _ = extreme(stress[0].T, arc, sign, arc[-1])
     return CubicSpline(zeta, value)(STATIONS)
 
 
-def told(mesh, bands, fields):
+def told(mesh, bands, fields, side=1):
     """The numbers of a reference."""
     return {
         "nodes": mesh.points.shape[1],
@@ -158,6 +177,8 @@ def told(mesh, bands, fields):
         "deflection": {
             loaded: {name: deflection(u, forces) for name, forces in bands.items()} for loaded, u in fields.items()
         },
-        "tension": {loaded: largest_along(mesh, u, "fillet", 1).tolist() for loaded, u in fields.items()},
-        "compression": {loaded: largest_along(mesh, u, "back_fillet", -1).tolist() for loaded, u in fields.items()},
+        "tension": {loaded: largest_along(mesh, u, "fillet", 1, side).tolist() for loaded, u in fields.items()},
+        "compression": {
+            loaded: largest_along(mesh, u, "back_fillet", -1, side).tolist() for loaded, u in fields.items()
+        },
     }

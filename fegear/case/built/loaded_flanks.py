@@ -169,6 +169,11 @@ def _placed(pair: GearPair, apart: float, name: str) -> GearPair:
 def _check_misalignment(scene: Scene, name: str) -> None:
     part = scene.case.pair[name]
     if on_shafts(scene, name):
+        if scene.pairs[name].driver.tooth.internal:
+            raise InputError(
+                f"pair.{name}.driver", f'"{part.driver}"', "is a ring gear, whose shafts bend no flanks with a width",
+                "let the planet drive, or give the misalignment of the pair",
+            )  # fmt: skip
         check_heights(scene, name)
     elif part.line_error is None and part.misalignment is None:
         raise InputError(

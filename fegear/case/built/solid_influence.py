@@ -126,8 +126,13 @@ def check_solid_gear(scene: Scene, name: str) -> None:
     ------
     InputError
     """
-    part = scene.case.gear[name]
-    if _source(scene, name) == "slices" and part.body is not None:
+    part, sliced = scene.case.gear[name], _source(scene, name) == "slices"
+    if sliced and part.internal:
+        raise InputError(
+            f"gear.{name}.internal", "true", "is not known to slices, whose laws were fitted to external gears",
+            'solve the gear as a solid: write "solid" for "slices"',
+        )  # fmt: skip
+    if sliced and part.body is not None:
         raise InputError(
             f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
             'solve the gear as a solid: write "solid" for "slices"',
@@ -157,8 +162,8 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     gear, cache = asked.gear, cache or SolutionCache()
     try:
         found = solid_influence(
-            gear.external_tooth,
-            gear.twist * gear.module,
+            gear.tooth,
+            gear.flank_twist * gear.module,
             gear.face_width / gear.module,
             gear.material.poisson_ratio,
             gear.bore_radius / gear.module,

@@ -1,8 +1,9 @@
 """Both solid gears' influence functions put together for all stations of all contact lines at a roll position.
 
 Each gear is seen in its own drawing, loaded flank toward +x: turning the driven gear's by half a turn about the axis
-lays both together, so heights z count alike on both, and hands are opposite. Pair j + 1 is ahead of pair j: its teeth
-are k = +1 seen from the driver's loaded tooth and k = -1 seen from the driven gear's.
+lays both together, so heights z count alike on both, and hands are opposite. A ring is drawn as its own mirror image
+(`Gear.flank_twist`), and its mate has its hand. Pair j + 1 is ahead of pair j: its teeth are k = +1 seen from the
+driver's loaded tooth and k = -1 seen from the driven gear's.
 """
 
 from __future__ import annotations

@@ -175,7 +175,7 @@ def beside_the_lines(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> fl
 def _least(pair: GearPair, gaps: FlankGaps, at: _Places) -> Array:
     rb, form, tip = pair.driver.base_radius, *_limits(pair, "driver")
     middle = np.clip(pair.roll_angle(at.x, "driver"), form, tip)
-    room = _REACH * pair.driver.module / np.maximum(middle * rb, _REACH * pair.driver.module)
+    room = _REACH * pair.driver.module / np.maximum(np.abs(middle) * rb, _REACH * pair.driver.module)
     of_pair, up = gaps.of_pair(at.pair, at.z), pair.face_height("driven")
     if gaps.shafts.given:
         of_pair = of_pair + gaps.shafts.at(at.x, at.z)
@@ -205,44 +205,49 @@ def _helicoids(pair: GearPair, gaps: FlankGaps, at: _Places, roll: Array) -> tup
     """Gap [m] between driver and designed driven flank at a roll angle of the driver, and the driven roll angle there.
 
     Sections across the driver's axis in complex numbers: real along the pitch point's motion, imaginary toward the
-    driven gear, from the pitch point; infinite where there is no flank.
+    driven gear, from the pitch point; infinite where there is no flank. Radii are negative on an internal gear, as its
+    roll angles are: then the driven gear's axis lies on the driver's side of the pitch point.
     """
     u = np.exp(1j * pair.working_pressure_angle)
-    rb1, rb2 = pair.driver.base_radius, pair.driven.base_radius
+    rb1, rb2 = (gear.tooth.side * gear.base_radius for gear in (pair.driver, pair.driven))
     rho1, rho2 = (pair.flank_curvature_radius(at.x, member) for member in ("driver", "driven"))
     pitch1, pitch2 = (rb / math.cos(pair.working_pressure_angle) for rb in (rb1, rb2))
     behind = gaps.removed("driver", roll, at.z + pair.face_height("driver")) / rb1
-    point = -1j * pitch1 + np.exp(1j * (roll - rho1 / rb1 + behind)) * (1j * rb1 + roll * rb1) * u
+    rolled = roll * abs(rb1)
+    point = -1j * pitch1 + np.exp(1j * ((rolled - rho1) / rb1 + behind)) * (1j * rb1 + rolled) * u
     place = np.stack([point.real, point.imag - pitch2, at.z], axis=-1)
     on = np.ones(at.z.shape, dtype=bool)
     if gaps.tilt != PARALLEL:
         from scipy.spatial.transform import Rotation
 
         # Into the frame of the driven gear, turned about the middle of the common face by (-in plane, out of plane).
-        turn = Rotation.from_rotvec([gaps.tilt.in_plane, -gaps.tilt.out_of_plane, 0.0]).as_matrix()
+        turn = Rotation.from_rotvec([pair.side * gaps.tilt.in_plane, -gaps.tilt.out_of_plane, 0.0]).as_matrix()
         place = place @ turn.T
         own = np.abs(place[..., 2] + pair.face_height("driven"))
         on &= own <= 0.5 * pair.driven.face_width * (1.0 + 1e-12)
     seen, height = place[..., 0] + 1j * place[..., 1], place[..., 2]
     radius = np.abs(seen)
-    length = np.sqrt(np.maximum((radius - rb2) * (radius + rb2), 0.0))
+    length = np.copysign(np.sqrt(np.maximum((radius - abs(rb2)) * (radius + abs(rb2)), 0.0)), rb2)
     turned = np.angle(seen / ((-1j * rb2 - length) * u)) - (length - rho2) / rb2
     apart = -rb2 * turned - base_twist(pair) * (height - at.z)
     apart -= (
-        base_twist(pair) * pitch2 * gaps.tilt.in_plane
+        base_twist(pair) * pitch2 * pair.side * gaps.tilt.in_plane
     )  # of the whole gear along its axis: `ShaftTilt.gap` has it not
     form, tip = _limits(pair, "driven")
-    on &= (length <= tip * rb2) & (length >= form * rb2)
-    return np.where(on, apart, np.inf), length / rb2
+    driven_roll = length / abs(rb2)
+    on &= (driven_roll <= tip) & (driven_roll >= form)
+    return np.where(on, apart, np.inf), driven_roll
 
 
 def _limits(pair: GearPair, member: Member) -> tuple[float, float]:
     """Roll angles of form and tip circle, with a hair of room."""
     gear = pair.gear(member)
     ends = [
-        math.sqrt(max((r / gear.base_radius) ** 2 - 1.0, 0.0)) for r in (gear.form_radius, gear.involute_tip_radius)
+        gear.tooth.side * math.sqrt(max((r / gear.base_radius) ** 2 - 1.0, 0.0))
+        for r in (gear.form_radius, gear.involute_tip_radius)
     ]
-    return max(ends[0] - 1e-12, 0.0), ends[1] + 1e-12
+    low, high = ends[0] - 1e-12, ends[1] + 1e-12
+    return (low, min(high, 0.0)) if gear.tooth.internal else (max(low, 0.0), high)
 
 
 def unloaded_error(pair: GearPair, gaps: FlankGaps, roll: ArrayLike) -> Array:

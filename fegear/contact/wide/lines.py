@@ -1,9 +1,9 @@
 """Contact lines of all tooth pairs in reach, in the plane of action, divided into panels.
 
 In the plane of action, x along the transverse line of action and z along the axes, the contact line of pair j at the
-roll position x_0 is straight: x = x_0 + j p_bt - z tan(beta_b), the twist of the driver positive for a right hand. It
-ends at the tips and form circles in use and at the ends of the common face (ISO 21771, 5.4), or goes on along the tip
-edges (`fegear.contact.wide.lines`).
+roll position x_0 is straight: x = x_0 + j p_bt - z tan(beta_b), the twist of the driver positive for a right hand (of
+a ring for a left one). It ends at the tips and form circles in use and at the ends of the common face (ISO 21771, 5.4),
+or goes on along the tip edges (`fegear.contact.wide.lines`).
 
 Roll positions over a base pitch: a quadrature whose pieces end where contact lines begin and end.
 
@@ -114,8 +114,8 @@ class ContactLines(ReadOnlyArrays):
 
 
 def base_twist(pair: GearPair) -> float:
-    """Tangent of the base helix angle, positive for a right-handed driver."""
-    return pair.driver.twist * pair.driver.base_radius
+    """Tangent of the base helix angle, positive for a right-handed external and a left-handed internal driver."""
+    return pair.driver.flank_twist * pair.driver.base_radius
 
 
 def shortest_line(pair: GearPair) -> float:

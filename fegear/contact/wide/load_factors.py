@@ -132,7 +132,7 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
 def iso_root_exponent(pair: GearPair) -> float:
     """N_F of ISO 6336-1 for both gears of a pair."""
     gears = pair.driver, pair.driven
-    depths = [gear.module * (gear.tooth.tip_radius - gear.tooth.root_radius) for gear in gears]
+    depths = [gear.module * abs(gear.tooth.tip_radius - gear.tooth.root_radius) for gear in gears]
     return root_exponent((gears[0].face_width, gears[1].face_width), (depths[0], depths[1]))
 
 

@@ -120,7 +120,7 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
 
 def uneven_section(
     tooth: InvoluteTooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None,
-    body: GearBody | None = None,
+    body: GearBody | None = None, row: int = 0,
 ) -> Section:  # fmt: skip
     """All teeth of a gear for one load: tooth 0 fine, its neighbours less so, the others coarse.
 
@@ -135,6 +135,8 @@ def uneven_section(
         The same for all other teeth, whose usual edges are two and four times as long.
     body : GearBody, optional
         Whose rim, web and hub meet along edges of the section [modules].
+    row : int
+        Number of teeth in a row with free sides, instead of all.
 
     Returns
     -------
@@ -152,8 +154,9 @@ def uneven_section(
     ]
     if body is not None:
         kinds = [with_body(kind, body, bore_radius, settings[0].rim_fraction) for kind in kinds]
-    first = -((tooth.teeth - 1) // 2)
-    return gear_section({k: kinds[min(abs(k), 2)] for k in range(first, first + tooth.teeth)})
+    count = row or tooth.teeth
+    first = -((count - 1) // 2)
+    return gear_section({k: kinds[min(abs(k), 2)] for k in range(first, first + count)})
 
 
 def _settings(f: float, root: float, flank: float, end: float, growth: float) -> MeshSettings:

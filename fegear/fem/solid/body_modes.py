@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fegear.fem.solid.section import Section
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Functions along the face of a disc or a hub: a body's low waves are as good as linear, at most cubic, through its
 #: thickness, and each module of width adds some.
@@ -74,7 +74,7 @@ class BodyModes:
 
 
 def body_modes(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -114,7 +114,9 @@ def body_modes(
         raise InputError("diameters", diameters, f"must lie between 0 and {tooth.teeth // 2}, half the number of teeth")
     with one_thread():
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True, layer=_LAYER / fineness)
-        section = make_section(mesh, settings.section.order, tau, poisson_ratio, tooth.base_radius, body)
+        section = make_section(
+            mesh, settings.section.order, tau, poisson_ratio, tooth.base_radius, body, side=tooth.side
+        )
         degree = max(3, round(fineness * (_DEGREE + math.ceil(_PER_MODULE * width))))
         face = face_functions(width, degree, () if body is None else body.ends)
         known = solid_unknowns(section, face, settings, None if body is None else body.hub, all_waves=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index, Mask
     from fegear.fem.plane.gear_section import Section
     from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
@@ -201,7 +201,12 @@ def graded_stations(face_width: float, through: Sequence[float], finest: float, 
 
 
 def pressed_band(
-    mesh: SolidMesh, tooth: Tooth, radius: float, half_width: float, hat: tuple[float, float, float], number: int = 0
+    mesh: SolidMesh,
+    tooth: InvoluteTooth,
+    radius: float,
+    half_width: float,
+    hat: tuple[float, float, float],
+    number: int = 0,
 ) -> Array:
     """Nodal forces of a band that presses on the right flank of a tooth.
 
@@ -209,7 +214,7 @@ def pressed_band(
     ----------
     mesh : SolidMesh
         With stations at the hat's ends and its top.
-    tooth : Tooth
+    tooth : InvoluteTooth
         The transverse section.
     radius, half_width : float
         The middle of the band up the flank, and the half-width of its semi-elliptic pressure along the flank
@@ -252,7 +257,7 @@ def pressed_band(
     share = width[:, None] * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
     s = place + half_width * np.sin(theta)
     xi = (s - arc[:-1, None]) / np.diff(arc)[:, None]
-    angle = tooth.base_half_angle - np.sqrt(2.0 * s / rb)
+    angle = tooth.base_half_angle - tooth.side * np.sqrt(2.0 * s / rb)
     # Along the face, layer by layer; the hat's kinks are stations.
     zeta = 0.5 * (mesh.stations[1:] + mesh.stations[:-1])[:, None] + 0.5 * np.diff(mesh.stations)[:, None] * _GAUSS[0]
     height = np.ones_like(zeta)

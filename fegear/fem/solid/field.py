@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Six-node triangles want edges so much shorter than those of third order.
 _SIX_NODE_EDGES = 0.7
@@ -66,7 +66,7 @@ class SolidField:
 
 
 def solid_field(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -103,7 +103,7 @@ def solid_field(
     with one_thread():
         chosen = replace(settings.section.scaled(_SIX_NODE_EDGES), order=2)
         sector = section_mesh(tooth, bore_radius, chosen, body)
-        section = make_section(sector, 2, tau, poisson_ratio, tooth.base_radius, body)
+        section = make_section(sector, 2, tau, poisson_ratio, tooth.base_radius, body, side=tooth.side)
         face = face_functions(width, settings.degree(width), () if body is None else body.ends)
         known = solid_unknowns(section, face, settings, None if body is None else body.hub)
         ports = 3 * flank_nodes(section)

@@ -90,7 +90,7 @@ def solid_fillet(section: Section, name: str) -> SolidFillet:
         tangent=unit.reshape(2, -1),
         place=place.reshape(2, -1),
         arc=arc.reshape(-1),
-        tangent_angle=np.arctan2(np.abs(unit[0]), unit[1]).reshape(-1),
+        tangent_angle=np.arctan2(np.abs(unit[0]), section.side * unit[1]).reshape(-1),
         length=float(lengths.sum()),
     )
 

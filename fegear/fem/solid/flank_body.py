@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.trace import LoadedFlank
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: A pressure is at least this share of the flank wide, however little room there is to its end.
 _NARROWEST = 0.02
@@ -84,7 +84,7 @@ class FlankBody(Protocol):
 class TwistedFlank:
     """What the flank of a gear with a width is by its shape alone; lengths in modules."""
 
-    tooth: Tooth
+    tooth: InvoluteTooth
     tau: float
     width: float
     poisson_ratio: float
@@ -123,9 +123,9 @@ class TwistedFlank:
         return (1.0 - self.poisson_ratio**2) * self.normal_length / math.pi
 
     def curvature(self, radius: Array) -> Array:
-        """Curvature of the flank in the transverse section, shape (P,) [1/module]."""
+        """Curvature of the flank in the transverse section, shape (P,) [1/module]; negative where it is hollow."""
         rb = self.tooth.base_radius
-        return np.asarray(1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - rb**2, 0.0)), _LEAST_RADIUS))
+        return np.asarray(self.tooth.side / np.maximum(np.sqrt(np.maximum(radius**2 - rb**2, 0.0)), _LEAST_RADIUS))
 
     def bend(self, radius: Array) -> Array:
         """What the flank's curvature adds to the deflection near a contact per half-width, shape (P,) [1/module]."""
@@ -134,7 +134,8 @@ class TwistedFlank:
     def line_slope(self, radius: ArrayLike) -> Array:
         """Arc up the flank per length along the face of the contact line through a radius, shape (P,).
 
-        The line is straight and stands square to the involute: its foot on the base circle turns with the helix.
+        The line is straight and stands square to the involute: its foot on the base circle turns with the helix. Up an
+        internal tooth the roll length falls in size, and so it falls by the same length.
         """
         rb = self.tooth.base_radius
         r = np.atleast_1d(np.asarray(radius, dtype=float))

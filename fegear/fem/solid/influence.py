@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array, Mask
     from fegear.fem.plane.influence import Side
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: What a solution consists of, for those that keep it.
 _KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody)
@@ -219,8 +219,9 @@ def sample_lines(solution: SolidSolution) -> Iterator[tuple[Array, Array, Mask]]
     length = flank.flank_end - flank.flank_start
     for share in _UP:
         middle = float(flank.radius_of_arc(np.array([flank.flank_start + share * length]))[0])
-        rolled = np.sqrt(middle**2 - rb**2) - solution.tau * rb * stations
-        radius = np.hypot(rb, np.maximum(rolled, 0.0))
+        side = solution.tooth.side
+        rolled = side * np.sqrt(middle**2 - rb**2) - solution.tau * rb * stations
+        radius = np.hypot(rb, np.maximum(side * rolled, 0.0))
         on = (radius > flank.lowest_radius) & (radius < flank.highest_radius)
         place = np.full(radius.shape, -1.0)
         place[on] = (flank.arc_of_radius(radius[on]) - flank.flank_start) / length
@@ -230,7 +231,7 @@ def sample_lines(solution: SolidSolution) -> Iterator[tuple[Array, Array, Mask]]
 
 
 def solid_influence(
-    section: Tooth,
+    section: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -247,7 +248,7 @@ def solid_influence(
 
     Parameters
     ----------
-    section : Tooth
+    section : InvoluteTooth
         The transverse section, its lengths in modules of that section.
     tau : float
         Twist tan(beta) / r with r the radius at which the helix angle is beta [rad/module], positive for a right

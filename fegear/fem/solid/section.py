@@ -62,6 +62,8 @@ class Section:
     spans : tuple of (float, float)
         Along the face, from where to where each zone is material [modules]; the first has no ends but those of the
         face.
+    side : {1, -1}
+        Of an external or an internal tooth.
     """
 
     stiffness: tuple[Array, Array, Array]
@@ -78,6 +80,7 @@ class Section:
     poisson_ratio: float
     zone: Index
     spans: tuple[tuple[float, float], ...]
+    side: int = 1
 
     @property
     def size(self) -> int:
@@ -91,7 +94,7 @@ class Section:
 
 
 def upward(section: Section, name: str) -> tuple[Index, Array]:
-    """Edges of a boundary that climbs the tooth, each from its lower to its higher vertex, the lowest first.
+    """Edges of a boundary that climbs the tooth, each from its end at the root to that at the tip, the lowest first.
 
     Returns
     -------
@@ -100,9 +103,10 @@ def upward(section: Section, name: str) -> tuple[Index, Array]:
         [modules].
     """
     nodes, places = section.edge_nodes[name], section.edge_places[name]
-    rising = np.hypot(*places[:, 0]) < np.hypot(*places[:, -1])
+    height = section.side * np.hypot(*places)
+    rising = height[0] < height[-1]
     # The curve's middle decides for edges whose ends lie on the root circle alike.
-    order = np.argsort(np.hypot(*places[:, 1]) + np.hypot(*places[:, -2]))
+    order = np.argsort(height[1] + height[-2])
     return np.where(rising, nodes, nodes[::-1])[:, order], np.where(rising, places, places[:, ::-1])[:, :, order]
 
 
@@ -124,7 +128,14 @@ def flank_normals(tangent: Array, place: Array, tau: float) -> Array:
 
 
 def make_section(
-    mesh: SectorMesh, order: int, tau: float, poisson_ratio: float, base_radius: float, body: GearBody | None = None
+    mesh: SectorMesh,
+    order: int,
+    tau: float,
+    poisson_ratio: float,
+    base_radius: float,
+    body: GearBody | None = None,
+    *,
+    side: int = 1,
 ) -> Section:
     """Integrate the section's matrices.
 
@@ -140,6 +151,8 @@ def make_section(
         [modules].
     body : GearBody, optional
         Web and hub; without it the section is material over the whole face.
+    side : {1, -1}
+        Of an external or an internal tooth.
 
     Returns
     -------
@@ -156,7 +169,7 @@ def make_section(
     side_a, side_b = (_outward(edge_nodes[name], places) for name in ("side_a", "side_b"))
     _check_sides(side_a, side_b, places, mesh.teeth)
     count = nodes.shape[0]
-    axes = _axes(places, np.concatenate([side_a, side_b]), np.unique(edge_nodes["flank"]), base_radius, tau)
+    axes = _axes(places, np.concatenate([side_a, side_b]), np.unique(edge_nodes["flank"]), (base_radius, side), tau)
     return Section(
         stiffness=_stiffness(elements, axes[nodes], tau, poisson_ratio),
         element_dofs=(3 * nodes[:, :, None] + np.arange(3)).reshape(count, -1),
@@ -172,6 +185,7 @@ def make_section(
         poisson_ratio=poisson_ratio,
         zone=np.zeros(count, dtype=np.int64) if body is None else zones(body, mesh.points, mesh.triangles[:3]),
         spans=_WHOLE_FACE if body is None else body.spans,
+        side=side,
     )
 
 
@@ -193,18 +207,19 @@ def _check_sides(side_a: Index, side_b: Index, places: Array, teeth: int) -> Non
     )  # fmt: skip
 
 
-def _axes(places: Array, sides: Index, flank: Index, base_radius: float, tau: float) -> Array:
-    """Axes of every node, shape (N, 3, 3)."""
+def _axes(places: Array, sides: Index, flank: Index, base: tuple[float, int], tau: float) -> Array:
+    """Axes of every node, shape (N, 3, 3); `base` is the base radius [modules] and the side of the tooth."""
     axes = np.tile(np.eye(3), (places.shape[1], 1, 1))
     x, y = places[:, sides] / np.hypot(*places[:, sides])
     axes[sides, :2, 0] = np.stack([x, y], axis=1)
     axes[sides, :2, 1] = np.stack([y, -x], axis=1)
     # On the involute: the normal touches the base circle, so the tangent is the point's direction turned by the
-    # pressure angle toward the tooth.
+    # pressure angle toward an external tooth, away from an internal one.
     x, y = places[:, flank]
     r = np.hypot(x, y)
+    base_radius, side = base
     cos = np.minimum(base_radius / r, 1.0)
-    sin = np.sqrt(1.0 - cos * cos)
+    sin = side * np.sqrt(1.0 - cos * cos)
     tangent = np.stack([cos * x - sin * y, sin * x + cos * y]) / r
     normal = flank_normals(tangent, places[:, flank], tau)
     length = (normal * normal).sum(axis=0)

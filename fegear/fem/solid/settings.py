@@ -13,7 +13,7 @@ from fegear.base.errors import InputError, RangeError
 from fegear.fem.plane.settings import MeshSettings
 
 if TYPE_CHECKING:
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 
 #: A section as coarse as its order allows: some 200 triangles.
@@ -157,7 +157,7 @@ _SHORTEST_HELD = 0.02
 
 
 def check_solid(
-    section: Tooth,
+    section: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -176,11 +176,11 @@ def check_solid(
             "face_width", f"{width:.12g} modules", f"must lie between {_NARROWEST:g} and {_WIDEST:g} modules",
             "treat a narrower gear as plane, and shorten a wider one to the part that carries the load",
         )  # fmt: skip
-    steepest = math.tan(_STEEPEST) / section.tip_radius
-    if not abs(tau) <= steepest:
-        angle = math.degrees(math.atan(tau * section.tip_radius)) if math.isfinite(tau) else tau
+    outer, where = (section.root_radius, "root") if section.internal else (section.tip_radius, "tip")
+    if not abs(tau) <= math.tan(_STEEPEST) / outer:
+        angle = math.degrees(math.atan(tau * outer)) if math.isfinite(tau) else tau
         raise RangeError(
-            "helix_angle", f"{angle:.6g} degrees at the tip", f"must stay below {math.degrees(_STEEPEST):g} degrees"
+            "helix_angle", f"{angle:.6g} degrees at the {where}", f"must stay below {math.degrees(_STEEPEST):g} degrees"
         )
     if not -1.0 < poisson_ratio < 0.5:
         raise RangeError("poisson_ratio", poisson_ratio, "must lie between -1 and 0.5")

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from fegear.fem.solid.settings import SolidSettings
     from fegear.fem.solid.slice_laws import SliceLaws
     from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 
 #: Functions along the face of the plane section, all but the constant of which stay at rest; and its width.
@@ -82,7 +82,7 @@ def flank_shapes(flank: LoadedFlank, compliance: Array) -> FlankShapes:
 
 
 def solve_slices(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -161,7 +161,7 @@ def solver_of(settings: SolidSettings) -> Callable[..., SolidSolution]:
 
 
 def plane_section(
-    tooth: Tooth, poisson_ratio: float, bore_radius: float, settings: SolidSettings, reach: int
+    tooth: InvoluteTooth, poisson_ratio: float, bore_radius: float, settings: SolidSettings, reach: int
 ) -> SolidSolution:
     """Plane strain, by the solid's own elements without twist and axial displacement."""
     few = replace(settings, least_degree=_PLANE_DEGREE, waves_per_module=1e-3)
@@ -204,7 +204,7 @@ class ThinSlices(TwistedFlank):
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
         The transverse section.
     tau : float
         Twist [rad/module].
@@ -220,7 +220,7 @@ class ThinSlices(TwistedFlank):
     seconds : mapping of str to float
     """
 
-    tooth: Tooth
+    tooth: InvoluteTooth
     tau: float
     width: float
     poisson_ratio: float
@@ -306,7 +306,7 @@ class ThinLines:
 
 
 def solve_thin_slices(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,

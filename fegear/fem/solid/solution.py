@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: How far below the edge of a pressed band root tension begins [modules].
 _CLEARANCE = 0.25
@@ -48,7 +48,7 @@ class SolidSolution(TwistedFlank):
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
         The transverse section.
     tau : float
         Twist [rad/module], positive for a right hand.
@@ -76,7 +76,7 @@ class SolidSolution(TwistedFlank):
     seconds : mapping of str to float
     """
 
-    tooth: Tooth
+    tooth: InvoluteTooth
     tau: float
     width: float
     bore_radius: float
@@ -194,7 +194,7 @@ class SolidSolution(TwistedFlank):
 
 @tallied("tooth shapes")
 def solve_solid(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -212,7 +212,7 @@ def solve_solid(
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
         The transverse section.
     tau : float
         Twist tan(beta) / r [rad/module], positive for a right hand (z along the axis, out of the drawing).
@@ -248,7 +248,7 @@ def solve_solid(
 
 
 def _solve(
-    tooth: Tooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
+    tooth: InvoluteTooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
     held: tuple[float, float] | None, body: GearBody | None, mesh: SectorMesh | None, sector_teeth: int,
     plane_strain: bool,
 ) -> SolidSolution:  # fmt: skip
@@ -256,7 +256,7 @@ def _solve(
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
     if mesh is None:
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True)
-    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body)
+    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body, side=tooth.side)
     held = held if body is None else body.hub
     face = face_functions(width, settings.degree(width), (held or ()) if body is None else body.ends)
     known = solid_unknowns(section, face, settings, held, plane_strain=plane_strain)
@@ -300,7 +300,7 @@ def _solve(
 
 
 def section_mesh(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     bore_radius: float,
     settings: MeshSettings,
     body: GearBody | None,
@@ -324,7 +324,7 @@ def flank_nodes(section: Section) -> Index:
     return np.concatenate([line[0, :1], line[1:].T.ravel()])
 
 
-def section_flank(mesh: SectorMesh, section: Section, tooth: Tooth) -> LoadedFlank:
+def section_flank(mesh: SectorMesh, section: Section, tooth: InvoluteTooth) -> LoadedFlank:
     """The loaded flank of a section; nothing presses on fillet or tip rounding."""
     return loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
 

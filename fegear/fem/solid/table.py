@@ -141,7 +141,7 @@ def solid_table(
         "c_neighbour": np.maximum(relative["c_prev"] * c["c_prev"], relative["c_next"] * c["c_next"]),
         **{f"root_{side}": relative[f"root_{side}"] * np.abs(found.value) for side, found in root.items()},
     }
-    roll = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
+    roll = gear.tooth.roll(r / m)
     return SolidTable(
         root, errors, influence, time.perf_counter() - started, r, roll, b, asked.pressed_half_width * m, z, before,
         after, **c,

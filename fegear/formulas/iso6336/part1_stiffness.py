@@ -199,11 +199,11 @@ def pair_stiffness(pair: GearPair, line_load: float = math.inf, blank: float = 1
     """
     pinion, wheel = sorted((pair.driver, pair.driven), key=lambda g: (g.teeth, -g.tooth.profile_shift))
     return stiffness(
-        (pinion.teeth, wheel.teeth),
+        (pinion.tooth.side * pinion.teeth, wheel.tooth.side * wheel.teeth),
         pair.contact_ratio,
         helix_angle=pair.driver.helix_angle,
         profile_shift=(pinion.tooth.profile_shift, wheel.tooth.profile_shift),
-        dedendum=(pinion.external_tooth.rack.dedendum, wheel.external_tooth.rack.dedendum),
+        dedendum=(pinion.tooth.dedendum, wheel.tooth.dedendum),
         pressure_angle=pinion.normal_pressure_angle,
         blank=blank,
         specific_load=line_load,

@@ -155,4 +155,5 @@ SOLID_SOLUTION = Stage(
     check=check_solid_gear,
     cites=citing(*RING),
     forecast=_forecast_solid,
+    internal=True,
 )

@@ -128,4 +128,5 @@ CONTACT_PATTERN = Stage(
     effects=WIDE_EFFECTS,
     cites=citing(Citation("iso-21771", "contact lines in the plane of action", "5.4")),
     forecast=lambda _scene, _name: forecasts.constant(0.1),
+    internal=True,
 )

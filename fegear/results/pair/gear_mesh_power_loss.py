@@ -434,6 +434,7 @@ GEAR_MESH_POWER_LOSS = Stage(
     effects_of=effects_of_teeth,
     cites=_cites,
     forecast=_forecast,
+    internal=True,
 )
 
 

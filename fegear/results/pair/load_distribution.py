@@ -327,4 +327,5 @@ LOAD_DISTRIBUTION = Stage(
     effects=WIDE_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
+    internal=True,
 )

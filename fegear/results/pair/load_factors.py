@@ -181,4 +181,5 @@ FLANK_LOAD_FACTORS = Stage(
     effects=WIDE_EFFECTS,
     cites=citing(*RING, Citation("iso-6336-1", "face and transverse load factors", "clauses 7 to 9")),
     forecast=_forecast,
+    internal=True,
 )

@@ -263,4 +263,5 @@ LOADED_FLANKS = Stage(
     effects=WIDE_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
+    internal=True,
 )
