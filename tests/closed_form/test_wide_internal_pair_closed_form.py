@@ -8,7 +8,7 @@ import pytest
 
 from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
-from fegear.contact.wide.gaps import FlankGaps, touching_gaps, unloaded_error
+from fegear.contact.wide.gaps import FlankGaps, beside_the_lines, touching_gaps, unloaded_error
 from fegear.contact.wide.lines import base_twist, contact_lines
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
@@ -90,6 +90,15 @@ def test_unmodified_flanks_touch_and_tilted_ones_part_as_rigid_bodies_do(ring_dr
         exact = touching_gaps(pair, FlankGaps(tilt=tilt), lines)
         apart = (exact - gap)[on & np.isfinite(exact)]
         assert np.ptp(apart) < 2e-3 * np.ptp(gap[on])
+
+
+def test_a_mate_that_begins_beside_the_end_of_a_line_is_not_taken_for_where_flanks_touch():
+    """At the end of a tilted face, just before the pitch point: 24 um were said for less than a nanometre."""
+    pair = geared()
+    half = 0.5 * FACE * base_twist(pair)
+    lines = contact_lines(pair, [-half - 0.05e-3, half - 0.05e-3], 0.5 * M)  # at x = -.05 mm on either end
+    gaps = FlankGaps(tilt=ShaftTilt(out_of_plane=3e-4))
+    assert beside_the_lines(pair, gaps, lines) < 5e-9
 
 
 @pytest.mark.parametrize("ring_drives", [False, True])

@@ -80,7 +80,7 @@ def worst(case, solution):
     return off
 
 
-@pytest.mark.parametrize("case", ["spur", "helical", "helical_ring"])
+@pytest.mark.parametrize("case", ["spur", "helical", "ring", "helical_ring"])
 def test_the_reference_itself_has_converged(case):
     """What extrapolation adds: at most .15 % of deflections and .2 % of stresses; reciprocity is spoilt by no mesh."""
     fine = FOUND[case]["fine"]["deflection"]
@@ -125,7 +125,7 @@ def test_stated_errors_of_root_stress_cover_the_difference():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("case", ["spur", "helical", "helical_ring"])
+@pytest.mark.parametrize("case", ["spur", "helical", "ring", "helical_ring"])
 def test_fine_settings_are_within_half_a_per_cent(case):
     usual = SolidSettings().scaled(0.8)
     fine = replace(usual, waves_per_module=4.0, section=replace(usual.section, order=4))

@@ -8,6 +8,6 @@
     found.transmission_error, found.share, found.line_load, found.pressure, found.face_load_factor
 
 Loads are transverse forces along the transverse line of action; heights z count from the middle of the common face
-along the driver's axis, in whose drawing the driver turns clockwise, its loaded flank at x > 0. A ring that drives turns
-counter-clockwise there: the ends of the face are those of the same flanks when its planet drives.
+along the driver's axis, in whose drawing the driver turns clockwise, its loaded flank at x > 0. A ring that drives
+turns counter-clockwise there: the ends of the face are those of the same flanks when its planet drives.
 """

@@ -164,9 +164,14 @@ def touching_gaps(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> Array
 
 
 def beside_the_lines(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> float:
-    """Largest difference of `FlankGaps.at` from the least gaps up the flanks, but for a shift of all [m]."""
+    """Largest difference of `FlankGaps.at` from the least gaps up the flanks, but for a shift of all [m].
+
+    Of stations that lie on both flanks: at the end of a tilted face the mate may begin only beside the contact line.
+    """
     on_path = lines.present if lines.edges is None else lines.present & (lines.edges.gap == 0.0)
-    found = np.where(on_path, touching_gaps(pair, gaps, lines), np.inf)
+    places = _Places(lines.x, lines.z, lines.pair)
+    here = _helicoids(pair, gaps, places, np.clip(pair.roll_angle(lines.x, "driver"), *_limits(pair, "driver")))[0]
+    found = np.where(on_path & np.isfinite(here), _least(pair, gaps, places), np.inf)
     on = np.isfinite(found)
     change = gaps.at(pair, lines)[on] - found[on]
     return float(np.abs(change - np.median(change)).max()) if change.size else 0.0
