@@ -126,22 +126,13 @@ class Drawing:
 
 def _write_field(field: MeshField | SolidMeshField, folder: Path) -> None:
     """Write ``<name>.vtu`` for ParaView."""
-    from fegear.fem.plane.imported_mesh import write_mesh_file, write_solid_file
+    from fegear.output.vtu import write_vtu
 
     folder.mkdir(exist_ok=True)
+    plane = not isinstance(field, SolidMeshField)
+    elements = field.triangles if plane else field.wedges
     path = folder / f"{file_name(field.name)}.vtu"
-    if isinstance(field, SolidMeshField):
-        none = np.empty((20, 0), dtype=np.int64)
-        write_solid_file(path, np.asarray(field.points), field.wedges, none, field.values)
-        return
-    write_mesh_file(
-        path,
-        np.asarray(field.points),
-        field.triangles,
-        {},
-        field.values,
-        single=True,
-    )
+    write_vtu(path, np.asarray(field.points), (elements,), field.values, single=plane)
 
 
 #: What the other process runs, with the search path of this one. Not multiprocessing's: that would load the main

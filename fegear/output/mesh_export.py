@@ -9,6 +9,7 @@ import numpy as np
 from fegear.fem.plane.imported_mesh import write_mesh_file
 from fegear.fem.plane.whole_gear import loaded_gear, nodal_fields
 from fegear.output.dxf import AS_GENERATED
+from fegear.output.vtu import write_vtu
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -106,15 +107,14 @@ def write_meshes(
     written = []
     if "msh" in formats:
         written.append(folder / f"{name}.msh")
-        write_mesh_file(written[-1], points, whole.triangles, whole.boundaries, {})
+        write_mesh_file(written[-1], points, whole.triangles, whole.boundaries)
         written[-1].write_text(
             f"$Comments\nFlanks {AS_GENERATED}.\n$EndComments\n{written[-1].read_text('utf-8')}", "utf-8"
         )
     if "vtu" in formats:
         written.append(folder / f"{name}.vtu")
-        write_mesh_file(written[-1], points, whole.triangles, {}, nodal_fields(gear, whole, field, 1e3))
-        head, _, rest = written[-1].read_bytes().partition(b"\n")
-        written[-1].write_bytes(head + f"\n<!-- Flanks {AS_GENERATED}. -->\n".encode() + rest)
+        data = nodal_fields(gear, whole, field, 1e3)
+        write_vtu(written[-1], points, (whole.triangles,), data, remark=f"Flanks {AS_GENERATED}.")
     if "inp" in formats:
         written.append(folder / f"{name}.inp")
         write_inp(written[-1], gear, whole, field.forces)
