@@ -12,7 +12,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from case_laws import CASES, assert_same, case, cases, changed, dimensions, ran
+from case_laws import CASES, assert_same, case, cases, changed, columns, dimensions, ran
 
 from fegear.base.units import quantity, registry
 from fegear.case.part import _number
@@ -94,6 +94,33 @@ def test_mechanics_knows_no_units_of_length_mass_and_time(name, how, monkeypatch
 
     scaled = changed(document, other)
     assert_same(ran(document, monkeypatch), ran(scaled, monkeypatch), scales)
+
+
+@pytest.fixture(scope="module")
+def searched():
+    """NASA's pair with reliefs that are searched, as it is and in other units."""
+    document = with_steel(case("nasa_relief_design"))
+    document |= {"results": ["relief"], "accuracy": {"tolerance": 1e-2}}
+    with pytest.MonkeyPatch.context() as patch:
+        other = changed(document, lambda one: rescaled(one, SCALES["units"]))
+        return columns(ran(document, patch)), columns(ran(other, patch))
+
+
+def test_other_units_leave_searched_reliefs_and_what_they_leave(searched):
+    """Scaling the lengths once made 18.7 um of 41.3 um."""
+    length = SCALES["units"][0]
+    for name, factor in (("amount", length), ("te_peak_to_peak", length), ("least", length), ("start_roll_angle", 1.0)):
+        one, other = (found[f"grindable_I.{name}"][0] for found in searched)
+        np.testing.assert_allclose(other, one * factor, rtol=1e-6)
+
+
+def test_curves_of_searched_reliefs_stay_within_half_of_their_errors(searched):
+    """Between processors they moved by 6.6e-9 without a stated error."""
+    for shape in ("linear", "parabolic"):
+        one, other = (found[f"harris_map_I.te_{shape}_tip_relief"][0] for found in searched)
+        error = searched[0][f"harris_map_I.te_{shape}_tip_relief_error"][0]
+        assert (np.abs(other / SCALES["units"][0] - one) <= 0.5 * error).all()
+        assert (error < 1e-4 * one.max()).all()
 
 
 @pytest.mark.parametrize("name", cases())

@@ -86,6 +86,15 @@ class TipReliefPair:
     objective_error: float
     seconds: float
 
+    @property
+    def removal_error(self) -> float:
+        """By how much what both take off a pair may differ from one run to the next, and so the transmission error [m].
+
+        Amounts and lengths are found again within `REPEATED`; a removal changes with its length by `power` times as
+        much, over both.
+        """
+        return REPEATED * sum((1.0 + one.power) * one.amount for one in (self.driver, self.driven))
+
     def applied(self, engagement: Engagement) -> Engagement:
         """The pair with this relief instead of its own."""
         return replace(engagement, driver_relief=self.driver, driven_relief=self.driven)

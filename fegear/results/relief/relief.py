@@ -188,7 +188,7 @@ def _present(data: ReliefData, inputs: ReliefInputs) -> Outcome:
     tables += [points_table(name, inputs.labels[m], inputs.gears[m], table) for m, table in data.points.items()]
     if design.ground:
         tables.append(grindable_table(name, design.ground, design.te, data.pair.engagement.pair))
-    tables.append(harris_table(name, design.curves))
+    tables.append(harris_table(name, design.curves, design.ground))
     settings = {
         "design_load": load, "design_contact_ratio": loading.length / loading.base_pitch, "peak": loading.peak,
         "slope": loading.ramp.slope, "exponent": loading.ramp.exponent or 0, "centre": loading.centre,

@@ -153,8 +153,11 @@ def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
     ]
 
 
-def harris_table(name: str, curves: Mapping[str, Loaded]) -> Table:
-    """Transmission error over the mesh cycle for a family of loads, with each relief."""
+_BY_RELIEF = "by the last digits to which the search finds both reliefs again"
+
+
+def harris_table(name: str, curves: Mapping[str, Loaded], ground: Mapping[Shape, TipReliefPair]) -> Table:
+    """Transmission error over the mesh cycle for a family of loads, with each relief; a searched one has an error."""
     from fegear.design.charts import ReliefChart
 
     first = next(iter(curves.values()))
@@ -166,6 +169,9 @@ def harris_table(name: str, curves: Mapping[str, Loaded]) -> Table:
     for label, curve in curves.items():
         head = "te_" + label.replace(" ", "_")
         columns.append(Column(head, curve.transmission_error.T.ravel(), "um", f"transmission error, {label}"))
+        found = next((one for shape, one in ground.items() if label == f"{shape} tip relief"), None)
+        if found is not None:
+            columns.append(error_column(columns[-1], np.full(n * loads.size, found.removal_error), _BY_RELIEF))
     return Table(f"harris_map_{name}", tuple(columns), f"Harris map of {name}")
 
 
