@@ -129,10 +129,10 @@ def _write_field(field: MeshField | SolidMeshField, folder: Path) -> None:
     from fegear.output.vtu import write_vtu
 
     folder.mkdir(exist_ok=True)
-    plane = not isinstance(field, SolidMeshField)
-    elements = field.triangles if plane else field.wedges
+    solid = isinstance(field, SolidMeshField)
+    elements = field.wedges if isinstance(field, SolidMeshField) else field.triangles
     path = folder / f"{file_name(field.name)}.vtu"
-    write_vtu(path, np.asarray(field.points), (elements,), field.values, single=plane)
+    write_vtu(path, np.asarray(field.points), (elements,), field.values, single=not solid)
 
 
 #: What the other process runs, with the search path of this one. Not multiprocessing's: that would load the main

@@ -238,10 +238,10 @@ def nodal_fields(gear: Gear, whole: WholeGear, field: GearField, line_load: floa
     """
     count = whole.points.shape[1]
     displacement, stress, times = np.zeros((count, 3)), np.zeros(count), np.zeros(count)
-    pitch = 2.0 * np.pi / gear.teeth
+    pitch, von_mises = 2.0 * np.pi / gear.teeth, field.von_mises
     for k, nodes in enumerate(whole.sector_nodes):
         displacement[nodes, :2] = turned(field.displacement[k], k * pitch).T
-        stress[nodes] += field.von_mises[k]
+        stress[nodes] += von_mises[k]
         times[nodes] += 1.0
     return {
         "displacement": displacement * line_load / gear.material.young_modulus * _MM,

@@ -86,7 +86,14 @@ def _draw(figure: Figure, views: tuple[View, ...], path: Path, head: tuple[str, 
 
 
 def warm_up() -> None:
-    """Load matplotlib, its font and the writer of PNG, so that the first picture need not: a word on a stamp's room."""
+    """Load matplotlib, its font and the writer of PNG, so that the first picture need not: a word on a stamp's room.
+
+    In a process that only draws: matplotlib writes the help texts of all its classes as it is loaded, a fifth of that
+    time, and nobody asks for them there.
+    """
+    from matplotlib import artist as artists
+
+    artists.kwdoc = lambda artist: ""  # noqa: ARG005  (it is called by that name)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as Canvas
 
