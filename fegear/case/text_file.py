@@ -8,6 +8,7 @@ from __future__ import annotations
 import codecs
 import contextlib
 import csv
+import errno
 import hashlib
 import math
 import os
@@ -196,7 +197,8 @@ def write_file(path: Path, data: bytes, key: str) -> None:
             raise
     except OSError as error:
         reason = error.strerror or error
-        raise InputError(key, shown(str(path), PATH), f"cannot be written ({reason})", "choose another name") from None
+        remedy = "make room" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "choose another name"
+        raise InputError(key, shown(str(path), PATH), f"cannot be written ({reason})", remedy) from None
     except ValueError:
         raise InputError(key, shown(str(path), PATH), "can be no file's name", "check its characters") from None
 
@@ -207,6 +209,8 @@ def _umask() -> int:
     return mask
 
 
+#: Most lines of a table: some seconds of reading.
+_MOST_LINES = 400_000
 _HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
 
 
@@ -255,7 +259,10 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
 
 def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
     """Heads and rows with the numbers of their lines, the last entry of each without the empty one behind a comma."""
-    lines = [(number, line) for number, line in enumerate(read_text(path, key).splitlines(), start=1) if line.strip()]
+    every = read_text(path, key).splitlines()
+    if len(every) > _MOST_LINES:
+        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "leave out every second")
+    lines = [(number, line) for number, line in enumerate(every, start=1) if line.strip()]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if len(lines) < 2:
         raise InputError(key, f'"{path.name}"', "has no heads with numbers below them")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import stat
 import sys
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -118,25 +120,53 @@ def new(
 
 
 def _copy_example(name: str, path: Path, voice: Voice, *, force: bool) -> None:
-    """Write an example, and below its folder the files that it names."""
+    """Write an example, and below its folder the files that it names: all of them, or nothing."""
     from fegear.case.examples import example
     from fegear.case.text_file import write_file
 
     text, files = example(name)
-    for named, content in files.items():
-        beside = path.parent / named
-        if beside.exists() and beside.read_bytes() != content and not force:
-            raise InputError(
-                "NAME", shown(str(beside), PATH), "is there already, and is not the example's",
-                "move it away, or replace it with --force",
-            )  # fmt: skip
-    for named, content in files.items():
-        beside = path.parent / named
-        beside.parent.mkdir(parents=True, exist_ok=True)
-        write_file(beside, content, "NAME")
-        voice.say(f"Wrote {beside}, which the case reads")
-    write_file(path, text.encode(), "NAME")
+    beside = {path.parent / named: content for named, content in files.items()}
+    for place, content in beside.items():
+        _check_place(place, content, force=force)
+    with ExitStack() as undone:
+        for place, content in {**beside, path: text.encode()}.items():
+            if not place.parent.is_dir():  # an example keeps its files one folder below
+                _make_folder(place.parent)
+                undone.callback(place.parent.rmdir)
+            new = not os.path.lexists(place)
+            write_file(place, content, "NAME")
+            if new:
+                undone.callback(place.unlink)
+        undone.pop_all()
+    for place in beside:
+        voice.say(f"Wrote {place}, which the case reads")
     voice.say(f"Wrote {path}; next: fegear run {path}")
+
+
+def _check_place(place: Path, content: bytes, *, force: bool) -> None:
+    """Refuse a place where something else stands than what is to be written there."""
+    told = shown(str(place), PATH)
+    try:
+        state = place.stat()
+        if not stat.S_ISREG(state.st_mode):
+            raise InputError("NAME", told, "is no file, and the example needs one there", "move it away")
+        same = state.st_size == len(content) and place.read_bytes() == content
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise InputError("NAME", told, f"cannot be looked at ({error.strerror})", "choose another folder") from None
+    if not same and not force:
+        raise InputError(
+            "NAME", told, "is there already, and is not the example's", "move it away, or replace it with --force"
+        )
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir()
+    except OSError as error:
+        rule = f"can be no folder ({error.strerror})"
+        raise InputError("NAME", shown(str(folder), PATH), rule, "choose another folder for the case") from None
 
 
 def case_file(name: str, *, force: bool) -> Path:

@@ -123,7 +123,7 @@ class Gear(Described):
         """The gear of the geometry package, spur or helical, in SI throughout."""
         return self._scene.gears[self.name]
 
-    def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
+    def export(self, folder: str | os.PathLike[str], formats: str | list[str] = "dxf") -> list[Path]:
         """Write drawings and meshes, as ``fegear export`` does; see `Results.export`.
 
         Relief that ends with the path of contact is drawn by `Pair.export`.

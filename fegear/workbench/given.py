@@ -126,7 +126,7 @@ def name_of(value: Any) -> str:
     return _text(value, "name")
 
 
-def texts(value: Any, key: str) -> list[str]:
+def texts(value: Any, key: str, example: str = "geometry") -> list[str]:
     """One text, or several, as a list.
 
     Raises
@@ -137,7 +137,7 @@ def texts(value: Any, key: str) -> list[str]:
     found = taken(value, key)
     found = [found] if isinstance(found, str) else found
     if not isinstance(found, list) or not all(isinstance(one, str) for one in found):
-        raise InputError(key, shown(value), "must be a text or a list of texts", 'write for example "geometry"')
+        raise InputError(key, shown(value), "must be a text or a list of texts", f'write for example "{example}"')
     return found
 
 

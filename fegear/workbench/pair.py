@@ -9,6 +9,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.results.pair.root_stress_history import table_names
 from fegear.workbench.gear import Described, Gear
 from fegear.workbench.given import brief, name_of, table, taken
+from fegear.workbench.results import Results
 
 if TYPE_CHECKING:
     import os
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.geometry.pair import GearPair, Member
     from fegear.workbench.given import Length
-    from fegear.workbench.results import Results
 
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
 
@@ -121,7 +121,7 @@ class Pair(Described):
             )  # fmt: skip
         return self._scene.helical_pairs[self.name]
 
-    def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
+    def export(self, folder: str | os.PathLike[str], formats: str | list[str] = "dxf") -> list[Path]:
         """Write drawings and meshes of both gears, as ``fegear export`` does; see `Results.export`."""
         return self.data.export(folder, formats)
 
@@ -145,6 +145,10 @@ class Pair(Described):
         InputError
             If the design has no such relief.
         """
+        if not isinstance(design, Results):
+            raise InputError("design", shown(design), "is no design", "give what fegear.relief returned")
+        if not isinstance(shape, str):
+            raise InputError("shape", shown(shape), "is no text", 'write for example "linear"')
         labels = table_names(design.scene, self.name)
         reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
         driver, driven = (

@@ -18,7 +18,7 @@ from fegear.engine.run import Silence
 from fegear.engine.table import Column, Table
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
-from fegear.workbench.given import folder_of
+from fegear.workbench.given import folder_of, texts
 from fegear.workbench.plots import Plots
 
 if TYPE_CHECKING:
@@ -200,13 +200,15 @@ class Results(Found):
             write_results(self, scratch, Silence(), plots=plots)
         return target
 
-    def export(self, folder: str | os.PathLike[str], formats: str = "dxf", gears: tuple[str, ...] = ()) -> list[Path]:
+    def export(
+        self, folder: str | os.PathLike[str], formats: str | list[str] = "dxf", gears: tuple[str, ...] = ()
+    ) -> list[Path]:
         """Write drawings and meshes of the gears, as ``fegear export`` does.
 
         Parameters
         ----------
         folder : path
-        formats : str
+        formats : str or list of str
             Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, rexs, separated by commas.
         gears : tuple of str
             Names of gears; all of them by default.
@@ -224,9 +226,9 @@ class Results(Found):
         from fegear.output.export import export_gears
         from fegear.output.folder import whole_or_nothing
 
-        target = folder_of(folder)
+        kinds, names, target = texts(formats, "formats", "dxf"), texts(gears, "gears", "pinion"), folder_of(folder)
         with whole_or_nothing(target, "folder") as scratch:
-            written = export_gears(self.scene, scratch, gears, formats)
+            written = export_gears(self.scene, scratch, tuple(names), ",".join(kinds))
         for remark in written.remarks:
             warnings.warn(remark, stacklevel=2)
         return [target / name for name in written.files]

@@ -6,21 +6,19 @@ The mutator is seeded, so that what it finds can be found again: number `n` is a
 from __future__ import annotations
 
 import copy
-import datetime as dt
 import decimal
 import fractions
 import math
 import random
-import signal
 import tomllib
 import traceback
 import warnings
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pint
 import pytest
+from mutations import STRANGE, failures, mutated, processor_seconds, sentence, torn
 
 import fegear
 from fegear.base.errors import FegearError, shown
@@ -58,135 +56,6 @@ compliance = { source = "weber-banaschek" }
 hertz = "load-dependent"
 relief = true
 """
-UNITS = [
-    "mm",
-    "um",
-    "m",
-    "inch",
-    "deg",
-    "rad",
-    "N",
-    "kN",
-    "N*m",
-    "MPa",
-    "GPa",
-    "rpm",
-    "kg/m^3",
-    "h",
-    "degC",
-    "",
-    "lb",
-    "°",
-    "µm",
-]
-STRANGE = [
-    "", " ", "x", "nan", "inf", "-inf mm", "0 mm", "-3 mm", "1e400 mm", "1e-400 mm", "3,175 mm", "1/2 inch", "齿轮",
-    "Ω",
-    "a\nb",
-    "n" * 3000, "../../etc/passwd", "\u200b", "a.b", '"', "{}", "%s", "3 mm 4 mm", "٣ mm", "true",
-    0, -1, 1, 10**9, 10**400, -(10**400), 0.0, -0.0, 1e-320, 1e308, math.nan, math.inf, True, False,
-    [], [[]], ["1 mm"], [0, 1], [True], {}, {"a": 1}, {"": ""}, {"start": 0}, dt.date(2026, 1, 1),
-    dt.time(1),
-]  # fmt: skip
-
-
-@contextmanager
-def processor_seconds(most: float):
-    """Nothing takes longer than so many seconds of the processor."""
-
-    def stop(_number, _frame):
-        raise TimeoutError(f"took more than {most} s")
-
-    before = signal.signal(signal.SIGVTALRM, stop)
-    signal.setitimer(signal.ITIMER_VIRTUAL, most)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-        signal.signal(signal.SIGVTALRM, before)
-
-
-def places(table, path=()):
-    """All keys of a document, tables included."""
-    entries = table.items() if isinstance(table, dict) else enumerate(table)
-    for key, value in list(entries):
-        yield (*path, key)
-        if isinstance(value, (dict, list)):
-            yield from places(value, (*path, key))
-
-
-def reached(table, place):
-    """What stands at a place."""
-    for step in place:
-        table = table[step]
-    return table
-
-
-def changed_value(value, draw: random.Random):
-    """A value near to another one, or far from it."""
-    if draw.random() < 0.2:
-        return draw.choice(STRANGE)
-    if isinstance(value, bool):
-        return not value
-    if isinstance(value, (int, float)):
-        factor = draw.choice([-1, 10, 0.1, 1e3, 1e-3, 1e6, 1e-6, 1e12, 1.001])
-        return int(value * factor) if isinstance(value, int) and draw.random() < 0.7 else value * factor
-    if isinstance(value, str):
-        head, _, unit = value.partition(" ")
-        try:
-            number = float(head)
-        except ValueError:
-            at = draw.randrange(len(value) + 1)
-            return value[:at] + draw.choice(["", "x", "é", " ", value[at:] or "y"]) + value[at + 1 :]
-        how = draw.random()
-        if how < 0.4:
-            return f"{number * draw.choice([-1, 0, 10, 1e3, 1e-3, 1e6, 1e-6, 1e15])!r} {unit}"
-        return f"{head} {draw.choice(UNITS)}" if how < 0.8 else number
-    if isinstance(value, list):
-        return draw.choice([value * 50, value[:1], value[::-1], [*value, draw.choice(STRANGE)], [value], value[1:]])
-    if isinstance(value, dict):
-        return draw.choice([list(value), {**value, "x": 1}, dict(list(value.items())[1:]), list(value.values())])
-    return draw.choice(STRANGE)
-
-
-def mutated(document, draw: random.Random):
-    """A document with one to three things changed."""
-    made = copy.deepcopy(document)
-    for _ in range(draw.choice([1, 1, 1, 2, 3])):
-        every = list(places(made))
-        ends = [place for place in every if not isinstance(reached(made, place), (dict, list))]
-        every = ends if ends and draw.random() < 0.75 else every
-        if not every:
-            break
-        *above, key = draw.choice(every)
-        table = reached(made, above)
-        how = draw.random()
-        if how < 0.75:
-            table[key] = changed_value(table[key], draw)
-        elif how < 0.81:
-            del table[key]
-        elif how < 0.86 and isinstance(table, dict):
-            table[draw.choice([f"{key}s", str(key)[:-1], str(key).upper(), "", "齿"])] = table.pop(key)
-        elif how < 0.95:
-            table[key] = copy.deepcopy(reached(made, draw.choice(every)))
-        elif isinstance(table, dict):
-            table |= dict.fromkeys([str(key), "extra"], draw.choice(STRANGE))
-    return made
-
-
-def torn(text: str, draw: random.Random) -> str:
-    """A text with characters or lines lost, doubled, swapped, or of another kind."""
-    for _ in range(draw.choice([1, 1, 2, 5])):
-        at = draw.randrange(len(text) + 1)
-        lines = text.splitlines(keepends=True)
-        line = draw.randrange(len(lines) or 1)
-        sign = draw.choice(['"', "[", "]", "{", "=", ".", "\n", "\0", "é", "\ufeff", "9", "-", "#", ","])
-        text = draw.choice([
-            text[:at] + text[at + 1 :], text[:at] + sign + text[at:], text[:at],
-            "".join(lines[:line] + lines[line + 1 :]),
-            "".join(lines[: line + 1] + lines[line:]), "".join(draw.sample(lines, len(lines))),
-        ])  # fmt: skip
-    return text
 
 
 def judge_case(number: int) -> str:
@@ -222,18 +91,6 @@ def judge_case(number: int) -> str:
     except Exception:  # noqa: BLE001  (any other is what is looked for)
         return traceback.format_exc(limit=-4)
     return ""
-
-
-def sentence(refusal: FegearError) -> str:
-    """Empty if a refusal is one sentence that can be read."""
-    text = str(refusal)
-    good = text and "\n" not in text and len(text) < 2500 and text.endswith((".", '"', "?"))
-    return "" if good else f"no sentence: {text[:300]!r}"
-
-
-def failures(judge, numbers) -> str:
-    told = {number: judge(number) for number in numbers}
-    return "\n".join(f"mutation {number}: {what}" for number, what in told.items() if what)
 
 
 def test_a_sample_of_mutated_case_files_is_refused_in_a_sentence_or_answered():
@@ -334,4 +191,62 @@ def test_a_sample_of_wrong_arguments_is_refused_in_a_sentence_or_answered(tmp_pa
 def test_wrong_arguments_are_refused_in_a_sentence_or_answered(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     asked = questions(tmp_path)
+    assert failures(lambda number: judge_call(asked, number), range(1000)) == ""
+
+
+def newer_doors(folder):
+    """Rings, bodies, shafts, sets, measured flanks, drawings and models, with arguments that are right."""
+    write_traces(folder)
+    ring = {
+        "teeth": 60, "module": "4 mm", "internal": True, "profile_shift": -0.3, "tip_diameter": "236 mm",
+        "cutter": {"teeth": 25, "profile_shift": 0.1, "addendum": 1.25, "tip_radius": 0.2}, "rim_thickness": "16 mm",
+        "thickness_allowance": "80 um", "face_width": "40 mm", "name": "环",
+    }  # fmt: skip
+    wide = {
+        "teeth": 20, "normal_module": "3 mm", "helix_angle": "15 deg", "hand": "right", "face_width": "30 mm",
+        "bore_radius": "12 mm", "lead": {"crowning": "3 um"}, "bias": "2 um", "measured": {"lead": "lead.csv"},
+        "body": {"rim_thickness": "4 mm", "web_thickness": "6 mm", "hub_radius": "16 mm"}, "name": "wide",
+    }  # fmt: skip
+    mate = {**{k: v for k, v in wide.items() if k not in ("body", "measured")}, "hand": "left", "name": "mate"}
+    planet = fegear.Gear(23, "4 mm", profile_shift=0.3, face_width="40 mm", name="planet")
+    in_ring = fegear.Pair(planet, fegear.Gear(**ring))
+    helical = fegear.Pair(fegear.Gear(**{**mate, "hand": "right", "name": "a"}), fegear.Gear(**mate))
+    shafts, planets = (tomllib.loads((ROOT / "cases" / f"{name}.toml").read_text("utf-8"))
+                       for name in ("two_stage_shafts", "planetary_set"))  # fmt: skip
+    found = helical.data
+    return [
+        (fegear.Gear, ring),
+        (fegear.Gear, wide),
+        (fegear.Pair, {"driver": planet, "driven": in_ring.driven, "name": "R", "torque": "90 N*m"}),
+        (fegear.Pair, {"driver": helical.driver, "driven": helical.driven, "width": "slices", "axial_offset": "1 mm",
+                       "line_error": {"over_face": "6 um"}, "shafts": {}, "lubricant": {}, "iso_6336": {}}),
+        (fegear.load_sharing, {"pair": in_ring, "torque": "90 N*m", "effects": {"corner_contact": True}}),
+        (fegear.rating, {"pair": in_ring, "torque": "90 N*m", "speed": "900 rpm", "operation": {"life": "1000 h"}}),
+        (fegear.run, {"case": shafts, "changes": {"shaft.mid.sections": [{"length": "120 mm", "outer": "40 mm"}]},
+                      "results": ["shaft-deflection"]}),
+        (fegear.run, {"case": planets, "changes": {"planetary.P.planets": 4}, "results": ["planet-set"]}),
+        (planet.export, {"folder": folder / "drawn", "formats": "dxf"}),
+        (planet.data.export, {"folder": folder / "drawn", "formats": "dxf,step", "gears": ("planet",)}),
+        (planet.data.save, {"folder": folder / "saved"}),
+        (helical.relieved, {"design": found, "shape": "linear"}),
+    ]  # fmt: skip
+
+
+def write_traces(folder):
+    for kind in ("lead", "profile"):
+        (folder / f"{kind}.csv").write_bytes((ROOT / "cases" / "data" / f"measured_pinion_{kind}.csv").read_bytes())
+
+
+@pytest.mark.usefixtures("planned_alone")
+def test_a_sample_of_wrong_arguments_of_newer_doors_is_refused_or_answered(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = newer_doors(tmp_path)
+    assert failures(lambda number: judge_call(asked, number), range(0, 1000, 20)) == ""
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("planned_alone")
+def test_wrong_arguments_of_newer_doors_are_refused_or_answered(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = newer_doors(tmp_path)
     assert failures(lambda number: judge_call(asked, number), range(1000)) == ""

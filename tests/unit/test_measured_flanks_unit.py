@@ -207,3 +207,30 @@ def test_the_case_with_synthetic_traces_says_that_they_are():
     for name in ("profile", "lead"):
         head = (CASES / "data" / f"measured_pinion_{name}.csv").read_text("utf-8").splitlines()[0]
         assert head.startswith("# Synthetic")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda text: text.replace("[um]", "[mm]"), r"deviation 1000 um.*more than a tenth of the module.*unit"),
+        (lambda text: text.replace("\n1,", "\n1.5,"), r"tooth 1.5.*whole number up to 21"),
+        (lambda text: text.replace("\n1,", "\n22,"), r"tooth 22.*whole number up to 21"),
+        (lambda text: text.replace("\n1,", "\n-1,"), r"tooth -1.*whole number"),
+        (lambda text: text.replace(",1\n", ",1e300\n", 1), r"deviation 1e\+300 um"),
+    ],
+)
+def test_what_no_tooth_can_be_measured_to_be_is_refused(tmp_path, change, said):
+    """Two metres of deviation and tooth 9,999 of 21 were evaluated as if they had been measured."""
+    roll = np.degrees(flank(scene_of(tmp_path, {"profile": "p.csv"}))[0])
+    write(tmp_path / "p.csv", ("tooth", "roll_angle [deg]", "deviation [um]"), np.ones(400), roll, np.ones(400))
+    measured_gear(scene_of(tmp_path, {"profile": "p.csv"}), "a")
+    (tmp_path / "p.csv").write_text(change((tmp_path / "p.csv").read_text("utf-8")), "utf-8")
+    with pytest.raises(InputError, match=said):
+        measured_gear(scene_of(tmp_path, {"profile": "p.csv"}), "a")
+
+
+def test_a_file_of_a_million_lines_is_refused_before_it_is_read_line_by_line(tmp_path):
+    """Three million places took a minute and 1.4 GB until they were refused."""
+    (tmp_path / "p.csv").write_text("roll_angle [deg],deviation [um]\n" + "x\n" * 1_000_000, "utf-8")
+    with pytest.raises(InputError, match="has more than 400,000 lines; leave out every second"):
+        measured_gear(scene_of(tmp_path, {"profile": "p.csv"}), "a")

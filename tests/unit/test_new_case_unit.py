@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import builtins
+import errno
 import io
+import os
 import re
 import sys
 import tomllib
@@ -284,3 +286,39 @@ def test_an_example_comes_with_its_files_and_replaces_nobody_s(say, tmp_path):
     assert code == 2
     assert 'the nearest known name is "own_mesh"' in complaint
     assert "is a whole case" in say("new", "third", "--example", "own_mesh", "--teeth", "20")[2]
+
+
+def test_an_example_is_written_whole_or_not_at_all(say, tmp_path, monkeypatch):
+    """On a full disk one of two files stayed behind, was said to be written, and the remedy was another name."""
+    whole = Path.replace
+
+    def full(self, target):
+        if Path(target).suffix == ".toml":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return whole(self, target)
+
+    monkeypatch.setattr(Path, "replace", full)
+    code, said, complaint = say("new", "Räd", "--example", "measured_flanks")
+    assert (code, said) == (2, "")
+    assert "(No space left on device); make room" in complaint
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("made", [Path.mkdir, os.mkfifo, lambda path: path.symlink_to(path)])
+def test_what_stands_where_an_example_keeps_its_files_is_refused_at_once(say, tmp_path, made):
+    """A pipe of that name was waited for, a folder was a traceback."""
+    (tmp_path / "data").mkdir()
+    place = tmp_path / "data" / "measured_pinion_lead.csv"
+    made(place)
+    code, _, complaint = say("new", "mine", "--example", "measured_flanks")
+    assert code == 2
+    assert re.search("is no file, and the example needs one there; move it away|cannot be looked at", complaint)
+    assert [one.name for one in tmp_path.rglob("*")] == ["data", place.name]
+
+
+def test_an_example_needs_a_folder_where_another_file_stands(say, tmp_path):
+    (tmp_path / "data").write_text("mine")
+    code, _, complaint = say("new", "mine", "--example", "measured_flanks")
+    assert code == 2
+    assert re.search("cannot be looked at|can be no folder", complaint)
+    assert (tmp_path / "data").read_text() == "mine"

@@ -21,6 +21,8 @@ from fegear.geometry.relief import TabulatedRelief, roll_of_radius
 Kind = Literal["profile", "helix"]
 #: Places of a mean trace that pairs feel, two for the shortest wave that the filter leaves and more; of a topography.
 _PLACES, _ROWS = 121, 41
+#: Largest deviation that is one [modules].
+_LARGEST = 0.1
 #: Most teeth and places of a trace.
 _MOST = 200_000
 
@@ -118,7 +120,7 @@ def measured_gear(scene: Scene, name: str) -> MeasuredGear:
         rows = _columns(scene, part.profile, f"{key}.profile", gear)
         profile = _traces("profile", rows, over_profile, f"{key}.profile", smooth=part.filter)
     if part.lead is not None:
-        rows = _columns(scene, part.lead, f"{key}.lead", None)
+        rows = _columns(scene, part.lead, f"{key}.lead", gear, over_face=True)
         helix = _traces("helix", rows, over_face, f"{key}.lead", smooth=part.filter)
     if part.topography is not None:
         profile, helix, topography = _flank(scene, name, part, over_profile, over_face)
@@ -157,24 +159,38 @@ def _lead_ends(scene: Scene, name: str) -> tuple[float, float]:
     return helix_range(gear.face_width, gear.module)
 
 
-def _columns(scene: Scene, file: str, key: str, gear: Gear | None) -> dict[str, Array]:
+def _columns(scene: Scene, file: str, key: str, gear: Gear, *, over_face: bool = False) -> dict[str, Array]:
     """Columns of a file: x, deviation, tooth; z where it has that, too."""
     known = {"radius": "length", "roll_angle": "angle", "roll_length": "length", "z": "length", "deviation": "length"}
     found = read_columns(scene.file(file, key), key, {**known, "tooth": ""})
-    place = [one for one in ("radius", "roll_angle", "roll_length") if one in found] if gear is not None else ["z"]
+    place = ["z"] if over_face else [one for one in ("radius", "roll_angle", "roll_length") if one in found]
     if len(place) != 1 or place[0] not in found or "deviation" not in found:
-        what = "one of radius [mm], roll_angle [deg] and roll_length [mm]" if gear is not None else "z [mm]"
+        what = "z [mm]" if over_face else "one of radius [mm], roll_angle [deg] and roll_length [mm]"
         raise InputError(key, f'"{file}"', f"needs the columns {what}, and deviation [um]")
     if found["deviation"].size > _MOST:
         raise InputError(key, f'"{file}"', f"has more than {_MOST:,} places", "leave out every second")
+    _check(found, key, gear)
     x = found[place[0]]
-    if gear is not None and place[0] == "radius":
+    if place[0] == "radius":
         if (x < gear.base_radius).any():
             raise InputError(key, f"radius {x.min() * 1e3:.6g} mm", "lies inside the base circle")
         x = gear.base_radius * roll_of_radius(gear, x)
-    elif gear is not None and place[0] == "roll_angle":
+    elif place[0] == "roll_angle":
         x = gear.base_radius * x
     return {**found, "x": x, "tooth": found.get("tooth", np.zeros(x.size))}
+
+
+def _check(found: dict[str, Array], key: str, gear: Gear) -> None:
+    """Refuse what no tooth of the gear can have been measured to be."""
+    most, teeth = float(np.abs(found["deviation"]).max()), gear.tooth.teeth
+    if most > _LARGEST * gear.module:
+        raise InputError(
+            key, f"deviation {most * 1e6:.6g} um", f"is more than a tenth of the module of {gear.module * 1e3:.6g} mm",
+            "check the unit in the head of the column",
+        )  # fmt: skip
+    for tooth in np.unique(found.get("tooth", np.zeros(1))):
+        if tooth != round(tooth) or not 0 <= tooth <= teeth:
+            raise InputError(key, f"tooth {tooth:g}", f"must be a whole number up to {teeth}, the gear's teeth")
 
 
 def _traces(
