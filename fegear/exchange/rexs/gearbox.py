@@ -40,6 +40,8 @@ _RESULTS = ("geometry", "misalignment", "shaft-deflection", "load-distribution",
 _LEAST_RIM = 2.7
 #: Digits of what was solved: those behind them mean nothing.
 _SOLVED = 12
+#: Least and largest x_1 + x_2 of ISO 6336-1, 9.3.1.1.
+_LEAST_SHIFT, _MOST_SHIFT = -0.5, 2.0
 #: A torque of so much of the largest is none.
 _IDLE = 1e-9
 #: Faces may stand beside each other by so much without being told [m].
@@ -99,10 +101,11 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     names = {n: name for n, name in names.items() if n in gears or n in of_sets}
     shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     bent = bool(shafts) and _held(said, shafts)
-    tables = [_head(stages, told, said, bent=bent)]
+    rest = {n: _rest_of_shift(said, gear, everything) for n, gear in (gears | of_sets).items()}
+    tables = [_head(stages, told, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
     for n, gear in (gears | of_sets).items():
         bore = _bore(said, gear, on[n], middles) if n in gears else None
-        keys = gear_keys(said, gear, _rest_of_shift(said, gear, everything), bore)
+        keys = gear_keys(said, gear, rest[n], bore)
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
     places = places_of(said, stages, middles)
@@ -162,9 +165,30 @@ def _middles(said: Said, gears: dict[int, Component], on: dict[int, Component | 
     return found
 
 
-def _head(stages: list[Stage], sets: list[Planetary], said: Said, *, bent: bool) -> Table:
+def _rated(said: Said, stages: list[Stage], rest: dict[int, float | None]) -> bool:
+    """Whether the mesh stiffness of ISO 6336-1, by which pairs are rated, knows the profile shifts of one of them."""
+    both = [
+        sum(x if (x := profile_shift(said, gear)) is not None else rest[gear.id] or 0.0 for gear in stage.gears)
+        for stage in stages
+        if not stage.internal
+    ]
+    if both and not any(_LEAST_SHIFT <= one <= _MOST_SHIFT for one in both):
+        listed_ones = ", ".join(f"{one:.4g}" for one in both)
+        said.notes.append(
+            f"rating is not asked for: x_1 + x_2 = {listed_ones} lies outside {_LEAST_SHIFT:g} to {_MOST_SHIFT:g}, the "
+            "range of ISO 6336-1."
+        )
+        return False
+    return True
+
+
+def _head(stages: list[Stage], sets: list[Planetary], said: Said, *, bent: bool, rated: bool) -> Table:
     internal = bool(sets) or any(stage.internal for stage in stages)
-    left_out = [*(("rating", "load-distribution") * internal), *(("misalignment", "shaft-deflection") * (not bent))]
+    left_out = [
+        *(("rating",) * (not rated)),
+        *(("rating", "load-distribution") * internal),
+        *(("misalignment", "shaft-deflection") * (not bent)),
+    ]
     results = [one for one in _RESULTS if one not in left_out]
     results += ["planet-set", "planet-load-sharing", "root-stress-history"] if sets else []
     if internal:
