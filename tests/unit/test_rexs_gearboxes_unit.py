@@ -15,6 +15,7 @@ from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.exchange.rexs.gearbox import case_of
 from fegear.exchange.rexs.reading import model_of, read_model
+from fegear.exchange.rexs.written_gearbox import model_text
 from fegear.results.catalogue import STAGES
 
 
@@ -297,3 +298,18 @@ def test_no_rating_is_asked_for_where_the_standard_knows_none_of_the_pairs() -> 
     assert "rating is not asked for: x_1 + x_2 = -0.8, -0.8 lies outside -0.5 to 2" in text_of(tree)
     assert "rating" not in tomllib.loads(text_of(tree))["results"]
     assert "rating" in case(two_stages())["results"]
+
+
+def test_which_way_bearings_face_and_where_shafts_are_stopped_goes_there_and_back() -> None:
+    bearings = [(81, 10.0, "negative", ("negative",)), (82, 60.0, "no_direction", ("",), 0.0),
+                (83, 110.0, "negative", ("negative",))]  # fmt: skip
+    found = held_by(*bearings)
+    text, _ = model_text(build_scene(found, "case", Path()), "2026-01-01")
+    again = tomllib.loads(case_of(model_of(text, Path("model.rexs"))))
+
+    def seats(one: dict) -> set[tuple]:
+        shaft = next(iter(one["shaft"].values()))
+        return {(s["at"], s.get("reversed"), str(one["bearing"][s["bearing"]])) for s in shaft["bearings"]}
+
+    assert seats(again) == seats(found)
+    assert len(seats(found)) == 4

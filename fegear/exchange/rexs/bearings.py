@@ -203,7 +203,9 @@ def _stiffness(said: Said, one: Component, *, fixed: bool) -> list[Key]:
     clearance = _clearance(said, one)
     keys = []
     soft = radial is not None and 0.0 < radial < RIGID
-    if soft:
+    if said.yes(one, "radial_force_absorption") is False:
+        keys.append(Key("radial", quantity(0.0, "N/um"), "radial_force_absorption"))
+    elif soft:
         keys.append(Key("radial", quantity(radial or 0.0, "N/um"), "radial_stiffness"))
     else:
         said.notes.append(f"{one.said}: neither what rolls in it nor a stiffness is said; it is rigid across the axis.")

@@ -133,7 +133,8 @@ def _loaded(said: Said, stages: list[Stage], flow: Flow, spectrum: Spectrum) -> 
         max([abs(flow.into(n)[1]), *(torque for torque, _, _ in bins)])
         for n, bins in zip(range(len(stages)), spectrum.bins, strict=False)
     ]
-    loaded = [n for n, one in enumerate(size) if not one <= _IDLE * max(size)]
+    most = max([*size, *(abs(one) for one in flow.driven.set_torque if math.isfinite(one))], default=0.0)
+    loaded = [n for n, one in enumerate(size) if not one <= _IDLE * most]
     idle = [stages[n].component.said for n in range(len(stages)) if n not in loaded]
     if idle:
         said.notes.append(f"No torque passes {', '.join(idle)} under this load: {_are(idle)} not in the case.")

@@ -21,6 +21,15 @@ _RIGID = 1e16
 _ALONG = (1e-3, 0.0, 0.0)
 
 
+#: Types of bearings, by what rolls and whether under a contact angle.
+_TYPES = {
+    ("ball", False): "radial_grooved_ball_bearing",
+    ("ball", True): "angular_contact_ball_bearing",
+    ("roller", False): "radial_roller_bearing",
+    ("roller", True): "radial_tapered_roller_bearing",
+}
+
+
 def write_shaft(written: Written, scene: Scene, name: str, casing: Part, gears: Mapping[str, Part]) -> Part:
     """A shaft of a case with its sections, gears, bearings and forces.
 
@@ -76,14 +85,13 @@ def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft:
     plain = elements is None and life is None and not part.radial_clearance
     made = written.part("concept_bearing" if plain else rolling, seat.bearing)
     made.say("length", u_coordinate_on_shaft_inner_side=seat.at, u_coordinate_on_shaft_outer_side=seat.at)
-    along = part.fixed or bool(part.axial) or (elements is not None and elements.kind == "ball")
-    made.word(axial_force_absorption="both_directions" if along else "no_direction", radial_force_absorption=True)
+    made.word(axial_force_absorption=_holds(part, reversed_=seat.reversed), radial_force_absorption=part.radial != 0.0)
     made.say("stiffness", radial_stiffness=part.radial, axial_stiffness=part.axial)
     made.say("tilting stiffness", bending_stiffness=part.tilting if "tilting" in part.model_fields_set else None)
     if part.radial_clearance:
         made.say("small length", operating_radial_bearing_clearance=2.0 * part.radial_clearance)
     kind = (elements or life).kind if elements or life else None  # type: ignore[union-attr]
-    made.word(bearing_type={"ball": "radial_grooved_ball_bearing", "roller": "radial_roller_bearing", None: None}[kind])
+    made.word(bearing_type=_TYPES.get((kind or "", bool(elements and elements.contact_angle))))
     if life is not None:
         made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
         given = life.axial_factor or life.limit
@@ -94,11 +102,10 @@ def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft:
     if elements is not None:
         made.say("small length", operating_radial_bearing_clearance=elements.clearance or None)
         row, roller = written.part("rolling_bearing_row"), written.part("rolling_element")
-        angle = -elements.contact_angle if seat.reversed else elements.contact_angle
         ball = elements.kind == "ball"
         inner, outer = (ratio * elements.diameter for ratio in elements.groove_ratio)
         row.say("number", number_of_rolling_elements=float(elements.count))
-        row.say("angle", pressure_angle=angle)
+        row.say("angle", pressure_angle=abs(elements.contact_angle))
         row.say(
             "length", reference_diameter=elements.pitch_diameter, raceway_radius_of_inner_ring=inner if ball else None,
             raceway_radius_of_outer_ring=outer if ball else None,
@@ -109,6 +116,16 @@ def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft:
         written.relate("ordered_assembly", 1, assembly=made, part=row)
         written.relate("ordered_assembly", 1, assembly=row, part=roller)
     written.relate("side", assembly=made, inner_part=shaft, outer_part=casing)
+
+
+def _holds(part: BearingPart, *, reversed_: bool) -> str:
+    """Which way a bearing holds its shaft along the axis."""
+    if part.housing_axial is not None and part.elements is not None:
+        return "no_direction"  # it slides in its seat, or nearly
+    if part.elements is not None and part.elements.contact_angle:
+        return "negative" if reversed_ != (part.elements.contact_angle < 0.0) else "positive"
+    along = part.fixed or bool(part.axial) or (part.elements is not None and part.elements.kind == "ball")
+    return "both_directions" if along else "no_direction"
 
 
 def _loads(written: Written, name: str, part: ShaftInSpacePart, shaft: Part) -> None:
