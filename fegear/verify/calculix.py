@@ -24,6 +24,7 @@ _WHOLE = "CalculiX 2.21, frictionless contact of both whole gears"
 _PLANE = f"{_WHOLE}: 28/28 teeth, 66,000 nodes (119,000 change 3e-5)"
 _RING = f"{_WHOLE}: planet and ring, 23/60 teeth, 54,000 nodes"
 _SOLID = "CalculiX 2.21, a whole gear of ten teeth, 43,000 and 110,000 nodes, extrapolated"
+_WEB = "CalculiX 2.21, a whole gear of 16 teeth on a web, 160,000 nodes under load, 75,000 for modes"
 _FLANKS = f"{_WHOLE}: 18/18 teeth, 12 deg of helix, 42,000 nodes and more"
 
 
@@ -179,6 +180,10 @@ def _extrapolated(case: str, *keys: str) -> Array:
     return np.array(fine) + (np.array(fine) - np.array(coarse)) / 7.0
 
 
+#: Places along the face where root stresses are compared, in modules.
+_STATIONS = np.array([-1.9, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 1.9])
+
+
 @cache
 def _solid(case: str) -> tuple[Any, dict[str, Any]]:
     """The solved gear and its pressed bands by name."""
@@ -213,11 +218,10 @@ def _solid_deflections(case: str) -> Iterator[Compared]:
 
 def _solid_stresses(case: str) -> Iterator[Compared]:
     solution, pressed = _solid(case)
-    stations = np.array([-1.9, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 1.9])
     for loaded in ("middle", "front"):
         for side in ("tension", "compression"):
             wanted = _extrapolated(case, side, loaded)
-            mine = solution.largest_root_stress(0, side, pressed[loaded][1], stations)[0][:, 0]
+            mine = solution.largest_root_stress(0, side, pressed[loaded][1], _STATIONS)[0][:, 0]
             yield from near(mine, wanted, 0.018, scale=float(np.abs(wanted).max()))
 
 
@@ -231,6 +235,66 @@ def calculix_solid_deflection() -> Iterator[Compared]:
 def calculix_solid_root_stress() -> Iterator[Compared]:
     """Nine stations along the fillet, tension and compression, of the largest."""
     yield from _solid_stresses("helical")
+
+
+# ---- gears on a web ---------------------------------------------------------------------------------------------
+@cache
+def _on_a_web() -> tuple[Any, list[Any]]:
+    """The solved gear, its web off the middle of the face, and bands at five places from end to end."""
+    from dataclasses import replace
+
+    from fegear.fem.solid.bands import bands
+    from fegear.fem.solid.settings import SolidSettings
+    from fegear.fem.solid.solution import solve_solid
+
+    tooth, body = _web_gear("off")
+    settings = replace(SolidSettings().scaled(1.2), waves_per_module=2.5)
+    places = ((max(top - 0.5, -2.0), top, min(top + 0.5, 2.0)) for top in (-2.0, -1.0, 0.0, 1.0, 2.0))
+    pressed = [bands(8.2, top, top - low, 0.25, after=high - top) for low, top, high in places]
+    return solve_solid(tooth, 0.0, 4.0, 0.3, 2.0, settings, body=body), pressed
+
+
+def _web_gear(which: str) -> tuple[Any, Any]:
+    from fegear.geometry.gear_body import GearBody
+    from fegear.geometry.rack import BasicRack
+    from fegear.geometry.tooth import Tooth
+
+    web = {"middle": (-0.5, 0.5), "off": (-1.5, -0.5)}[which]
+    return Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), GearBody(5.7, 3.0, web, (-2.0, 2.0))
+
+
+@ROWS.add("deflections of a gear on a web off the middle", "program", _WEB)
+def calculix_web_deflection() -> Iterator[Compared]:
+    """Five places along the face under a load at each of them; of the loaded band's own deflection."""
+    solution, pressed = _on_a_web()
+    for at, wanted in enumerate(kept("gear_body_calculix")["off"]["deflection"]):
+        found = [float(solution.deflection(0, band, pressed[at])[0, 0]) for band in pressed]
+        yield from near(found, wanted, 0.008, scale=wanted[at])
+
+
+@ROWS.add("root tension of a gear on a web off the middle", "program", _WEB)
+def calculix_web_root_tension() -> Iterator[Compared]:
+    """Along the face under a load at each of five places, of the largest."""
+    solution, pressed = _on_a_web()
+    for load, wanted in zip(pressed, kept("gear_body_calculix")["off"]["tension"], strict=True):
+        found = solution.largest_root_stress(0, "tension", load, _STATIONS)[0][:, 0]
+        yield from near(found, wanted, 0.01, scale=max(wanted))
+
+
+@ROWS.add("natural frequencies of a gear on a web", "program", _WEB)
+def calculix_web_frequencies() -> Iterator[Compared]:
+    """Both tilting modes of the rim and its umbrella mode, with coarse elements."""
+    from dataclasses import replace
+
+    from fegear.fem.solid.body_modes import body_modes
+    from fegear.fem.solid.settings import SolidSettings
+
+    tooth, body = _web_gear("middle")
+    settings = SolidSettings()
+    settings = replace(settings, section=replace(settings.section.scaled(4.0), order=2))
+    modes = body_modes(tooth, 0.0, 4.0, 0.3, 2.0, settings, body, diameters=1, each=2, fineness=0.6).modes
+    found = sorted(mode.frequency for mode in modes for _ in range(1 if mode.diameters == 0 else 2))
+    yield from near(found[:3], kept("gear_body_calculix")["middle"]["frequencies"][:3], 0.01)
 
 
 # ---- loaded flanks ----------------------------------------------------------------------------------------------

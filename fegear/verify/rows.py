@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from fegear.base.errors import InputError
-from fegear.verify import calculix, own, printed, programs
+from fegear.verify import calculix, measured, own, printed, programs
 from fegear.verify.row import AGAINST, Outcome, Row
 
 #: In the order of the page: printed numbers first.
-ALL: tuple[Row, ...] = (*printed.ROWS.all, *calculix.ROWS.all, *programs.ROWS.all, *own.ROWS.all)
+ALL: tuple[Row, ...] = (*printed.ROWS.all, *calculix.ROWS.all, *programs.ROWS.all, *own.ROWS.all, *measured.ROWS.all)
 
 
 def chosen(names: Sequence[str], against: str = "") -> tuple[Row, ...]:

@@ -26,7 +26,7 @@ from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.output.solid_export import write_solid_inp
 
-FILE = Path(__file__).with_name("gear_body_calculix.json")
+FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "gear_body_calculix.json"
 TOOTH, BORE, FACE = Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), 2.0, 4.0
 RADIUS, PLACES = 8.2, (-2.0, -1.0, 0.0, 1.0, 2.0)
 #: The web in the middle of the face and off it; the hub as wide as the face.

@@ -74,8 +74,34 @@ for command, _ in COMMANDS:
     app([command.__name__, "-h"], standalone_mode=False)
 app(["new", "drive", "--teeth", "21", "53", "--module", "3mm", "--torque", "260 N m"], standalone_mode=False)
 app(["run", "drive.toml"], standalone_mode=False)
+from fegear.base.errors import FegearError
+import fegear
+for call in (
+    lambda: app(["open", "--no-browser", "drive.toml"], standalone_mode=False),
+    lambda: app(["sweep", "drive.toml", "--over", "gear.pinion.teeth=21,22", "--scheduler", "tcp://127.0.0.1:9"],
+                standalone_mode=False),
+    lambda: fegear.Results.to_pandas(found),
+    lambda: found.to_xarray(),
+    lambda: fegear.run({str(CASES / "lin_design_chart.toml")!r}, progress=False),
+):
+    try:
+        found = fegear.run("drive.toml", results=["geometry"], progress=False)
+        call()
+    except FegearError as error:
+        print("REFUSED", error)
+    else:
+        print("TAKEN")
 """
     done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
     assert (tmp_path / "results" / "drive" / "report.html").stat().st_size > 10_000
     assert list((tmp_path / "results" / "drive" / "plots").glob("*.png"))
+    refused = [line for line in done.stdout.splitlines() if line.startswith(("REFUSED", "TAKEN"))]
+    for line, extra in zip(refused, ("workbench", "distributed", "notebook", "notebook", "motion"), strict=True):
+        assert f"pip install 'fegear[{extra}]'" in line
+
+
+def test_the_page_has_a_line_for_every_extra():
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+    page = (ROOT / "docs" / "extras.md").read_text("utf-8")
+    assert [extra for extra in packages if f"`fegear[{extra}]`" not in page] == []

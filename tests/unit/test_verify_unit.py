@@ -11,10 +11,12 @@ from fegear.verify.row import AGAINST, Compared, Outcome, Row, near, printed, ru
 from fegear.verify.rows import ALL, chosen
 
 #: Rows that take seconds: the site runs them for its page of proofs; what they compare has tests with smaller gears
-#: (test_check_command_unit.py here, test_loaded_flanks_calculix.py and test_solid_gear_calculix.py of other_codes).
+#: (test_check_command_unit.py here, loaded flanks, solid gears and gear bodies of other_codes).
 DEAR = {
     "whole-gear-compliance", "whole-gear-root-stress", "calculix-flanks", "calculix-flank-shares",
-    "calculix-flank-root-stress", "calculix-solid-deflection", "calculix-solid-root-stress",
+    "calculix-flank-root-stress",
+    "calculix-web-deflection", "calculix-web-root-tension", "calculix-web-frequencies",
+    "calculix-solid-deflection", "calculix-solid-root-stress",
 }  # fmt: skip
 
 
