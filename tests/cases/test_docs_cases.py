@@ -126,6 +126,26 @@ def test_the_menu_refuses_a_lost_page_and_a_long_group(tmp_path):
     assert menu.faults([{"Start": "there.md"}, {"In": ["lost.md"]}], tmp_path) == []
 
 
+def test_every_section_of_the_case_file_s_page_is_on_one_page_of_the_site_and_links_find_it():
+    pages = _hook("case_pages")
+    text = pages.PAGE.read_text("utf-8")
+    texts, homes = pages.split(text)
+    assert {*texts} == {pages.PAGE.name, *pages.PAGES}
+    parts = [part for part in re.split(r"^(?=## )", text, flags=re.MULTILINE) if part.strip()]
+    assert [sum(part in page for page in texts.values()) for part in parts] == [1] * len(parts)
+    assert max(len(page.splitlines()) for page in texts.values()) < 0.5 * len(text.splitlines())
+    linked = {
+        anchor
+        for page in DOCS.rglob("*.md")
+        for anchor in re.findall(r"case-files\.md#([\w-]+)", page.read_text("utf-8"))
+    }
+    assert linked <= {*homes}
+    assert pages.relinked("[a](../case-files.md#gearname)", "how-to/x.md", homes) == (
+        "[a](../case-files-gears.md#gearname)"
+    )
+    assert pages.relinked("[a](#quantities)", "case-files-gears.md", homes) == "[a](case-files.md#quantities)"
+
+
 def test_a_dead_link_and_a_fetched_script_are_found(tmp_path):
     links = _hook("links")
     (tmp_path / "there.html").write_text('<a href="#here">a</a> <a href="https://example.org">b</a>')
