@@ -110,22 +110,31 @@ class FilmPart(Part):
         return self
 
 
+#: The design zone of profile and flank reliefs.
+ZoneLength = Annotated[
+    PositiveLength | None,
+    Field(
+        description="Length of the design zone on the line of action; without it and `contact_ratio` the whole path of "
+        "contact."
+    ),
+]
+ZoneRatio = Annotated[
+    PositiveNumber | None, Field(description="Length of the design zone in base pitches; give this or `length`.")
+]
+ZoneCentre = Annotated[
+    Length | None,
+    Field(description="Middle of the design zone, from the pitch point; without it the middle of the path."),
+]
+
+
 class DesignPart(Part):
     """Which pair is to be relieved, for which load, and how its teeth are to share it."""
 
     pair: str | None = Field(default=None, description="Which pair; without it the only one.")
     load: PositiveForce | None = Field(default=None, description="Design load; without it the pair's nominal load.")
-    length: PositiveLength | None = Field(
-        default=None,
-        description="Length of the design zone on the line of action; without it and `contact_ratio` the whole path "
-        "of contact.",
-    )
-    contact_ratio: PositiveNumber | None = Field(
-        default=None, description="Length of the design zone in base pitches; give this or `length`."
-    )
-    centre: Length | None = Field(
-        default=None, description="Middle of the design zone, from the pitch point; without it the middle of the path."
-    )
+    length: ZoneLength = None
+    contact_ratio: ZoneRatio = None
+    centre: ZoneCentre = None
     family: Literal["sinusoidal", "polynomial"] = Field(
         default="sinusoidal", description="Family of the loading ramps: sinusoidal (4.12) or polynomial (4.14)."
     )
@@ -260,17 +269,9 @@ class FlankDesignPart(Part):
         description="Loads over which the reliefs to grind are chosen: the worst of them counts, each transmission "
         "error in proportion to its load; without it the design load.",
     )
-    length: PositiveLength | None = Field(
-        default=None,
-        description="Length of the design zone on the line of action; without it and `contact_ratio` the whole path "
-        "of contact.",
-    )
-    contact_ratio: PositiveNumber | None = Field(
-        default=None, description="Length of the design zone in base pitches; give this or `length`."
-    )
-    centre: Length | None = Field(
-        default=None, description="Middle of the design zone, from the pitch point; without it the middle of the path."
-    )
+    length: ZoneLength = None
+    contact_ratio: ZoneRatio = None
+    centre: ZoneCentre = None
     slope: Annotated[Number, Field(ge=0.0, le=2.0)] = Field(
         default=0.0, description="Slope s of the load at contact initiation."
     )

@@ -26,14 +26,15 @@ class FlankModification(Protocol):
 
     @property
     def face_kinks(self) -> tuple[float, ...]:
-        """Heights [m] where the removal's slope along the face jumps."""
+        """Heights [m] where the removal's slope along the face jumps; none unless one says so."""
+        return ()
 
     def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
         """Material removed [m] at roll angles [rad] and heights [m]."""
 
 
 @dataclass(frozen=True, slots=True)
-class LeadCrowning:
+class LeadCrowning(FlankModification):
     """Lead crowning C_beta: a parabola over the face, zero in the middle and `amount` at both ends.
 
     Parameters
@@ -47,27 +48,17 @@ class LeadCrowning:
     amount: float
     face_width: float
 
-    @property
-    def face_kinks(self) -> tuple[float, ...]:
-        """None."""
-        return ()
-
     def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
         """Amount times the square of the height over half the face."""
         return np.asarray(self.amount * _over_half(self.face_width, roll, z) ** 2)
 
 
 @dataclass(frozen=True, slots=True)
-class HelixSlope:
+class HelixSlope(FlankModification):
     """Helix slope modification C_Hbeta: from 0 at end I to `amount` at end II, straight."""
 
     amount: float
     face_width: float
-
-    @property
-    def face_kinks(self) -> tuple[float, ...]:
-        """None."""
-        return ()
 
     def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
         """Amount times the share of the face below."""
@@ -149,7 +140,7 @@ class LeadTable(ReadOnlyArrays):
 
 
 @dataclass(frozen=True, slots=True)
-class Bias:
+class Bias(FlankModification):
     """Twist of the flank: the profile slope at end II less that at end I is `amount`, C_Halpha turning with the face.
 
     Twist S_alpha = S_beta of VDI/VDE 2612: removal = amount (roll coordinate)(face coordinate), both from -1/2 to 1/2
@@ -169,11 +160,6 @@ class Bias:
     start: float
     end: float
     face_width: float
-
-    @property
-    def face_kinks(self) -> tuple[float, ...]:
-        """None."""
-        return ()
 
     def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
         """Product of both coordinates."""

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.geometry.flank_modification import FlankModification
 
 Sequence = Literal["sobol", "halton", "random"]
 Distribution = Literal["normal", "uniform"]
@@ -88,7 +89,7 @@ class ProfileDeviation:
 
 
 @dataclass(frozen=True)
-class HelixDeviation:
+class HelixDeviation(FlankModification):
     """Slope deviation of a helix over a gear's own face, nothing in its middle.
 
     Parameters
@@ -101,11 +102,6 @@ class HelixDeviation:
 
     amount: float
     face_width: float
-
-    @property
-    def face_kinks(self) -> tuple[float, ...]:
-        """None."""
-        return ()
 
     def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
         """Of material, positive [m], at roll angles [rad] and heights from the middle of the face [m]."""
