@@ -19,7 +19,7 @@ from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
 from fegear.case.schema import flat
 from fegear.commands.schema import schema_text
-from fegear.results.catalogue import RESULTS
+from fegear.results.catalogue import RESULTS, STAGES
 
 CASES = sorted((Path(__file__).parents[2] / "cases").rglob("*.toml"))
 
@@ -137,7 +137,7 @@ def test_quantities_say_their_units_and_defaults(schema):
     material = schema["$defs"]["MaterialPart"]["properties"]
     assert (material["young_modulus"]["default"], material["density"]["default"]) == ("206.8 GPa", "7850 kg/m^3")
     assert "null" not in json.dumps(schema)
-    assert {one["const"] for one in schema["properties"]["results"]["items"]["anyOf"]} == set(RESULTS)
+    assert {one["const"] for one in schema["properties"]["results"]["items"]["anyOf"]} == {*RESULTS, *STAGES.former()}
 
 
 def test_the_command_writes_what_new_points_to(tmp_path, monkeypatch, capsys):
