@@ -17,6 +17,9 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.loading import LoadingFunction
+from fegear.design.minimum_excitation import minimum_excitation
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.gear import Gear
@@ -300,3 +303,30 @@ def test_neighbours_loads_belong_in_the_root_stress_of_a_ring():
             own = ring.largest_root_stress(0, "tension", pair.radius(x + number * pair.base_pitch, "driven"))[0] * w
             assert (np.abs(whole[row] / own - 1.0) > 0.02).any()
             assert np.abs(whole[row] / own - 1.0).max() < 0.5
+
+
+@pytest.mark.parametrize("reverse", [False, True], ids=["planet drives", "ring drives"])
+def test_a_relief_for_least_excitation_leaves_a_planet_in_its_ring_none(reverse):
+    """With the compliances it was designed with, coupling included; whichever drives, the gears get the same relief."""
+    pair = the_pair().reversed() if reverse else the_pair()
+    planet, ring = (finite_element_compliance(one) for one in solved())
+    e = Engagement(PairCompliance(pair, *((ring, planet) if reverse else (planet, ring))))
+    share = LoadingFunction(1.45 * pair.base_pitch, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end))
+    designed, load = minimum_excitation(e, share, 3000.0), 3000.0
+    te = transmission_error(designed, load)
+    assert te.peak_to_peak < 1e-9 * te.mean < 0.5e-9 * 1e-3
+    assert transmission_error(e, load).peak_to_peak > 0.1 * te.mean
+    # The planet's removal at its tip and at its root, where the ring's tip touches it, is the same for either driver.
+    relief = designed.driven_relief if reverse else designed.driver_relief
+    rolled = the_pair().roll_angle(np.array([the_pair().x_start, the_pair().x_end]), "driver")
+    assert relief.removal(rolled) == pytest.approx(removals(), rel=1e-6, abs=1e-12)
+
+
+@cache
+def removals() -> tuple[float, ...]:
+    """Of the planet when it drives."""
+    pair = the_pair()
+    e = Engagement(PairCompliance(pair, *(finite_element_compliance(one) for one in solved())))
+    share = LoadingFunction(1.45 * pair.base_pitch, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end))
+    relief = minimum_excitation(e, share, 3000.0).driver_relief
+    return tuple(relief.removal(pair.roll_angle(np.array([pair.x_start, pair.x_end]), "driver")))

@@ -240,6 +240,24 @@ def test_what_an_internal_pair_is_not_computed_for_is_refused_in_one_sentence(ov
     assert words in str(refused.value)
 
 
+@pytest.mark.parametrize("result", ["relief", "relief-chart", "relief-curves", "robustness", "gear-mesh-power-loss"])
+def test_what_was_for_external_pairs_takes_a_planet_in_its_ring(result):
+    keys = {
+        "robustness": ("gear.r.tolerance_class=6", "robustness={ draws = 20 }"),
+        "gear-mesh-power-loss": ('pair.I.speed="500 rpm"', 'pair.I.friction={ law = "constant", coefficient = 0.05 }'),
+    }.get(result, ('design={ pair = "I", load = "10 kN" }',))
+    plan = make_plan(meshing(f'results=["{result}"]', *keys), STAGES)
+    assert result in [one for step in plan.steps for one in step.stage.results]
+
+
+def test_the_room_of_a_ring_s_centre_distance_is_toward_smaller_ones():
+    """The teeth of this pair touch on both flanks at .11 mm more."""
+    tolerances = ("gear.r.tolerance_class=6", 'results=["robustness"]')
+    make_plan(meshing(*tolerances, 'robustness={ draws = 20, centre_distance = "100 um" }'), STAGES)
+    with pytest.raises(InputError, match=r"jams the teeth: pair I has 0\.1093 mm until .* a smaller centre_distance"):
+        make_plan(meshing(*tolerances, 'robustness={ draws = 20, centre_distance = "120 um" }'), STAGES)
+
+
 def test_what_a_helical_internal_pair_is_not_computed_for_is_refused_by_its_name():
     """And not by that of a stage which nobody knows."""
     document = copy.deepcopy(MESHING) | {"results": ["mesh-stiffness-matrix"]}

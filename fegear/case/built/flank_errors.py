@@ -236,12 +236,13 @@ def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
 
 def refuse_jammed(pair: GearPair, name: str, limits: Limits) -> None:
     """Refuse deviations of the centre distance at which the teeth of the drawing touch on both flanks."""
-    room = pair.centre_distance - pair.tight_centre_distance
+    room = pair.side * (pair.centre_distance - pair.tight_centre_distance)
+    other = "smaller" if pair.internal else "larger"
     if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
         raise InputError(
             "robustness.centre_distance", f"{limits.centre_distance * 1e3:.6g} mm",
             f"jams the teeth: pair {name} has {room * 1e3:.4g} mm until they touch on both flanks",
-            f"give a gear of pair {name} a thickness_allowance, or the pair a larger centre_distance",
+            f"give a gear of pair {name} a thickness_allowance, or the pair a {other} centre_distance",
         )  # fmt: skip
 
 

@@ -158,8 +158,7 @@ def bench(engagement: Engagement, load: float, sources: tuple[RootStressInfluenc
     tables = []
     for member, source in zip(MEMBERS, sources, strict=True):
         gear = pair.gear(member)
-        ends = gear.form_radius, gear.involute_tip_radius
-        tables.append(root_table(source, gear, *ends, coupled=compliance.coupling))
+        tables.append(root_table(source, gear, *gear.involute_radii, coupled=compliance.coupling))
     lean = replace(engagement, compliance=compliance, driver_spacing=none, driven_spacing=none)
     return Bench(lean, load, (tables[0], tables[1]))
 

@@ -428,4 +428,5 @@ RELIEF = Stage(
         Citation("harris", "Harris maps"),
     ),
     forecast=_forecast,
+    internal=True,
 )

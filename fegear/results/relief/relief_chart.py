@@ -313,6 +313,7 @@ RELIEF_CHART = Stage(
     effects=AT_REST,
     cites=_CITES,
     forecast=_chart_forecast,
+    internal=True,
 )
 
 
@@ -325,4 +326,5 @@ ROBUSTNESS = Stage(
     effects=AT_REST,
     cites=_CITES,
     forecast=_robustness_forecast,
+    internal=True,
 )

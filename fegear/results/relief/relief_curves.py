@@ -215,4 +215,5 @@ RELIEF_CURVES = Stage(
     effects=AT_REST,
     cites=citing(Citation("lin-townsend-oswald", "tip reliefs by amount over Delta and length L_n", "Figs. 3 to 6")),
     forecast=_forecast,
+    internal=True,
 )

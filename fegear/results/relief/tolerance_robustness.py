@@ -361,4 +361,5 @@ TOLERANCE_ROBUSTNESS = Stage(
         Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ,
     ),
     forecast=forecast_draws,
+    internal=True,
 )  # fmt: skip
