@@ -126,6 +126,22 @@ def test_the_menu_refuses_a_lost_page_and_a_long_group(tmp_path):
     assert menu.faults([{"Start": "there.md"}, {"In": ["lost.md"]}], tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    ("spelled", "letters"),
+    [
+        ("K_Hbeta and K_Falpha", "K_Hβ and K_Fα"),
+        ("sigma_HP, alpha_wt, c_gamma_beta", "σ_HP, α_wt, c_γβ"),
+        ("F_betay, f_falphaT, Z_epsilon", "F_βy, f_fαT, Z_ε"),
+        ('`K_Hbeta` $\\sigma_F$ <a name="K_Hbeta">', None),
+        ("[x](rating.md#k_gamma_x) cases/khbeta_spur.toml tables/K_Hbeta.csv", None),
+        ("### K_Hbeta\n```text\nI.K_Hbeta = 1.3\n```", None),
+        ("beta, a Greek letter; mode_alphabet", None),
+    ],
+)
+def test_symbols_of_the_prose_have_greek_letters_and_nothing_else_has(spelled, letters):
+    assert _hook("greek").with_letters(spelled) == (letters or spelled)
+
+
 def test_every_section_of_the_case_file_s_page_is_on_one_page_of_the_site_and_links_find_it():
     pages = _hook("case_pages")
     text = pages.PAGE.read_text("utf-8")

@@ -1,0 +1,45 @@
+"""Hook of mkdocs: symbols of the prose have Greek letters where case files and tables spell them, K_Hβ for K_Hbeta.
+
+Code, equations, links, comments and headings (whose anchors are linked to) stay as they are.
+"""
+
+from __future__ import annotations
+
+import re
+
+_LETTERS = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "varepsilon": "ε", "epsilon": "ε", "zeta": "ζ", "theta": "θ",
+    "lambda": "λ", "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "omega": "ω",
+}  # fmt: skip
+_NAME = "|".join(_LETTERS)
+#: What is not prose: fenced blocks, headings, code in a line, equations, comments and tags, targets of links.
+_OTHER = re.compile(
+    r"^```.*?^```[^\n]*$|^#[^\n]*$|`[^`\n]*`|\$\$.*?\$\$|\$[^$\n]+\$|<!--.*?-->|<[^>\n]+>|\]\([^)\n]*\)",
+    re.DOTALL | re.MULTILINE,
+)
+#: A symbol that is spelled: a Greek name before the underscore or at an end of what follows it.
+_SYMBOL = re.compile(
+    rf"(?<![\w/.-])(?:(?P<base>{_NAME})_(?P<below>[A-Za-z0-9]+)"
+    rf"|(?P<latin>[A-Za-z]'?)_(?P<first>[A-Z]{{0,2}}|f)(?P<letter>{_NAME})(?P<rest>[A-Z][A-Za-z]*|[a-z]|_[a-z]+)?)(?![\w/]|-\w)"
+)
+
+
+def with_letters(markdown: str) -> str:
+    """A page whose spelled symbols have Greek letters."""
+    made, end = [], 0
+    for other in _OTHER.finditer(markdown):
+        made += [_SYMBOL.sub(_lettered, markdown[end : other.start()]), other[0]]
+        end = other.end()
+    return "".join([*made, _SYMBOL.sub(_lettered, markdown[end:])])
+
+
+def _lettered(symbol: re.Match[str]) -> str:
+    if symbol["base"]:
+        return f"{_LETTERS[symbol['base']]}_{_LETTERS.get(symbol['below'], symbol['below'])}"
+    rest = symbol["rest"] or ""
+    return f"{symbol['latin']}_{symbol['first']}{_LETTERS[symbol['letter']]}{_LETTERS.get(rest.lstrip('_'), rest)}"
+
+
+def on_page_markdown(markdown, **_others):
+    """Write symbols as the standards do."""
+    return with_letters(markdown)
