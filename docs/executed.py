@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).resolve().parent
 MADE = DOCS.parent / "results" / "pages"
 log = logging.getLogger("mkdocs.plugins.executed")
-_NOTE = re.compile(r"^Note: .{105,}$", re.MULTILINE)
+_NOTE = re.compile(r"^Note: .{79,}$", re.MULTILINE)
 _MADE_LINK = re.compile(r"\]\((results/[^)#]+)\)")
 
 
@@ -74,4 +74,4 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, **_others):
     """Let links to results lead to the page's own run, and fold the long sentences of its notes."""
     linked = _MADE_LINK.sub(rf"]({Path(page.file.src_uri).stem}_files/\1)", markdown)
-    return _NOTE.sub(lambda found: textwrap.fill(found[0], 110, subsequent_indent="      "), linked)
+    return _NOTE.sub(lambda found: textwrap.fill(found[0], 84, subsequent_indent="      "), linked)
