@@ -313,3 +313,21 @@ def test_which_way_bearings_face_and_where_shafts_are_stopped_goes_there_and_bac
 
     assert seats(again) == seats(found)
     assert len(seats(found)) == 4
+
+
+def test_faces_that_run_into_each_other_on_one_shaft_are_refused() -> None:
+    tree = put(put(two_stages(), 13, u_coordinate_on_shaft=(69.0, "mm")), 14, u_coordinate_on_shaft=(69.0, "mm"))
+    with pytest.raises(InputError, match=r"shaft.shaft_4.gears = gear_12 and gear_13: overlap by 1 mm"):
+        case(tree)
+    case(put(put(tree, 13, u_coordinate_on_shaft=(70.0, "mm")), 14, u_coordinate_on_shaft=(70.0, "mm")))
+
+
+def test_more_stages_than_any_gearbox_has_are_refused_at_once() -> None:
+    """A ring of 201 pairs; one of 1500 took minutes before it was refused for something else."""
+    parts, links = [], []
+    for n in range(201):
+        parts += [shaft(1000 + n, 0.0, 0.0), gear(2000 + n, 20, 0.0), part(3000 + n, "cylindrical_stage")]
+        links += [link(n, "assembly", assembly=1000 + n, part=2000 + n),
+                  link(5000 + n, "stage", stage=3000 + n, gear_1=2000 + n, gear_2=2000 + (n + 1) % 201)]  # fmt: skip
+    with pytest.raises(InputError, match="201 of them: are more than the 200"):
+        text_of({**two_stages(), "components": parts, "relations": links})

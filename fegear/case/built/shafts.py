@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from fegear.base.errors import InputError
@@ -13,6 +15,8 @@ from fegear.shafts.solution import LoadedShaft, Seat, refuse_torque
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6
+#: Faces on one shaft may overlap by this share of the narrower one, as rounded places do.
+_OVERLAP = 0.01
 #: Keys of what rolls in a bearing.
 _ELEMENTS = {"element_diameter": "elements.diameter"} | {
     key: f"elements.{key}" for key in ("count", "pitch_diameter", "contact_angle", "groove_ratio", "roller_length")
@@ -67,6 +71,7 @@ def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
                     key, f'"{place.gear}"', f"stands on shaft {where[place.gear][0]} already", "name it once"
                 )
             where[place.gear] = name, place.at
+        _refuse_overlap(scene, name)
     found = []
     driven = {where[one.driven][0] for one in scene.case.pair.values() if one.driven in where and one.driver in where}
     senses = {name: -1 if part.clockwise else 1 for name, part in scene.case.shaft.items() if name not in driven}
@@ -83,6 +88,19 @@ def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
             found.append(_mesh(scene, name, ends, senses[ends[0][0]]))
             senses[ends[1][0]] = -scene.pairs[name].side * senses[ends[0][0]]
     return tuple(found)
+
+
+def _refuse_overlap(scene: Scene, shaft: str) -> None:
+    """Refuse gears on one shaft whose faces run into each other."""
+    ordered = sorted(scene.case.shaft[shaft].gears, key=lambda place: place.at)
+    for one, two in pairwise(ordered):
+        widths = [scene.gears[place.gear].face_width for place in (one, two)]
+        room = two.at - one.at - 0.5 * sum(widths)
+        if room < -_OVERLAP * min(widths):
+            raise InputError(
+                f"shaft.{shaft}.gears", f"{one.gear} and {two.gear}", f"overlap by {-room * 1e3:.4g} mm",
+                "move one of them, or make its face narrower",
+            )  # fmt: skip
 
 
 def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, float]], sense: int) -> MeshPlace:

@@ -31,6 +31,8 @@ COUPLINGS = ("coupling", "switchable_coupling")
 HUBS = (
     "cylindrical_interference_fit", "tapered_interference_fit", "feather_key_connection", "involute_spline_connection",
 )  # fmt: skip
+#: Most stages of a model, far more than a gearbox has.
+_MOST_STAGES = 200
 #: Axes are parallel to so much.
 _PARALLEL = 1e-6
 #: By so much of the centre distance axes may stand elsewhere than a stage says.
@@ -66,10 +68,16 @@ def stages_of(said: Said) -> list[Stage]:
     Raises
     ------
     InputError
-        If a stage lacks a gear, or there is none at all.
+        If a stage lacks a gear, or there is none at all, or far more than a gearbox has.
     """
     found = []
-    for stage in said.model.of("cylindrical_stage"):
+    every = said.model.of("cylindrical_stage")
+    if len(every) > _MOST_STAGES:
+        raise InputError(
+            "cylindrical_stage", f"{len(every)} of them", f"are more than the {_MOST_STAGES} that are read",
+            "export a part of the gearbox",
+        )  # fmt: skip
+    for stage in every:
         gears = [
             *said.linked(stage, "stage", "stage", "gear_1", *GEARS),
             *said.linked(stage, "stage", "stage", "gear_2", *GEARS),
