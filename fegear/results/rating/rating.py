@@ -31,7 +31,15 @@ from fegear.results.rating.rating_tables import (
     safety_table,
     spectrum_table,
 )
-from fegear.results.rating.shared_load import inputs_with_shares, needs_shares, rated_pairs
+from fegear.results.rating.shared_load import (
+    bending_said,
+    bent_ratio,
+    bent_so,
+    inputs_with_shares,
+    needs_bending,
+    needs_shares,
+    rated_pairs,
+)
 
 if TYPE_CHECKING:
     from fegear.case.built.agma_pair import AgmaInputs
@@ -107,6 +115,8 @@ class RatingData:
     agma : AgmaRating or None
     why_not : tuple of str
         Why something that was asked for is missing.
+    bent : (float, float) or None
+        Computed R of the pinion and the wheel of a pair with a planet, in the place of that of annex B.
     """
 
     formula: PairRating
@@ -117,6 +127,7 @@ class RatingData:
     spectrum_computed: SpectrumRating | None
     agma: AgmaRating | None
     why_not: tuple[str, ...]
+    bent: tuple[float, float] | None = None
 
 
 def _inputs(scene: Scene, name: str) -> RatingInputs:
@@ -191,19 +202,21 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     formula = rate_pair(conditions, own)
     levels = [(_duty(conditions, level.tangential, level.speed), level.cycles) for level in asked.levels]
     spectrum = rate_spectrum(conditions, levels, own) if levels else None
-    found = by_found = spectrum_found = None
+    found = by_found = spectrum_found = bent = None
     single = asked.width != "plane" or asked.pair.contact_ratio < _SINGLE
     if inputs.computed and single:
         found, of_levels = _computed(asked, formula, spectrum, upstream)
-        by_found = rate_pair(conditions, _standing(found, own))
+        bent = bent_ratio(asked, upstream)
+        of_found = conditions if bent is None else rated(bent_so(asked, bent))
+        by_found = rate_pair(of_found, _standing(found, own))
         stands = [None if one is None else _standing(one, own) for one in of_levels]
-        spectrum_found = rate_spectrum(conditions, levels, stands) if levels else None
+        spectrum_found = rate_spectrum(of_found, levels, stands) if levels else None
     agma, why_not = _agma(inputs)
     reasons = [f"no rating by AGMA 2101: {why_not}"] if why_not else []
     if inputs.computed and not single:
         reasons.append(_NO_SINGLE)
     return RatingData(
-        formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, tuple(reasons)
+        formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, tuple(reasons), bent
     )  # fmt: skip
 
 
@@ -306,7 +319,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
         return shares
     part = scene.case.pair[name]
     if not _wide(scene, name):
-        return (*shares, *needs_solution(part.driver, part.driven))
+        return (*shares, *needs_bending(scene, name), *needs_solution(part.driver, part.driven))
     return (*shares, *needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
 
 
@@ -400,6 +413,8 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
             "contact, in the place of Y_F Y_S Y_B; load factors are those of the formulas. Write width = "
             '"solid" for a computed load distribution.'
         )
+        if data.bent is not None and data.by_computed is not None:
+            told.append(bending_said(asked.name, data.bent, data.by_computed["Y_M"].values))
     else:
         load, pressure = data.computed.load, data.computed.pressure * 1e-6
         told.append(

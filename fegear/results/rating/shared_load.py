@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.planetary import set_of_pair, set_that_shares
+from fegear.case.planetary import MESHES, set_of_pair, set_pair, set_that_shares
 from fegear.engine.stage import Task
 
 if TYPE_CHECKING:
@@ -13,7 +13,11 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
     from fegear.engine.stage import Upstream
+    from fegear.results.planetary.planet_root_stress import PlanetStress
     from fegear.results.rating.rating import RatingInputs
+
+#: Where annex B of ISO 6336-3 ends: lowest over highest stress.
+_MOST = -1.2
 
 
 def rated_pairs(scene: Scene) -> tuple[str, ...]:
@@ -54,3 +58,40 @@ def inputs_with_shares(inputs: RatingInputs, upstream: Upstream) -> RatingInputs
         more = asked.conditions.duty.mesh_load_factor / inputs.asked.conditions.duty.mesh_load_factor
         agma = replace(agma, service=replace(agma.service, overload=agma.service.overload * more))
     return replace(inputs, asked=asked, agma=agma)
+
+
+def needs_bending(scene: Scene, name: str) -> tuple[Task, ...]:
+    """Root stress of the planets over a turn, where the computed rating of a pair of a set can take R from it."""
+    found, operation = set_of_pair(scene.case, name), scene.case.pair[name].operation
+    if found is None or operation.idler is None or operation.mean_stress_factor is not None:
+        return ()
+    pairs = [set_pair(found, mesh) for mesh in MESHES]
+    plane = all(pair in scene.plane_pairs for pair in pairs)
+    solved = plane and all(scene.case.pair[pair].root_stress.source[0] == "fe" for pair in pairs)
+    return (Task("planet-root-stress", found),) if solved else ()
+
+
+def bent_ratio(asked: PairToRate, upstream: Upstream) -> tuple[float, float] | None:
+    """Computed R of the gears of a pair of a set, those of formulas where a gear is no planet; None without it."""
+    for task, data in upstream.items():
+        if task.stage == "planet-root-stress":
+            side = "sun" if asked.name == set_pair(task.subject, "sun") else "ring"
+            ratio = cast("PlanetStress", data).found[f"planet_{side}_side"].ratio
+            one, other = (ratio if of else 0.0 for of in asked.stress_ratio)
+            return one, other
+    return None
+
+
+def bent_so(asked: PairToRate, ratio: tuple[float, float]) -> PairToRate:
+    """The pair with these R, as far as annex B of ISO 6336-3 goes."""
+    return replace(asked, stress_ratio=(max(ratio[0], _MOST), max(ratio[1], _MOST)))
+
+
+def bending_said(name: str, ratio: tuple[float, float], factors: tuple[float, ...]) -> str:
+    """Which Y_M follow from the computed R, in words."""
+    least, values = min(ratio), ", ".join(f"{value:.3g}" for value in factors)
+    beyond = f"; annex B ends at R = {_MOST}, which counts" if least < _MOST else ""
+    return (
+        f"Pair {name}: Y_M of the computed rating is {values} (pinion, wheel) with R = {least:.4g} of the planet by "
+        f"planet-root-stress, in the place of -1.2{beyond}."
+    )

@@ -1,0 +1,235 @@
+"""Stage ``planet-root-stress``: root stress of a planet's tooth that sun and ring bend to either side, of sun and ring.
+
+Range, mean and the ratio R of lowest to highest stress at one place of the fillet, over a turn of the gear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import cast
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.errors import InputError
+from fegear.case.built.planetary import planetary_part, set_inputs
+from fegear.case.planetary import MESHES, Mesh, set_pair
+from fegear.case.reading import Scene
+from fegear.contact.plane.both_flanks import AlternatingStress, FilletTrace
+from fegear.contact.plane.loaded_pair import LoadedPair
+from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_over, error_column, value_of
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.engine.table import Column, Table
+from fegear.geometry.pair import Member
+from fegear.results import forecasts
+from fegear.results.pair.root_stress_history import RootStressData
+from fegear.results.planetary.planet_set import planetary_sets
+
+#: Columns of the summary.
+_SHOWN = ("highest", "lowest", "range", "mean", "ratio")
+
+
+@dataclass(frozen=True)
+class PlanetStressInputs:
+    """What root stress over a turn depends on besides the loaded teeth.
+
+    Parameters
+    ----------
+    between : float
+        Angle that a planet turns in the carrier from a tooth's contact at the pitch point of the sun's mesh to that of
+        the ring's [rad].
+    planet_radius : float
+        Its base radius [m].
+    sun_drives : bool
+        Whether the sun drives the planets in the motion relative to the carrier.
+    name : str
+    gears : mapping of str to str
+        Names of sun, planet and ring.
+    """
+
+    between: float
+    planet_radius: float
+    sun_drives: bool
+    name: str
+    gears: dict[str, str] = field(compare=False)
+
+    def member(self, mesh: Mesh, *, planet: bool) -> Member:
+        """Whether the planet, or its mate, is the driver of a mesh."""
+        return "driver" if (self.sun_drives == (mesh == "ring")) == planet else "driven"
+
+
+@dataclass(frozen=True)
+class PlanetStress:
+    """Root stress of the teeth of a set at the most pulled places of their fillets.
+
+    Parameters
+    ----------
+    found : mapping of str to AlternatingStress
+        Of the planet's fillets below the flanks that meet sun and ring, "planet_sun_side" and "planet_ring_side", of
+        "sun" and "ring".
+    angle : ndarray, shape (Q,)
+        That the planet has turned in the carrier [rad].
+    mesh : tuple of str
+        In which its tooth is there.
+    x : ndarray, shape (Q,)
+        Position of the contact in this mesh [m].
+    stress : ndarray, shape (2, Q)
+        At both places of the planet's tooth [Pa].
+    """
+
+    found: dict[str, AlternatingStress]
+    angle: Array
+    mesh: tuple[str, ...]
+    x: Array
+    stress: Array
+
+
+def _inputs(scene: Scene, name: str) -> PlanetStressInputs:
+    part, inputs = planetary_part(scene, name), set_inputs(scene, name)
+    found, drives = inputs.found, inputs.run.sun_drives
+    thick = found.half_tooth_angle("sun") + found.half_tooth_angle("ring")
+    gears = {"sun": part.sun, "planet": part.planet, "ring": part.ring or ""}
+    between = math.pi - thick if drives else math.pi + thick
+    return PlanetStressInputs(between, found.base_radius("planet"), drives, name, gears)
+
+
+def _check(scene: Scene, name: str) -> None:
+    set_inputs(scene, name)
+    part = planetary_part(scene, name)
+    if part.ring is None:
+        raise InputError(
+            f"planetary.{name}.ring", "(not given)", "is needed, for its teeth bend the planet's to the other side",
+            'describe the ring as a gear with internal = true and write ring = "its name"',
+        )  # fmt: skip
+    for pair in (set_pair(name, mesh) for mesh in MESHES):
+        if pair in scene.wide_pairs:
+            raise InputError(f"pair.{pair}.width", f'"{scene.width_of(pair)}"',
+                             "is not known to this result: its teeth are plane", 'write width = "plane"')  # fmt: skip
+        first = scene.case.pair[pair].root_stress.source[0]
+        if first != "fe":
+            raise InputError(f"pair.{pair}.root_stress.source", f'"{first}"', "knows no stress along the fillet",
+                             'write "fe" first')  # fmt: skip
+
+
+def needs_planet_stress(_scene: Scene, name: str) -> tuple[Task, ...]:
+    """Loaded teeth of both meshes, and root stress with its errors."""
+    return tuple(Task("root-stress-history", set_pair(name, mesh)) for mesh in MESHES)
+
+
+def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> PlanetStress:
+    from fegear.contact.plane.both_flanks import alternating_stress, fillet_trace
+
+    data = {mesh: cast("RootStressData", upstream[Task("root-stress-history", set_pair(asked.name, mesh))])
+            for mesh in MESHES}  # fmt: skip
+    pairs = {mesh: cast("LoadedPair", one.teeth) for mesh, one in data.items()}
+
+    def trace(mesh: Mesh, *, planet: bool) -> FilletTrace:
+        return fillet_trace(pairs[mesh].engagement, asked.member(mesh, planet=planet), pairs[mesh].nominal)
+
+    def bent(
+        pulled: Mesh, pressed: Mesh, of: FilletTrace, other: FilletTrace | None
+    ) -> tuple[AlternatingStress, Array]:
+        """Stress at one place over both traces; its errors are those of each mesh's largest, and of the place."""
+        planet, i = other is not None, pairs[pulled].loads.index(pairs[pulled].nominal)
+        pull, press = (
+            next(iter(data[mesh].found.stress[asked.member(mesh, planet=planet)].values()))
+            for mesh in (pulled, pressed)
+        )
+        most, least = pull.largest_tension[i], press.largest_compression
+        found, *history = alternating_stress(of, other)
+        missed = abs(found.highest / most - 1.0)
+        shares = [
+            math.nan if error is None or size is None else abs(error / size) + missed
+            for error, size in ((pull.error(i), most), (press.compression_off(i), None if least is None else least[i]))
+        ]
+        # nowhere is the stress lower than the most negative of all places
+        under = 0.0 if least is None else max(float(least[i]) - found.lowest, 0.0)
+        high, low = float(shares[0] * abs(found.highest)), float(shares[1] * abs(found.lowest)) + under
+        return replace(found, highest_error=high, lowest_error=low), np.concatenate(history)
+
+    planet = {mesh: trace(mesh, planet=True) for mesh in MESHES}
+    of_sun, by_sun = bent("sun", "ring", planet["sun"], planet["ring"])
+    of_ring, by_ring = bent("ring", "sun", planet["ring"], planet["sun"])
+    found = {"planet_sun_side": of_sun, "planet_ring_side": of_ring}
+    for mesh in MESHES:
+        found[mesh], _ = bent(mesh, mesh, trace(mesh, planet=False), None)
+    x = np.concatenate([planet[mesh].x for mesh in MESHES])
+    angle = x / asked.planet_radius + np.repeat([0.0, asked.between], [planet[mesh].x.size for mesh in MESHES])
+    mesh_of = tuple(mesh for mesh in MESHES for _ in planet[mesh].x)
+    stress = np.array([by_sun, np.roll(by_ring, planet["sun"].x.size)])  # the second was pulled by the ring first
+    return PlanetStress(found, angle, mesh_of, x, stress)
+
+
+#: What the rows of the summary are.
+_TEETH = {
+    "planet_sun_side": "fillet of the planet below the flank that meets the sun",
+    "planet_ring_side": "fillet of the planet below the flank that meets the ring",
+    "sun": "fillet of the sun below its loaded flank",
+    "ring": "fillet of the ring below its loaded flank",
+}
+
+
+def _present(data: PlanetStress, asked: PlanetStressInputs) -> Outcome:
+    name, found = asked.name, list(data.found.values())
+    columns = [Column("tooth", np.array(list(data.found)), "", "of the set, and which of its fillets")]
+    for key in _SHOWN:
+        column = column_over(found, key)
+        columns += [column, error_column(column, [getattr(one, f"{key}_error") for one in found])]
+    columns.append(column_over(found, "place"))
+    side = "at the most pulled place of the fillet below the flank that meets the"
+    history = (
+        Column("planet_angle", data.angle, "deg", "that the planet has turned in the carrier since the tooth met the "
+               "sun at the pitch point"),
+        Column("mesh", np.array(data.mesh), "", "in which the tooth is"),
+        Column("x", data.x, "mm", "position of the tooth's contact on the line of action of this mesh"),
+        Column("stress_sun_side", data.stress[0], "MPa", f"{side} sun"),
+        Column("stress_ring_side", data.stress[1], "MPa", f"{side} ring"),
+    )  # fmt: skip
+    tables = (
+        Table(f"planet_root_stress_{name}", tuple(columns), f"Root stress over a turn in set {name}", printed=True),
+        Table(f"root_stress_history_{name}_{asked.gears['planet']}", history,
+              f"Root stress of a tooth of planet {asked.gears['planet']} over a turn in the carrier"),
+    )  # fmt: skip
+    values = [
+        value_of(one, key, f"{name}.{tooth}", getattr(one, f"{key}_error"), meaning=f"{_TEETH[tooth]}: {said}")
+        for tooth, one in data.found.items()
+        for key, said in (("range", "highest less lowest stress"), ("mean", "mean stress"), ("ratio", "R"))
+    ]
+    ratios = ", ".join(f"{data.found[key].ratio:.3f} at the {key.split('_')[1]}'s side" for key in list(_TEETH)[:2])
+    bent = f"the planet's teeth are bent to either side, R = {ratios} (annex B of ISO 6336-3 takes -1.2 for idlers)"
+    alike = "root stresses are those of an equal share; but for Hertzian contact they grow with a planet's load"
+    said = (f"Set {name}: {bent}.", f"Set {name}: {alike}.")
+    return Outcome(data, tables, tuple(values), {}, said, (_figure(data, asked),))
+
+
+def _figure(data: PlanetStress, asked: PlanetStressInputs) -> Figure:
+    order = np.argsort(data.angle)
+    degrees = np.degrees(data.angle[order])
+    curves = tuple(
+        Curve(degrees, data.stress[row, order] * 1e-6, f"fillet on the {mesh}'s side", f"series:{row}", markers=False)
+        for row, mesh in enumerate(MESHES)
+    )
+    return Figure(
+        f"planet_root_stress_{asked.name}", f"Root stress of a planet's tooth in set {asked.name}",
+        f"Set {asked.name}: stress at the most pulled places of both fillets of a planet's tooth over a turn in the "
+        "carrier: it meets the sun at 0 deg and the ring half a turn later.",
+        (Panel(Axis("turn of the planet in the carrier", "deg"), Axis("stress", "MPa", zero=True), curves),),
+    )  # fmt: skip
+
+
+PLANET_ROOT_STRESS = Stage(
+    subjects=planetary_sets,
+    needs=needs_planet_stress,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    cites=citing(Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")),
+    forecast=lambda _scene, _name: forecasts.constant(0.4),
+    internal=True,
+)
