@@ -37,6 +37,9 @@ class Pair(Described):
         ``"potential-energy"``, or a mapping as in a case file.
     name : str
         In names of results.
+    load_distribution : mapping, optional
+        How finely its flanks are divided where it is loaded with its width, as the table ``[load_distribution]`` of a
+        case file: ``{"positions": 24, "panels": 16}``.
     **keys
         ``iso_6336``, ``misalignment``, ``modification``, ``axial_offset``, ... as in a case file: see
         `fegear.case.pair.PairPart`.
@@ -60,6 +63,7 @@ class Pair(Described):
         *,
         compliance: str | Mapping[str, Any] = "fe",
         name: str = "I",
+        load_distribution: Mapping[str, Any] | None = None,
         **keys: Any,
     ) -> None:
         for role, gear in (("driver", driver), ("driven", driven)):
@@ -70,6 +74,7 @@ class Pair(Described):
         source = {"source": compliance} if isinstance(compliance, str) else table(compliance, "compliance")
         given = {} if centre_distance is None else {"centre_distance": centre_distance}
         self._keys: dict[str, Any] = taken({**given, "compliance": source, **keys}, f"pair.{self.name}")
+        self._divided = table(load_distribution, "load_distribution")
         self.known = SolutionCache()
         self._scene  # noqa: B018  (a pair that cannot be is refused where it is described)
 
@@ -88,7 +93,8 @@ class Pair(Described):
         wide = not self.driver.is_spur or pair.get("width", "plane") != "plane"
         if wide and pair["compliance"] == {"source": "fe"}:
             del pair["compliance"]  # gears with a width are solved so, and know no other source
-        return {"gear": gears, "pair": {self.name: pair}}
+        divided = {"load_distribution": self._divided} if self._divided else {}
+        return {"gear": gears, "pair": {self.name: pair}, **divided}
 
     @property
     def is_spur(self) -> bool:
@@ -156,7 +162,8 @@ class Pair(Described):
             for name, gear, relief in zip(_apart(self.names), (self.driver, self.driven), reliefs.values(), strict=True)
         )
         keys = {key: value for key, value in self.keys.items() if key != "compliance"}
-        made = Pair(driver, driven, compliance=self.keys["compliance"], name=self.name, **keys)
+        made = Pair(driver, driven, compliance=self.keys["compliance"], name=self.name,
+                    load_distribution=self._divided, **keys)  # fmt: skip
         made.known = self.known  # relief changes no tooth shape: they are solved already
         return made
 
@@ -164,7 +171,9 @@ class Pair(Described):
         """Whether two pairs are described alike."""
         if not isinstance(other, Pair):
             return False
-        described, others = ((one.name, one.driver, one.driven, one._keys) for one in (self, other))  # noqa: SLF001
+        described, others = (
+            (one.name, one.driver, one.driven, one._keys, one._divided) for one in (self, other)  # noqa: SLF001
+        )  # fmt: skip
         return described == others
 
     def __hash__(self) -> int:
@@ -173,7 +182,8 @@ class Pair(Described):
 
     def __repr__(self) -> str:
         """As it was described."""
-        given = "".join(f", {key}={brief(value)}" for key, value in {**self.keys, "name": self.name}.items())
+        divided = {"load_distribution": self._divided} if self._divided else {}
+        given = "".join(f", {key}={brief(value)}" for key, value in {**self.keys, "name": self.name, **divided}.items())
         return f"Pair({self.driver!r}, {self.driven!r}{given})"
 
     def _repr_html_(self) -> str:

@@ -280,8 +280,11 @@ def test_a_helical_pair_that_changes_places_has_the_same_load_over_its_flanks(wi
     document["pair"]["I"]["width"] = width
     one, other = ran(document, monkeypatch), ran(turned(document), monkeypatch)
     a, b = ({v.name: v.si for v in found.values} for found in (one, other))
-    for name in ("I.te_peak_to_peak", "I.largest_line_load", "I.largest_hertz_pressure", "I.largest_share", *MEANS):
+    for name in ("I.te_peak_to_peak", "I.largest_line_load", "I.largest_share", *MEANS):
         assert b[name] == pytest.approx(a[name], rel=SAME_MEAN if name in MEANS else SAME), name
+    # The largest pressure of lines of a module or more stands between roll positions, which are not mirrored.
+    pressure = next(v for v in one.values if v.name == "I.largest_hertz_pressure")
+    assert abs(b[pressure.name] - pressure.si) < min(pressure.si_error, 0.02 * pressure.si)
     for member, mate in (("driver", "driven"), ("driven", "driver")):
         assert b[f"I.{member}.K_Fbeta"] == pytest.approx(a[f"I.{mate}.K_Fbeta"], rel=SAME_MEAN)
     lines = [

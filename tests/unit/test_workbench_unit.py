@@ -275,3 +275,15 @@ def test_a_silent_run_writes_nothing(capfd):
 def test_an_exact_value_has_an_error_of_zero(found):
     assert found.values["I.contact_ratio"].error == 0.0
     assert math.isfinite(found.values["I.te_mean"].value)
+
+
+def test_flanks_of_a_pair_are_divided_as_it_says():
+    helical = {"normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "12 mm"}
+    gears = [fegear.Gear(20, hand=hand, name=hand, **helical) for hand in ("right", "left")]
+    fine = fegear.Pair(*gears, load_distribution={"positions": 24})
+    assert fine.document(load="1 kN")["load_distribution"] == {"positions": 24}
+    assert "load_distribution" not in fegear.Pair(*gears).document(load="1 kN")
+    assert fine != fegear.Pair(*gears)
+    assert "load_distribution={'positions': 24}" in repr(fine)
+    with pytest.raises(InputError, match="load_distribution"):
+        fegear.Pair(*gears, load_distribution={"places": 24})

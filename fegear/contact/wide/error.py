@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import shown
+from fegear.contact.wide.lines import long_line
 from fegear.contact.wide.over_pitch import Stated
 from fegear.contact.wide.spots import missed_of_spots
 
@@ -52,9 +53,11 @@ class FlankError:
     mean: Array = shown("um", "mean transmission error", name="te_mean")
     peak_to_peak: Array = shown("um", "over the whole base pitch", name="te_peak_to_peak")
     face_load_factor: Array = shown("", "largest over mean load per face width", name="K_Hbeta")
-    largest_line_load: Array = shown("N/mm", "on one contact line, without tips and form circles")
+    largest_line_load: Array = shown("N/mm", "on one contact line of a module or more, clear of tips and form circles")
     largest_pressure: Array = shown(
-        "MPa", "smooth flanks, without tips and form circles", name="largest_hertz_pressure"
+        "MPa",
+        "smooth flanks, on contact lines of a module or more, clear of tips and form circles",
+        name="largest_hertz_pressure",
     )
 
 
@@ -96,7 +99,7 @@ def flank_error(
     # Largest loads that these roll positions miss change elsewhere: by no more than they are larger.
     above = over.found.largest_line_load - found.largest_line_load
     higher = over.found.largest_pressure - found.largest_pressure
-    missed = missed_of_spots(found.known, found.contact)
+    missed = missed_of_spots(found.known, found.contact, long_line(found.pair))
     left = left._replace(
         largest_line_load=left.largest_line_load + np.maximum(above, 0.0) + missed * found.largest_line_load,
         largest_pressure=left.largest_pressure + np.maximum(higher, 0.0) + missed * found.largest_pressure,
@@ -127,8 +130,8 @@ def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:
         # The largest change anywhere on the face, for that of the largest value may be small by chance; no less than
         # the compliances change together.
         np.maximum(over_face, shift / found.mean_transmission_error * found.face_load_factor),
-        _largest(found, found.line_load, found.largest_line_loads, other.largest_line_loads),
-        _largest(found, found.pressure, found.largest_pressures, other.largest_pressures),
+        _largest(found.largest_line_loads, other.largest_line_loads),
+        _largest(found.largest_pressures, other.largest_pressures),
     )
 
 
@@ -158,9 +161,6 @@ def with_misses(error: FlankError, found: LoadedFlanks, missed: float) -> FlankE
     )
 
 
-def _largest(found: LoadedFlanks, values: Array, first: Array, second: Array) -> Array:
-    """Of a largest value: its change at any roll position, and by how much tips bear more that were left out of it."""
-    lines = found.lines
-    ends = lines.at_edge if lines.edges is None else lines.at_edge & (lines.edges.gap == 0.0)
-    above = np.where(ends[:, :, None], values, 0.0).max(axis=(0, 1)) - first.max(axis=0)
-    return np.asarray(_LOCAL * np.abs(second - first).max(axis=0) + np.maximum(above, 0.0))
+def _largest(first: Array, second: Array) -> Array:
+    """Of a largest value: its change at any roll position, for where it is largest that may be small by chance."""
+    return np.asarray(_LOCAL * np.abs(second - first).max(axis=0))

@@ -37,6 +37,12 @@ from fegear.geometry.pair import GearPair, Member
 
 #: A contact line shorter than this is left out [modules]: it is no longer long beside its Hertzian width.
 SHORTEST_LINE = 0.15
+#: Lines shorter than this decide no largest value [modules]: they come and go at corners of the face, where panels are
+#: as long as they are, and what they bear hangs on their number.
+LONG_LINE = 1.0
+#: Nothing nearer than this to where a line reaches a tip or form circle does, either [modules along the face]: loads
+#: grow without a bound toward a sharp edge, and with only the last station neglected they would grow with the panels.
+BESIDE_EDGE = 0.2
 
 
 @dataclass(frozen=True)
@@ -106,6 +112,28 @@ class ContactLines(ReadOnlyArrays):
         """Of all lines along the face, shape (P,) [m]."""
         return np.asarray(self.panel.sum(axis=1))
 
+    def long(self, shortest: float) -> Mask:
+        """Whether stations belong to lines of at least a length along the face [m], shape (P, M)."""
+        found = np.zeros(self.present.shape, dtype=bool)
+        for p in range(self.roll.size):
+            for s in self.at(p):
+                found[p, s] = self.z[p, s][-1] - self.z[p, s][0] >= shortest * (1.0 - 1e-9)
+        return found
+
+    def clear(self, pair: GearPair, distance: float) -> Mask:
+        """Stations farther than a distance along the face from where their line reaches a tip or form circle, (P, M).
+
+        Also where it would do so beyond the end of the face: a line that comes to a corner changes steadily. All
+        stations of spur pairs are, for their lines stand along tips as a whole; so are those beside rounded tips on
+        which lines go on.
+        """
+        room = (1.0 - 1e-9) * distance * abs(base_twist(pair))
+        if self.edges is None:
+            near = np.minimum(np.abs(self.x - pair.x_start), np.abs(self.x - pair.x_end)) < room
+        else:
+            near = self.edges.tilt > -room
+        return np.asarray(self.present & ~self.at_edge & ~near)
+
     def at(self, position: int) -> list[slice]:
         """Where the lines of a roll position stand, in the order of their pairs."""
         count = int(self.present[position].sum())
@@ -121,6 +149,11 @@ def base_twist(pair: GearPair) -> float:
 def shortest_line(pair: GearPair) -> float:
     """Length along the face below which a contact line is left out [m]."""
     return min(SHORTEST_LINE * pair.driver.module, 0.5 * pair.face_width)
+
+
+def long_line(pair: GearPair) -> float:
+    """Length along the face from which on a contact line decides largest values [m]: all lines of spur gears."""
+    return min(LONG_LINE * pair.driver.module, 0.5 * pair.face_width)
 
 
 def life_of_contact(pair: GearPair) -> tuple[float, float]:

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.wide.lines import ContactLines
+from fegear.contact.wide.lines import ContactLines, long_line
 from fegear.formulas.iso6336.part1_face_load import face_load_factor, root_exponent
 from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair
 
 
-#: Of helical pairs: what is left out at the ends of the face, and lines too short to be loaded evenly [modules].
-_FREE_END, _SHORTEST = 0.5, 1.0
+#: Of helical pairs: what is left out at the ends of the face [modules].
+_FREE_END = 0.5
 
 
 #: Places nearer to each other than this share of the face are one.
@@ -89,7 +89,7 @@ def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines
     """
     solved, ideal = found.contact.force[:, :, case], perfect.contact.force[:, :, case]
     helical, m, lines = found.pair.driver.helix_angle != 0.0, found.pair.driver.module, found.lines
-    shortest = min(_SHORTEST * m, 0.5 * (lines.high - lines.low)) if helical else 0.0
+    shortest = long_line(found.pair) if helical else 0.0
     loads = solved, even_along_the_lines(lines, solved, shortest), even_along_the_lines(lines, ideal, shortest)
     # A place that stands at such an end, in all but its last digit, counts.
     free = _FREE_END * m - _BESIDE * (lines.high - lines.low)

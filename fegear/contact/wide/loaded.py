@@ -17,7 +17,7 @@ from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import base_twist, contact_lines, edge_reach, roll_points
+from fegear.contact.wide.lines import BESIDE_EDGE, base_twist, contact_lines, edge_reach, long_line, roll_points
 from fegear.contact.wide.load_factors import load_below, swept_mean
 from fegear.contact.wide.spots import solve_spots
 from fegear.geometry.pair import MEMBERS
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.complementarity import Contact
     from fegear.contact.wide.compliance import FlankCompliance, Hertz
@@ -95,17 +95,28 @@ class LoadedFlanks(ReadOnlyArrays):
         return self.known.pressure(self.line_load)
 
     @cached_property
+    def long(self) -> Mask:
+        """Whether stations are on contact lines that are long enough to decide largest values, shape (P, M)."""
+        return self.lines.long(long_line(self.pair))
+
+    @cached_property
+    def smooth(self) -> Mask:
+        """Whether flanks have a largest pressure at the stations: on long lines, clear of tips, form circles, edges."""
+        return np.asarray(self.long & self.lines.clear(self.pair, BESIDE_EDGE * self.pair.driver.module))
+
+    @cached_property
     def largest_line_loads(self) -> Array:
-        """At each roll position [N/m], shape (P, L); where lines end at tips or form circles is left out."""
-        ends = self.lines.at_edge
+        """At each roll position [N/m], shape (P, L), on long lines; ends at tips or form circles are neglected."""
+        bounded = self.smooth
         if self.lines.edges is not None:  # on tip edges line loads are finite
-            ends = ends & (self.lines.edges.gap == 0.0) & (self.lines.edges.tilt < -_ON_EDGE * self.pair.base_pitch)
-        return np.asarray(np.where(ends[:, :, None], 0.0, self.line_load).max(axis=1))
+            on_path = (self.lines.edges.gap == 0.0) & (self.lines.edges.tilt < -_ON_EDGE * self.pair.base_pitch)
+            bounded = self.long & ~(self.lines.at_edge & on_path)
+        return np.asarray(np.where(bounded[:, :, None], self.line_load, 0.0).max(axis=1))
 
     @cached_property
     def largest_pressures(self) -> Array:
-        """Hertzian at each roll position [Pa], shape (P, L), where lines end at tips and sharp edges left out."""
-        return np.asarray(np.where(self.lines.at_edge[:, :, None], 0.0, self.pressure).max(axis=1))
+        """Hertzian at each roll position [Pa], shape (P, L), see `smooth`."""
+        return np.asarray(np.where(self.smooth[:, :, None], self.pressure, 0.0).max(axis=1))
 
     @property
     def largest_line_load(self) -> Array:

@@ -40,12 +40,12 @@ def flank_pair_history(found: LoadedFlanks, gap: Array) -> PairHistory:
     PairHistory
         Its x is where the contact line crosses the middle of the face; before x_start and after x_end only a part of
         the face is in contact. The deflection is weighted with the load along the line, the pressure is the largest on
-        it, tips and form circles left out.
+        it; tips, form circles and lines shorter than a module are neglected.
     """
     lines, pitch = found.lines, found.pair.base_pitch
     force, te = found.contact.force, found.transmission_error
     apart = averaged_gaps(lines, gap, found.load.size)
-    pressure = np.where(lines.at_edge[:, :, None], 0.0, found.pressure)
+    pressure = np.where(found.smooth[:, :, None], found.pressure, 0.0)
     where = [(p, s) for p in range(lines.roll.size) for s in lines.at(p)]
     x = np.array([lines.roll[p] + lines.pair[p, s.start] * pitch for p, s in where])
     order = np.argsort(x)

@@ -88,13 +88,18 @@ def _own_width(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankCo
     return known, solve_contact(known, gap, load)
 
 
-def missed_of_spots(known: FlankCompliance, found: Contact) -> Array:
-    """Share by which the largest pressure of spots may be low, shape (L,): nothing of long contacts."""
+def missed_of_spots(known: FlankCompliance, found: Contact, shortest: float) -> Array:
+    """Share by which the largest pressure of spots may be low, shape (L,): nothing of long contacts.
+
+    Contact lines of less than `shortest` decide no largest pressure, and are not looked at [m].
+    """
     lines, width = known.lines, _half_width(known, found)
     loaded = lines.support[:, :, None] * (found.force > 0.0)
     most = np.zeros(found.approach.shape[1])
     for p in range(lines.roll.size):
         for s in lines.at(p):
+            if lines.z[p, s][-1] - lines.z[p, s][0] < shortest * (1.0 - 1e-9):
+                continue
             half = 0.5 * loaded[p, s].sum(axis=0)
             ratio = np.divide(width[p, s].max(axis=0), half, out=np.zeros_like(half), where=half > 0.0)
             most = np.maximum(most, np.minimum(ratio, 1.0))

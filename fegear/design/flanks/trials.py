@@ -98,8 +98,8 @@ class Tried(ReadOnlyArrays):
     @cached_property
     @shows("MPa", "largest, without tips and form circles", name="hertz_pressure")
     def pressure(self) -> Array:
-        """Largest Hertzian pressure away from tips and form circles, shape (S, L) [Pa]."""
-        inner = self.found[0].lines.present & ~self.found[0].lines.at_edge
+        """Largest Hertzian pressure, see `LoadedFlanks.smooth`, shape (S, L) [Pa]."""
+        inner = self.found[0].smooth
         return np.stack([np.where(inner[:, :, None], one.pressure, 0.0).max(axis=(0, 1)) for one in self.found])
 
 
