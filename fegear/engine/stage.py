@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from fegear.engine.citation import Citation, Cites
     from fegear.engine.executor import Executor
     from fegear.engine.outcome import Outcome
+
+
+P = TypeVar("P")
 
 
 class Task(NamedTuple):
@@ -72,6 +75,26 @@ class Subject:
     def of(cls, _scene: Scene, name: str) -> Subject:
         """As `Stage.inputs`."""
         return cls(name)
+
+
+@dataclass(frozen=True)
+class Reads(Generic[P]):
+    """Inputs of a stage that are one table of the case as it is, for one gear, pair or mesh.
+
+    Parameters
+    ----------
+    part : Part
+    name : str
+        Of the subject; part of the key, for several meshes of a train may read the same table.
+    """
+
+    part: P
+    name: str
+
+    @staticmethod
+    def of(table: Callable[[Scene], P]) -> Callable[[Scene, str], Reads[P]]:
+        """As `Stage.inputs`: ``Reads.of(lambda scene: scene.case.dynamics)``."""
+        return lambda scene, name: Reads(table(scene), name)
 
 
 class Need(NamedTuple):

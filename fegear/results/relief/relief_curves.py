@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from fegear.engine.declared import column_of, column_over, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, ramp
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Reads, Stage
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import needs_teeth
@@ -35,14 +35,6 @@ _POSITIONS, _HARMONICS, _TOLD = 200, 12, 4
 _MOST = 24
 #: One relief followed and integrated [s].
 _EACH = 0.02
-
-
-@dataclass(frozen=True)
-class CurvesInputs:
-    """Which reliefs are asked for."""
-
-    part: ChartPart
-    name: str = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -92,11 +84,7 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def _inputs(scene: Scene, name: str) -> CurvesInputs:
-    return CurvesInputs(design_part(scene).chart, name)
-
-
-def _compute(inputs: CurvesInputs, upstream: Upstream, work: Work) -> ReliefCurvesData:
+def _compute(inputs: Reads[ChartPart], upstream: Upstream, work: Work) -> ReliefCurvesData:
     from fegear.design.charts import welbourn_amount
     from fegear.geometry.relief import normalised_tip_relief
 
@@ -126,7 +114,7 @@ def _curve(engagement: Engagement, load: float, amount: float, length: float) ->
     return ReliefCurve(amount, length, history, transmission_error(engagement, load, _HARMONICS))
 
 
-def _present(data: ReliefCurvesData, inputs: CurvesInputs) -> Outcome:
+def _present(data: ReliefCurvesData, inputs: Reads[ChartPart]) -> Outcome:
     from fegear.design.charts import ReliefChart
 
     name, curves = inputs.name, data.curves
@@ -208,7 +196,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 RELIEF_CURVES = Stage(
     subjects=design_pairs,
     needs=needs_teeth,
-    inputs=_inputs,
+    inputs=Reads.of(lambda scene: design_part(scene).chart),
     compute=_compute,
     present=_present,
     check=_check,

@@ -13,13 +13,14 @@ from fegear.engine.declared import axis_of, column_of, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Points, Stems
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Reads, Stage
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, gear_train, meshes, needs_one_speed, needs_train, pull_remarks
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
+    from fegear.case.dynamics import DynamicsPart
     from fegear.case.reading import Scene
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.spectra import MeshForceSpectrum
@@ -50,47 +51,22 @@ class SpectrumData:
     pull: Pull | None
 
 
-@dataclass(frozen=True)
-class SpectrumInputs:
-    """What the spectra of a mesh depend on besides the train.
-
-    Parameters
-    ----------
-    mesh : str
-    speed : float
-        Of the body that speeds refer to [rad/s].
-    speeds : ndarray
-        Of the waterfall [rad/s]; fewer than two for none.
-    harmonics : int
-    """
-
-    mesh: str
-    speed: float
-    speeds: Array
-    harmonics: int
-
-
-def _inputs(scene: Scene, name: str) -> SpectrumInputs:
-    part = scene.case.dynamics
-    return SpectrumInputs(name, part.one_speed, part.speed_values, part.harmonics)
-
-
-def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> SpectrumData:
+def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> SpectrumData:
     from fegear.dynamics.train.spectra import mesh_force_spectrum
     from fegear.dynamics.train.tooth_force import largest_pull
 
-    data = gear_train(upstream)
-    i, speed = data.train.mesh_index(asked.mesh), asked.speed / data.speed_ratio
-    found = mesh_force_spectrum(data.train, data.errors, [speed], asked.harmonics, rotational=True, phases=data.phases)
+    data, part = gear_train(upstream), asked.part
+    i, speed, speeds = data.train.mesh_index(asked.name), part.one_speed / data.speed_ratio, part.speed_values
+    found = mesh_force_spectrum(data.train, data.errors, [speed], part.harmonics, rotational=True, phases=data.phases)
     waterfall = None
-    if asked.speeds.size > 1:
-        harmonics = min(asked.harmonics, _WATERFALL_LINES)
-        waterfall = mesh_force_spectrum(data.train, data.errors, asked.speeds / data.speed_ratio, harmonics)
-    return SpectrumData(data, i, found, waterfall, largest_pull(data, i, [speed], asked.harmonics))
+    if speeds.size > 1:
+        harmonics = min(part.harmonics, _WATERFALL_LINES)
+        waterfall = mesh_force_spectrum(data.train, data.errors, speeds / data.speed_ratio, harmonics)
+    return SpectrumData(data, i, found, waterfall, largest_pull(data, i, [speed], part.harmonics))
 
 
-def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
-    name, data, i, found = asked.mesh, made.train, made.mesh, made.spectrum
+def _present(made: SpectrumData, asked: Reads[DynamicsPart]) -> Outcome:
+    name, data, i, found = asked.name, made.train, made.mesh, made.spectrum
     amplitude = found.amplitudes[i, :, :, 0]
     table = Table(
         f"mesh_force_spectrum_{name}",
@@ -109,7 +85,7 @@ def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
     tables = [table]
     if made.waterfall is not None:
         tables.append(_waterfall_table(name, i, made.waterfall, data))
-    settings: dict[str, object] = {"harmonics": asked.harmonics, "speed": asked.speed}
+    settings: dict[str, object] = {"harmonics": asked.part.harmonics, "speed": asked.part.one_speed}
     return Outcome(made, tuple(tables), values, settings, pull_remarks(made.pull), _spectrum_figures(made))
 
 
@@ -235,7 +211,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 MESH_FORCE_SPECTRUM = Stage(
     subjects=meshes,
     needs=needs_train,
-    inputs=_inputs,
+    inputs=Reads.of(lambda scene: scene.case.dynamics),
     compute=_compute,
     present=_present,
     check=needs_one_speed,

@@ -13,7 +13,7 @@ from fegear.engine.declared import column_of, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Reads, Stage
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.train.gear_train import TRAIN_SOURCES, gear_train, needs_train, the_train
@@ -21,7 +21,7 @@ from fegear.results.train.gear_train import TRAIN_SOURCES, gear_train, needs_tra
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.case.reading import Scene
+    from fegear.case.dynamics import DynamicsPart
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.modes import Campbell, Modes
     from fegear.engine.stage import Upstream, Work
@@ -43,32 +43,15 @@ class ModesData:
     campbell: Campbell | None
 
 
-@dataclass(frozen=True)
-class SpeedsInputs:
-    """Speeds of a Campbell diagram [rad/s of the body that speeds refer to], and how many harmonics it shows.
-
-    `speed` is the one at which the case runs; nan where it names none.
-    """
-
-    speeds: NDArray[np.float64]
-    lines: int
-    speed: float = math.nan
-
-
-def _speeds(scene: Scene, _subject: str) -> SpeedsInputs:
-    part = scene.case.dynamics
-    return SpeedsInputs(part.speed_values, part.lines, math.nan if part.speed is None else part.speed)
-
-
-def _modes(asked: SpeedsInputs, upstream: Upstream, _work: Work) -> ModesData:
+def _modes(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> ModesData:
     from fegear.dynamics.train.modes import campbell, modes
 
     data = gear_train(upstream)
-    speeds = asked.speeds / data.speed_ratio
-    return ModesData(data, modes(data.train), campbell(data.train, speeds, asked.lines) if speeds.size else None)
+    speeds = asked.part.speed_values / data.speed_ratio
+    return ModesData(data, modes(data.train), campbell(data.train, speeds, asked.part.lines) if speeds.size else None)
 
 
-def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
+def _present_modes(known: ModesData, asked: Reads[DynamicsPart]) -> Outcome:
     data, found, diagram = known.train, known.modes, known.campbell
     train = data.train
     count = np.arange(found.frequencies.size)
@@ -99,7 +82,12 @@ def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
     values = tuple(
         value_of(found, "frequencies", "", si=found.frequencies[k], name=f"natural_frequency_{k}") for k in count[1:]
     )
-    return Outcome(known, tuple(tables), values, figures=_modes_figures(known, asked.speed))
+    return Outcome(
+        known,
+        tuple(tables),
+        values,
+        figures=_modes_figures(known, math.nan if asked.part.speed is None else asked.part.speed),
+    )
 
 
 def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
@@ -188,7 +176,7 @@ def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
 NATURAL_MODES = Stage(
     subjects=the_train,
     needs=needs_train,
-    inputs=_speeds,
+    inputs=Reads.of(lambda scene: scene.case.dynamics),
     compute=_modes,
     present=_present_modes,
     cites=TRAIN_SOURCES,

@@ -12,12 +12,13 @@ from fegear.engine.declared import axis_of, column_of, columns_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Reads, Stage
 from fegear.engine.table import Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, own_meshes, pull_remarks
 
 if TYPE_CHECKING:
+    from fegear.case.dynamics import DynamicsPart
     from fegear.case.reading import Scene
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.single_tooth import MeshForce
@@ -54,44 +55,21 @@ class ToothForceData:
     together: MeshForce
 
 
-@dataclass(frozen=True)
-class ToothForceInputs:
-    """What the force on a tooth pair depends on besides the train.
-
-    Parameters
-    ----------
-    mesh : str
-    speed : float
-        Of the body that speeds refer to [rad/s].
-    positions, harmonics : int
-    """
-
-    mesh: str
-    speed: float
-    positions: int
-    harmonics: int
-
-
-def _inputs(scene: Scene, name: str) -> ToothForceInputs:
-    part = scene.case.dynamics
-    return ToothForceInputs(name, part.one_speed, part.positions, part.harmonics)
-
-
-def _compute(asked: ToothForceInputs, upstream: Upstream, _work: Work) -> ToothForceData:
+def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> ToothForceData:
     from fegear.dynamics.train.single_tooth import force_history, heaviest_pair, mesh_force, summed_harmonics
     from fegear.dynamics.train.tooth_force import largest_pull
 
     data = gear_train(upstream)
-    i = data.train.mesh_index(asked.mesh)
-    number, harmonics = heaviest_pair(data, i), summed_harmonics(data, asked.harmonics)
-    force = force_history(data, i, asked.speed, asked.positions, harmonics, number)
-    pull = largest_pull(data, i, [asked.speed / data.speed_ratio], asked.harmonics)
-    together = mesh_force(data, i, asked.speed, asked.positions, harmonics, number)
+    i, part = data.train.mesh_index(asked.name), asked.part
+    number, harmonics, speed = heaviest_pair(data, i), summed_harmonics(data, part.harmonics), part.one_speed
+    force = force_history(data, i, speed, part.positions, harmonics, number)
+    pull = largest_pull(data, i, [speed / data.speed_ratio], part.harmonics)
+    together = mesh_force(data, i, speed, part.positions, harmonics, number)
     return ToothForceData(data, i, force, number, harmonics, pull, together)
 
 
-def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
-    name, data, i, force = asked.mesh, made.train, made.mesh, made.force
+def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
+    name, data, i, force = asked.name, made.train, made.mesh, made.force
     table = Table(
         f"tooth_force_{name}",
         (
@@ -133,8 +111,8 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
             f"{made.number}, which carries most at rest (number 0 is at the pitch point at phase zero)."
         )
         remarks = (*remarks, sentence)
-    settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.speed}
-    figures = _tooth_force_figure(made, asked.speed), _mesh_force_figure(made, asked.speed)
+    settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.part.one_speed}
+    figures = _tooth_force_figure(made, asked.part.one_speed), _mesh_force_figure(made, asked.part.one_speed)
     tables = table, _mesh_force_table(name, made.together)
     return Outcome(made, tables, tuple(values), settings, remarks, figures)
 
@@ -221,7 +199,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 TOOTH_FORCE = Stage(
     subjects=own_meshes,
     needs=needs_train,
-    inputs=_inputs,
+    inputs=Reads.of(lambda scene: scene.case.dynamics),
     compute=_compute,
     present=_present,
     check=needs_one_speed,
