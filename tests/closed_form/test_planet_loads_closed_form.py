@@ -169,3 +169,37 @@ def test_stiff_pins_become_rigid_ones():
 def test_a_load_without_anything_to_bear_on_is_refused():
     with pytest.raises(ConvergenceError, match="no equilibrium"):
         equilibrium(np.zeros((1, 1)), np.ones((1, 1)), np.ones((1, 1)), np.zeros((1, 1)), np.array([-1.0]))
+
+
+@pytest.mark.parametrize("planets", [3, 5, 6])
+def test_contact_states_of_more_planets_with_any_member_floating(planets):
+    """Unequal places, pins of unequal error, and each of sun, ring and carrier floating, held or on a bearing."""
+    rng = np.random.default_rng(20 + planets)
+    lifted, balanced, supports = 0, 0, [0.0, math.inf, None]
+    for _ in range(9 if planets < 6 else 4):
+        angles = np.sort(rng.choice(108, planets, replace=False)) * math.tau / 108
+        found = unshifted(24, 30, angles - angles[0], addendum=-15.0)
+        held = [supports[int(rng.integers(3))] for _ in range(3)]
+        sun, ring, carrier = (10.0 ** rng.uniform(7, 9) if one is None else one for one in held)
+        if not (sun or ring or carrier):
+            sun = math.inf  # one of them must know where the set is
+        made = model(found, sun=sun, ring=ring, carrier=carrier, pin=10.0 ** rng.uniform(7.5, 9))
+        one, other = (10.0 ** rng.uniform(8, 9) for _ in range(2))
+        driving = ("sun", "ring", "carrier")[int(rng.integers(3))]
+        run = meshed(made, constant(one), constant(other), torque=300.0, driving=driving)
+        errors = rng.normal(0.0, 25e-6, (2, planets))
+        free = made.freed([name for name in ("sun", "ring", "carrier") if name != driving])
+        rows = made.mesh_rows.reshape(-1, made.size) @ free
+        pins = made.pin_rows.reshape(-1, made.size)
+        load = (made.torque_load(300.0) - made.planet.pin * errors.ravel() @ pins) @ free
+        k, linear = np.repeat([one, other], planets), free.T @ made.held_stiffness() @ free
+        asked = enumerated(linear, rows, k, np.zeros(len(rows)), load)
+        if asked is None:  # planets on one side of members that float: nothing holds them
+            with pytest.raises(ConvergenceError, match="no equilibrium"):
+                planet_loads(run, errors)
+            continue
+        balanced += 1
+        assert np.allclose(planet_loads(run, errors).mesh_force[..., 0].ravel(), asked, atol=1e-6 * run.mean_force)
+        lifted += bool(np.any(asked == 0.0))
+    assert balanced > 2
+    assert lifted > 0

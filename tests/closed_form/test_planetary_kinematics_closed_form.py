@@ -86,6 +86,8 @@ def test_sidebands_are_those_of_a_signal_that_is_added_up():
     ("make", "said"),
     [
         (lambda: unshifted(24, 30, 5), "108 / 5 = 21.6 is not whole"),
+        (lambda: unshifted(24, 30, 5), "take 4 planets, change a number of teeth by 2"),  # six would meet
+        (lambda: unshifted(24, 30, 5, addendum=-15.0), "take 4 or 6 planets"),
         (lambda: unshifted(24, 30, 6), "neighbours meet: their tip circles overlap by 10 mm"),
         (lambda: unshifted(24, 30, np.radians([0.0, 121.0, 240.0])), "write 120 deg"),
         (lambda: unshifted(24, 30, np.radians([0.0, 240.0, 120.0])), "must increase within one turn"),

@@ -29,16 +29,16 @@ CASE = Path(__file__).parents[2] / "cases" / "planet_and_ring.toml"
 #: Load per millimetre of face [N/mm], and roll positions as shares of a base pitch after the start of the path.
 LINE_LOAD = 290.0
 POSITIONS = {"two pairs": 0.25, "one pair and a tip corner": 0.97}
-PENALTY = 2e8  # MPa/mm
+PENALTY = 1e9  # MPa/mm
 THICKNESS = 1.0  # of the layer [mm]
-#: Half-width of what the meshes resolve about each contact [modules], near the Hertzian one.
-HALF_WIDTH = 0.07
+#: Half-width of what the meshes resolve about each contact [modules], half the Hertzian one.
+HALF_WIDTH = 0.035
 _FINE = MeshSettings(
     root_edge_length=0.05, root_fraction=0.2, flank_edge_length=0.15, tip_edge_length=0.05, junction_edge_length=0.05,
     back_edge_length=0.4, growth=0.35, tip_growth=0.35, side_growth=0.45, body_fraction=1.0, rim_fraction=0.35, order=2,
 )  # fmt: skip
 _AT_CORNER = MeshSettings(
-    root_edge_length=0.05, root_fraction=0.2, flank_edge_length=0.15, tip_edge_length=0.004, junction_edge_length=0.05,
+    root_edge_length=0.05, root_fraction=0.2, flank_edge_length=0.15, tip_edge_length=0.002, junction_edge_length=0.05,
     back_edge_length=0.4, growth=0.35, tip_growth=0.25, side_growth=0.45, body_fraction=1.0, rim_fraction=0.35, order=2,
 )  # fmt: skip
 _COARSE = MeshSettings(
@@ -93,7 +93,7 @@ def body(pair, member, share):
         radius, at_tip = places[member]
         arc = tooth.side * (0.5 * tooth.base_radius * float(tooth.roll(radius / gear.module)) ** 2 - start)
         settings = _AT_CORNER if at_tip else _FINE
-        half = HALF_WIDTH if not any(one[1] for one in places.values()) else 0.03
+        half = HALF_WIDTH if not any(one[1] for one in places.values()) else 0.015
         chains = sector_boundary(tooth, bore, settings, [] if at_tip else [(arc, half)])
         teeth[j] = forward * j
         sectors[teeth[j]] = mesh_inside([shared.get(c.name, c) for c in chains], tooth.teeth, growth=0.45)

@@ -1,9 +1,12 @@
 """Planet and ring compared with frictionless contact of both whole gears in CalculiX (`make_ring_calculix.py`).
 
-Turned by fegear's approach for 290 N/mm, CalculiX carries .15 % more where two pairs bear (54,272 nodes; .19 % with
-coarser sides of the sectors: its meshes are the stiffer), shared within .02 %; root tensions are within .7 %, on fillet
-edges of .05 modules. The ring's tip corner carries 2.0 % less than fegear says and
-stresses its fillet 3.5 % less, the pair beside it carries .3 % more.
+Turned by fegear's approach for 290 N/mm, CalculiX carries .15 % more where two pairs bear, shared within .02 %. Its
+mesh is not why: a penalty five times as stiff adds .013 %, contact elements half as long take .014 %, sectors of three
+quarters the edges (66,348 nodes) add .01 %; fegear's own settings change 2e-5. Some .08 % is the load that moves on a
+flank which softens toward its tip, by 3/8 c'^2 R W^2 of the approach, which is neglected (`contact-deformation`) and
+grows with the radius of curvature, large in internal pairs. Root tensions are within .7 %.
+The ring's tip corner carries 3.6 % less than fegear says: 2.0 % with elements of .004 modules there, and more the finer
+they are. Fegear takes both bodies as half-planes about the corner, where the ring is a wedge, which is softer.
 """
 
 import sys
@@ -24,7 +27,7 @@ import ring_by_calculix as calculix
 
 TOLD = kept("ring_calculix")
 #: Load of each pair, and root tension.
-WITHIN = {"two pairs": (2e-3, 8e-3), "one pair and a tip corner": (2.5e-2, 4e-2)}
+WITHIN = {"two pairs": (2e-3, 8e-3), "one pair and a tip corner": (4e-2, 5.5e-2)}
 
 
 @pytest.fixture(scope="module")

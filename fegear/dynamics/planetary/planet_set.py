@@ -181,14 +181,26 @@ def check_assembly(found: PlanetarySet) -> None:
             "planets", found.count,
             f"cannot stand evenly between {found.sun_teeth} and {found.ring_teeth} teeth: {teeth} / {found.count} = "
             f"{teeth / found.count:.6g} is not whole, and planet {worst + 1} would be {abs(off):.4g} deg off",
-            f"change a number of teeth by {min(teeth % found.count, found.count - teeth % found.count)}, or give "
-            f"angles = [...] in whole multiples of 360/{teeth} deg",
+            f"{_counts_that_fit(found)}change a number of teeth by "
+            f"{min(teeth % found.count, found.count - teeth % found.count)}, or give angles = [...] in whole multiples "
+            f"of 360/{teeth} deg",
         )  # fmt: skip
     raise GeometryError(
         f"angles[{worst}]", f"{angle:.8g} deg",
         f"does not fit the teeth of sun and ring: it is {abs(off):.4g} deg off a whole multiple of 360/{teeth} deg",
         f"write {angle - off:.8g} deg",
     )  # fmt: skip
+
+
+def _counts_that_fit(found: PlanetarySet) -> str:
+    """The nearest numbers of planets that stand evenly without meeting each other, as the beginning of a remedy."""
+    teeth, reach = found.sun_teeth + found.ring_teeth, found.planet_tip_radius / found.centre_distance
+    most = int(math.pi / math.asin(reach)) if 0.0 < reach < 1.0 else teeth
+    fit = [one for one in range(1, most + 1) if teeth % one == 0]
+    near = [max((one for one in fit if one < found.count), default=0), min((one for one in fit if one > found.count),
+                                                                        default=0)]  # fmt: skip
+    said = " or ".join(str(one) for one in near if one)
+    return f"take {said} planets, " if said else ""
 
 
 def check_neighbours(found: PlanetarySet) -> None:
