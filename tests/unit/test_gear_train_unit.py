@@ -179,3 +179,15 @@ def test_rigid_shafts_of_a_case_join_bodies_in_damping_ratios():
     (mesh,) = case["train"]["mesh"].values()
     swinging = damped_eigenvalues(build_train(train_inputs(build_scene(case, "rigid", Path()))))[-1]
     assert -swinging.real / abs(swinging) == pytest.approx(mesh["damping_ratio"], rel=1e-9)
+
+
+def test_mode_shapes_have_one_sign():
+    """The first of the largest turns is positive: a shape and its mirror image are one mode, and rounding chose."""
+    shaft = Shaft("s", "b", "c", 2e4)
+    for scale in (1.0, 1.0 + 1e-12, 0.3, 7.0):
+        bodies = tuple(Body(name, scale * inertia) for name, inertia in (("a", 1e-3), ("b", 2e-2), ("c", 1e-3)))
+        shapes = modes(Train(bodies, (shaft,), (mesh(),))).shapes[:, 1:]
+        assert (shapes[np.abs(shapes).argmax(axis=0), np.arange(shapes.shape[1])] > 0.0).all()
+    like = tuple(Body(name, 1e-3) for name in "abc")
+    springs = Shaft("1", "a", "b", 1e4), Shaft("2", "b", "c", 1e4)
+    assert modes(Train(like, springs)).shapes[0, 1] > 0.0  # ends that turn alike: the first of both

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import first_of_largest
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
-from fegear.dynamics.train.modes import undamped_modes
+from fegear.dynamics.train.modes import same_way_up, undamped_modes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 HALF_THE_DIGITS = 1e-8
 #: A relative mesh displacement below this is none.
 _NONE = 1e-13
-#: Components of a shape that differ by less than this share are equal in size.
-_TIE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +108,7 @@ def mode_table(model: Model) -> ModeTable:
     model : HelicalPairModel or ReducedPairModel
     """
     frequency, shapes = undamped_modes(model.mass, model.stiffness)
-    shapes = _same_way_up(shapes / np.linalg.norm(shapes, axis=0))
+    shapes = same_way_up(shapes / np.linalg.norm(shapes, axis=0))
     eta, theta = mesh_displacements(model, frequency, shapes)
     frequency_doubt, shape_doubt = _doubts(frequency)
     kappa, mu = model.mesh.kappa, model.mesh.mu
@@ -127,12 +124,6 @@ def mode_table(model: Model) -> ModeTable:
         frequency_doubt=frequency_doubt,
         shape_doubt=shape_doubt,
     )
-
-
-def _same_way_up(shapes: Array) -> Array:
-    """Shapes with the sign that makes the first of their largest components positive."""
-    first = first_of_largest(np.abs(shapes), axis=0, tie=_TIE)
-    return np.asarray(shapes * np.sign(shapes[first, np.arange(shapes.shape[1])]))
 
 
 def mesh_displacements(model: Model, frequency: Array, shapes: Array) -> tuple[Array, Array]:

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
-from fegear.base.arrays import first_of_largest
 from fegear.base.shown import shown
 from fegear.dynamics.planetary.planet_set import CENTRALS
-from fegear.dynamics.train.modes import RIGID
+from fegear.dynamics.train.modes import RIGID, same_way_up
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
 #: Frequencies closer than this share of the highest are one, with several modes.
 _ONE = 1e-8
-#: Components of a shape that differ by less than this share are equal in size.
-_TIE = 1e-6
 #: Share of a mode's motion below which sun, ring and carrier do not take part in it.
 _STILL = 1e-8
 
@@ -104,5 +101,4 @@ def _sorted_out(shapes: Array, squared: Array, masses: Array, turns: Array, move
             one = np.sqrt(masses)[:, None] * shapes[:, own]
             _, order = np.linalg.eigh(one[turns].T @ one[turns] + 2.0 * one[moves].T @ one[moves])
             found[:, own] = shapes[:, own] @ order
-    largest = first_of_largest(np.abs(found), axis=0, tie=_TIE)
-    return np.asarray(found * np.sign(found[largest, np.arange(found.shape[1])]))
+    return same_way_up(found)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import first_of_largest
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.dynamics.train.matrices import damping_matrix, elements
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array, Complex
     from fegear.dynamics.train.train import Train
+
+#: A squared frequency below this part of the largest one counts as rigid-body motion.
+RIGID = 1e-12
+#: Components of a shape that differ by less than this share are equal in size.
+_TIE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,7 @@ def modes(train: Train) -> Modes:
     shape[:, 1:] -= np.outer(rigid, rigid @ shape[:, 1:])
     shape[:, 1:] /= np.linalg.norm(shape[:, 1:], axis=0)
     shapes = shape / root[:, None]
+    shapes[:, 1:] = same_way_up(shapes[:, 1:])
     energy = np.array([mesh.stiffness for mesh in train.meshes])[:, None] * (train.approach @ shapes) ** 2
     share = np.zeros((train.size, len(train.meshes)))
     share[1:] = (energy[:, 1:] / omega[1:] ** 2).T
@@ -129,8 +136,13 @@ def campbell(train: Train, speeds: ArrayLike, harmonics: int = 3) -> Campbell:
     return Campbell(speed, natural, lines, critical)
 
 
-#: A squared frequency below this part of the largest one counts as rigid-body motion.
-RIGID = 1e-12
+def same_way_up(shapes: Array) -> Array:
+    """Mode shapes, as columns, with the sign that makes the first of their largest components positive.
+
+    Components that differ by less than a millionth of the largest are equally large: of those symmetry makes alike.
+    """
+    first = first_of_largest(np.abs(shapes), axis=0, tie=_TIE)
+    return np.asarray(shapes * np.sign(shapes[first, np.arange(shapes.shape[1])]))
 
 
 def undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
