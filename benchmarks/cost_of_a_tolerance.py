@@ -12,6 +12,7 @@ import importlib
 import json
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,16 +61,14 @@ def seconds(job: Callable[[], GearInfluence]) -> tuple[float, GearInfluence]:
 
 def measure(gear: Gear, known: dict[str, Any]) -> list[tuple[float, float, int]]:
     """For each tolerance: cost over the cheapest ring's, true error, and rounds."""
-    rings = [
-        seconds(lambda level=level: solve_gear(gear, settings_at(level), estimate_error=False)) for level in LEVELS
-    ]
+    rings = [seconds(partial(solve_gear, gear, settings_at(level), estimate_error=False)) for level in LEVELS]
     errors = np.array([true_error(ring, known) for _, ring in rings])
     costs = np.array([taken for taken, _ in rings])
     rows = []
     for tolerance in TOLERANCES:
         holds = errors <= tolerance
         least = costs[holds.argmax()] if holds.any() else np.nan  # the references end before it
-        taken, found = seconds(lambda tolerance=tolerance: solve_to_tolerance(gear, tolerance))
+        taken, found = seconds(partial(solve_to_tolerance, gear, tolerance))
         rows.append((taken / least, true_error(found, known), len(found.rounds)))
     return rows
 

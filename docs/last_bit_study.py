@@ -2,11 +2,11 @@
 
 Run as ``python docs/last_bit_study.py FOLDER [NAME ...]`` to make the table anew: hours of one core for all. Each run's
 numbers are kept in the folder, so a study that was ended goes on where it was, and names (of groups or cases) add to
-what is there. Every case is computed as it is, under noise of one unit in the last place where rounding enters
-(tests/helpers/other_processor, what another processor would compute), and with every quantity of the case file off by
-up to 1e-12 of itself; so are the random and the unusual gears of tests/golden at a tolerance of 1e-3, and ten searches
-for reliefs of random pairs. A number that has a stated error is compared with it; any other, and one that is stated as
-exact, with the largest magnitude in its unit in its table or among the values.
+what is there; rows of others stay in the table. Every case is computed as it is, under noise of one unit in the last
+place where rounding enters (tests/helpers/other_processor, what another processor would compute), and with every
+quantity of the case file off by up to 1e-12 of itself; so are the random and the unusual gears of tests/golden at a
+tolerance of 1e-3, and ten searches for reliefs of random pairs. A number that has a stated error is compared with it;
+any other, and one that is stated as exact, with the largest magnitude in its unit in its table or among the values.
 """
 
 from __future__ import annotations
@@ -271,11 +271,16 @@ def _row(group: str, noise: str, members: list[str], kept: Path) -> tuple[Any, .
     return group, len(spreads), noise, min(draws), counts[0], *worst
 
 
-def page_lines() -> list[str]:
-    """Rows of the table of the page, of the table that is kept: both noises of a case side by side."""
+def _table() -> list[dict[str, str]]:
+    """Rows of the table that is kept."""
     with TABLE.open(encoding="utf-8") as file:
         next(file)
-        kept = list(csv.DictReader(file))
+        return list(csv.DictReader(file))
+
+
+def page_lines() -> list[str]:
+    """Rows of the table of the page, of the table that is kept: both noises of a case side by side."""
+    kept = _table()
     lines = list(PAGE_HEAD)
     for bit, inputs in zip(kept[::2], kept[1::2], strict=True):
         assert (bit["case"], bit["noise"], inputs["noise"]) == (inputs["case"], "last bit", "input")
@@ -314,9 +319,12 @@ def main(arguments: list[str]) -> None:
     tasks = [("none", 0), *((noise, seed) for seed in SEEDS[: given.draws] for noise in ("last bit", "input"))]
     for task in [] if given.table else tasks:
         under(*task, names, given.folder)
+    # Rows of what is not in the folder stay.
+    found = {(row[0], row[2]): row for row in (*(tuple(one.values()) for one in _table()), *rows(groups, given.folder))}
+    ordered = [found[one] for group in groups for noise in ("last bit", "input") if (one := (group, noise)) in found]
     with TABLE.open("w", newline="", encoding="utf-8") as file:
         file.write(COMMAND + "\n")
-        csv.writer(file, lineterminator="\n").writerows([HEAD, *rows(groups, given.folder)])
+        csv.writer(file, lineterminator="\n").writerows([HEAD, *ordered])
     write_page()
 
 

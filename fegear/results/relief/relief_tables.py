@@ -106,6 +106,9 @@ def grindable_table(
         for end, which, what, how in zip(ends, (1, 2, 2, 1), (0, 0, 1, 1), ("less", "more") * 2, strict=True)
     ]
 
+    radius = Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius")
+    radius_off = error_column(radius, base * start / np.hypot(1.0, start) * errors[:, 0, 1])
+
     def of(key: str, unit: str, meaning: str) -> Column:
         return Column(key, np.array([getattr(g, key) for *_, g in rows]), unit, meaning)
 
@@ -115,8 +118,7 @@ def grindable_table(
             Column("shape", np.array([shape for shape, *_ in rows]), "", "of the tip relief"),
             Column("gear", np.array([m for _, m, _ in rows]), "", "driver or driven"),
             amount, error_column(amount, errors[:, 0, 0]), begin, error_column(begin, errors[:, 0, 1]),
-            Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
-            ripple,
+            radius, radius_off, ripple,
             error_column(
                 ripple, [g.objective_error for *_, g in rows], "estimated error of te_peak_to_peak and te_effective"
             ),
