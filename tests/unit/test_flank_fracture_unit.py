@@ -133,3 +133,27 @@ def test_a_spectrum_is_rated_at_its_largest_level():
     assert values["driver.A_FF"] == pytest.approx(alone["driver.A_FF"], rel=1e-9)
     assert values["driver.case_depth_crushing"] == pytest.approx(alone["driver.case_depth_crushing"], rel=1e-9)
     assert any("largest level of the spectrum, 1.5 times" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("of_third", "said"),
+    [
+        ({"strength": {"material": "through-hardened-alloy-steel", "hardness": "300 HV"}}, "has no hard case"),
+        ({"rim_thickness": "3 mm"}, "rim thickness / tooth height"),
+    ],
+)
+def test_a_pair_that_is_not_evaluated_takes_no_other_with_it(of_third, said):
+    """The whole run was refused; alone the pair still is."""
+    document = case()
+    document["gear"]["c"] = document["gear"]["b"] | {"teeth": 45} | of_third
+    document["pair"]["II"] = document["pair"]["I"] | {"driven": "c"}
+    found = run(document, progress=False)
+    (remark,) = (one for one in found.remarks if "is not evaluated" in one)
+    assert remark.startswith("Flank fracture of pair II is not evaluated: ")
+    assert said in remark
+    alone = run(case(), progress=False)
+    assert [v for v in found.values if v.name.startswith("I.")] == [*alone.values]
+    assert not [v for v in found.values if v.name.startswith("II.")]
+    del document["pair"]["I"]
+    with pytest.raises(InputError, match=said):
+        run(document, progress=False)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.errors import RangeError
+from fegear.base.errors import FegearError, InputError, RangeError
 from fegear.base.shown import shown
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
@@ -27,7 +27,7 @@ from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_F
 from fegear.formulas.iso6336.part5_case_depth import recommended
 from fegear.geometry.pair import MEMBERS
 from fegear.results.rating.rating import given, rated
-from fegear.results.rating.shared_load import external_rated_pairs, needs_shares, with_shares
+from fegear.results.rating.shared_load import NotRated, external_rated_pairs, needs_shares, with_shares
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -67,6 +67,8 @@ class FlankFractureInputs:
     material_factor : float
         K_material.
     said : tuple of str
+    alone : bool
+        Whether no other pair of the case can be evaluated: then a formula's range ends the run, not a remark.
     """
 
     asked: PairToRate
@@ -75,6 +77,7 @@ class FlankFractureInputs:
     qualities: tuple[str, str]
     material_factor: float
     said: tuple[str, ...] = field(compare=False)
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -131,7 +134,30 @@ class FlankFractureData:
     radius: Array = shown("mm", "rho_red,CP in the normal section", name="relative_radius")
 
 
-def _inputs(scene: Scene, name: str) -> FlankFractureInputs:
+def _inputs(scene: Scene, name: str) -> FlankFractureInputs | NotRated:
+    """What the stage reads; of a pair that has no hard cases among others that have, the remark that says so."""
+    others = [_described(scene, other) for other in external_rated_pairs(scene) if other != name]
+    alone = not any(isinstance(other, FlankFractureInputs) for other in others)
+    found = _described(scene, name)
+    if isinstance(found, FlankFractureInputs):
+        return replace(found, alone=alone)
+    if alone:
+        raise found
+    return _not_rated(name, found)
+
+
+def _not_rated(name: str, error: FegearError) -> NotRated:
+    return NotRated(f"Flank fracture of pair {name} is not evaluated: {error}")
+
+
+def _described(scene: Scene, name: str) -> FlankFractureInputs | InputError:
+    try:
+        return _of_pair(scene, name)
+    except InputError as error:
+        return error
+
+
+def _of_pair(scene: Scene, name: str) -> FlankFractureInputs:
     from fegear.case.built.rated_case import gear_case
     from fegear.case.built.rated_pair import pair_to_rate
 
@@ -147,7 +173,19 @@ def _inputs(scene: Scene, name: str) -> FlankFractureInputs:
     )  # fmt: skip
 
 
-def _compute(inputs: FlankFractureInputs, upstream: Upstream, _work: Work) -> FlankFractureData:
+def _compute(inputs: FlankFractureInputs | NotRated, upstream: Upstream, _work: Work) -> FlankFractureData | NotRated:
+    if isinstance(inputs, NotRated):
+        return inputs
+    try:
+        return _below_flanks(inputs, upstream)
+    except RangeError as error:  # a formula's own words, under the name of the pair
+        named = at(f"pair.{inputs.asked.name}", error)
+        if inputs.alone:
+            raise named from None
+        return _not_rated(inputs.asked.name, named)
+
+
+def _below_flanks(inputs: FlankFractureInputs, upstream: Upstream) -> FlankFractureData:
     from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
     from fegear.formulas.iso6336.part4_flank_fracture import half_width
     from fegear.formulas.iso6336.part22_micropitting import load_sharing, pressure
@@ -155,15 +193,12 @@ def _compute(inputs: FlankFractureInputs, upstream: Upstream, _work: Work) -> Fl
     from fegear.geometry.pair import path_points
 
     asked = with_shares(inputs.asked, upstream)
-    try:
-        conditions = rated(asked)
-        level = max(asked.levels, key=lambda one: one.tangential, default=None)
-        if level is not None:
-            duty = replace(conditions.duty, tangential=level.tangential, speed=level.speed)
-            conditions = replace(conditions, duty=duty)
-        rating = rate_pair(conditions, given(asked))
-    except RangeError as error:
-        raise at(f"pair.{asked.name}", error) from None
+    conditions = rated(asked)
+    level = max(asked.levels, key=lambda one: one.tangential, default=None)
+    if level is not None:
+        duty = replace(conditions.duty, tangential=level.tangential, speed=level.speed)
+        conditions = replace(conditions, duty=duty)
+    rating = rate_pair(conditions, given(asked))
     pair, duty = asked.pair, conditions.duty
     load = asked.load * duty.tangential / asked.conditions.duty.tangential
     inside = _INSIDE * pair.base_pitch
@@ -217,7 +252,9 @@ def _check(scene: Scene, name: str) -> None:
     _inputs(scene, name)
 
 
-def _present(data: FlankFractureData, inputs: FlankFractureInputs) -> Outcome:
+def _present(data: FlankFractureData | NotRated, inputs: FlankFractureInputs | NotRated) -> Outcome:
+    if isinstance(data, NotRated) or isinstance(inputs, NotRated):
+        return Outcome(data, remarks=(data.remark,) if isinstance(data, NotRated) else ())
     return Outcome(
         data, fracture_tables(data, inputs), fracture_values(data, inputs), {"places": len(data.x), "depths": _DEPTHS},
         fracture_remarks(data, inputs), fracture_figures(data, inputs),

@@ -32,6 +32,7 @@ from fegear.results.rating.rating_tables import (
     spectrum_table,
 )
 from fegear.results.rating.shared_load import (
+    NotRated,
     bending_said,
     bent_ratio,
     bent_so,
@@ -88,13 +89,6 @@ class RatingInputs:
     computed: bool
     said: tuple[str, ...]
     alone: bool
-
-
-@dataclass(frozen=True)
-class NotRated:
-    """A pair beyond what a formula is made for, in the formula's own words; other pairs of the case are rated."""
-
-    why: str
 
 
 @dataclass(frozen=True)
@@ -190,7 +184,7 @@ def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingDat
         named = at(f"pair.{inputs.asked.name}", error)
         if inputs.alone:
             raise named from None
-        return NotRated(str(named))
+        return NotRated(f"Pair {inputs.asked.name} is not rated: {named}")
 
 
 def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
@@ -293,7 +287,7 @@ def _with_misses(found: Computed, asked: PairToRate) -> Computed:
 
 def _present(data: RatingData | NotRated, inputs: RatingInputs) -> Outcome:
     if isinstance(data, NotRated):
-        return Outcome(data, remarks=(f"Pair {inputs.asked.name} is not rated: {data.why}",))
+        return Outcome(data, remarks=(data.remark,))
     tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
     if data.agma is not None:
         tables.append(agma_table(data.agma, inputs.asked))

@@ -1,8 +1,8 @@
-"""K_gamma of a rated pair from the load sharing of the planetary set to which it belongs."""
+"""Which pairs of a case are rated, and K_gamma of a pair from the load sharing of its planetary set."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from fegear.case.planetary import MESHES, set_of_pair, set_pair, set_that_shares
@@ -18,6 +18,13 @@ if TYPE_CHECKING:
 
 #: Where annex B of ISO 6336-3 ends: lowest over highest stress.
 _MOST = -1.2
+
+
+@dataclass(frozen=True)
+class NotRated:
+    """A pair beyond what a formula is made for, and the remark that says so; other pairs of the case are rated."""
+
+    remark: str
 
 
 def rated_pairs(scene: Scene) -> tuple[str, ...]:
