@@ -8,7 +8,8 @@
   ``# needs PROGRAM`` is passed over where that program is not installed;
 - ``text`` is what the block before it prints. Numbers may differ in the last printed digit or by 0.4 %, error estimates
   (after ``+-``) by a factor of five; ``...`` stands for anything in a line, alone for any lines but notes: a command
-  that has notes for its reader (``Note: ...``) is followed by a block with all of them, whole.
+  that has notes for its reader (``Note: ...``) is followed by a block with all of them, whole; their numbers may differ
+  by 5 %, errors in them by a factor of five.
 - a number of the prose that comes from a run is followed by a comment that no reader sees and that says where from:
   ``229<!-- loaded: I.driver.largest_root_tension -->`` is a value of ``results/loaded``, ``41<!-- = EXPRESSION -->``
   whatever Python makes of the names of the page's programs, of ``value("loaded", "I.te_mean")``, ``error`` and
@@ -45,6 +46,8 @@ _FILE = re.compile(r"# ([\w.-]+\.(?:toml|csv|py))(, continued)?$")
 _NEEDS = re.compile(r"# needs ([\w-]+)$")
 _NUMBER = r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
 _RELATIVE, _ESTIMATE = 4e-3, 5.0
+#: What a note says of sizes may differ by this part: they are of what is neglected, and of searches.
+_OF_NOTES = 5e-2
 _NOTE = "Note: "
 _FILLED = re.compile(rf"({_NUMBER})<!-- (?:= (.+?)|([\w.-]+): ([\w.-]+)) -->")
 
@@ -188,7 +191,15 @@ def _numbers(expected: str, got: str) -> list[tuple[str, str, str]] | None:
 
 
 def _same_numbers(expected: str, got: str) -> bool:
-    return all(_same_number(*one) for one in _numbers(expected, got) or ())
+    same = _same_in_note if expected.startswith(_NOTE) else _same_number
+    return all(same(*one) for one in _numbers(expected, got) or ())
+
+
+def _same_in_note(before: str, expected: str, got: str) -> bool:
+    """Errors stand in notes as `+- 0.2 um (34 %)` and as `reaches 8e-02`."""
+    a, b = float(expected), float(got)
+    estimate = before.rstrip().endswith(("+-", "(", "reaches")) and a > 0.0 and 1.0 / _ESTIMATE < b / a < _ESTIMATE
+    return estimate or abs(a - b) <= _OF_NOTES * abs(a) or _same_number(before, expected, got)
 
 
 def _renewed(expected: str, got: str) -> str:
@@ -197,7 +208,8 @@ def _renewed(expected: str, got: str) -> str:
     for i in range(1, len(parts), 2):
         if parts[i] != "...":
             before, said, printed = next(numbers)
-            parts[i] = said if _same_number(before, said, printed) else printed
+            same = _same_in_note if expected.startswith(_NOTE) else _same_number
+            parts[i] = said if same(before, said, printed) else printed
     return "".join(parts)
 
 

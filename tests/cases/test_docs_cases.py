@@ -197,6 +197,11 @@ def _equations():
         ("c = 0.0316 +- 2.3e-05 um", "c = 0.0315998 +- 3.1e-05 um"),
         ("5 pairs\n...\nWrote a in ... s.", "5 pairs\nmore\nWrote a in 3.14 s."),
         ("W = 8783.69 N", "W = 8783.68955 N"),
+        (
+            "Note: it moves gaps by 3.93 um; the error reaches 8e-02.",
+            "Note: it moves gaps by 3.95 um; the error reaches 5e-02.",
+        ),
+        ("Note: te = 7.84 +- 0.02 um (0.26 %).", "Note: te = 7.9 +- 0.03 um (0.38 %)."),
     ],
 )
 def test_what_a_page_says_is_what_is_printed(said, printed):
@@ -213,6 +218,9 @@ def test_what_a_page_says_is_what_is_printed(said, printed):
         ("a", "a\nb"),
         ("a\n...\nc", "a\nb"),
         ("x = 1.0 um", "x = 1.0 mm"),
+        ("Note: it moves gaps by 3.93 um.", "Note: it moves gaps by 4.2 um."),
+        ("Note: it moves gaps by 3.93 um.", "Note: it closes gaps by 3.93 um."),
+        ("Note: te = 7.84 +- 0.02 um (0.2 %).", "Note: te = 7.84 +- 0.2 um (0.2 %)."),
     ],
 )
 def test_what_a_page_says_is_not_what_is_printed(said, printed):
