@@ -152,6 +152,10 @@ def test_a_bearing_between_two_shafts_counts_as_held_by_the_casing():
     text = case_of(model_of(in_json({**tree, "relations": links}), HERE))
     assert "concept_bearing 52 holds shaft 3 in another shaft: it is taken as held by the casing" in text
     assert text.count("[bearing.bearing_52]") == 1
+    # What presses inside a shaft that stands on two bearings does not hold it, too.
+    shafts = tomllib.loads(text)["shaft"]
+    assert [len(one["bearings"]) for one in shafts.values()] == [2, 2, 2]
+    assert "concept_bearing 52: what it presses on shaft 4, which holds it, is neglected" in text
     assert make_plan(build_scene(tomllib.loads(text), "case", Path()), STAGES).steps
 
 

@@ -101,12 +101,19 @@ class Rows:
 
 
 def bearings_of(said: Said, shaft: Component, names: Mapping[int, str]) -> list[Held]:
-    """What holds a shaft; bearings between shafts count as held by the casing."""
-    found = []
+    """What holds a shaft; bearings between shafts count as held by the casing.
+
+    One inside the end of a shaft that other bearings hold at two places holds the inner shaft alone.
+    """
+    found: list[Held] = []
     for side, other, at in (("inner_part", "outer_part", "inner"), ("outer_part", "inner_part", "outer")):
         for one in said.linked(shaft, side, "side", "assembly", *BEARINGS):
             mates = said.linked(one, "assembly", "side", other)
-            if any(mate.type == "shaft" for mate in mates):
+            between = any(mate.type == "shaft" for mate in mates)
+            if between and at == "outer" and len({held.at for held in found}) > 1:
+                said.notes.append(f"{one.said}: what it presses on {shaft.said}, which holds it, is neglected.")
+                continue
+            if between:
                 said.notes.append(f"{one.said} holds {shaft.said} in another shaft: it is taken as held by the casing.")
             place = said.needed(one, "length", f"u_coordinate_on_shaft_{at}_side", "u_coordinate_on_shaft_inner_side")
             found.append(Held(one, names[one.id], place, outside=at == "outer", rows=_rows(said, one)))
