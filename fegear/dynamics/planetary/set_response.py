@@ -28,7 +28,12 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.set_modes import SetModes
 
 #: Places of the cycle at which harmonics are added up for their largest value.
-_SAMPLES = 256
+_SAMPLES = 512
+
+
+def looked_at(harmonics: int) -> int:
+    """Harmonics that tell what those that count leave out: low speeds meet resonances with high ones."""
+    return max(2 * harmonics, min(8 * harmonics, 128))
 
 
 @dataclass(frozen=True)
@@ -43,12 +48,14 @@ class LinearSet:
     modes : SetModes
     damping_ratio : float
         Of every mode.
-    error : ndarray, complex, shape (2, planets, 2 harmonics)
+    error : ndarray, complex, shape (2, planets, looked_at)
         Harmonics 1.. of each mesh's static transmission error under the mean force, with its phase [m]: those that
-        count, and as many again that tell what is missing.
+        count, and more that tell what is missing.
+    harmonics : int
+        That count.
     stiffness_error : (float, float)
         Estimated errors of the stiffnesses, as shares of them.
-    amplitude_error : ndarray, shape (2, 2 harmonics)
+    amplitude_error : ndarray, shape (2, looked_at)
         Of the amplitudes, as shares of them.
     """
 
@@ -57,13 +64,9 @@ class LinearSet:
     modes: SetModes
     damping_ratio: float
     error: Complex
+    harmonics: int
     stiffness_error: tuple[float, float] = (0.0, 0.0)
     amplitude_error: Array = field(default_factory=lambda: np.zeros((2, 1)))
-
-    @property
-    def harmonics(self) -> int:
-        """Those that count."""
-        return self.error.shape[2] // 2
 
     @cached_property
     @shows("Hz", "estimated error of the natural frequency, by that of the mesh stiffnesses", name="frequency_error")
@@ -101,7 +104,7 @@ def linear_set(
     damping_ratio : float
     harmonics : int
         Of the mesh frequency that count.
-    exactness : pair of (float, ndarray of shape (2 harmonics,)), optional
+    exactness : pair of (float, ndarray of shape (looked_at,)), optional
         Estimated errors of the stiffness of each mesh and of the amplitudes of its transmission error, as shares.
 
     Raises
@@ -111,14 +114,14 @@ def linear_set(
     """
     if not 0.0 <= damping_ratio < 1.0:
         raise RangeError("damping_ratio", damping_ratio, "must lie in [0, 1)")
-    order = np.arange(1, 2 * harmonics + 1)
+    order = np.arange(1, looked_at(harmonics) + 1)
     stiffness, error = [], []
     for one, delay in zip(meshed.teeth, meshed.delays, strict=True):
         compliance, fluctuation = one.linearised(meshed.mean_force)
         stiffness.append(1.0 / compliance)
         error.append(fluctuation.fourier(order) * np.exp(2j * math.pi * order * (one.phase - delay[:, None])))
     modes = set_modes(meshed.model, stiffness[0], stiffness[1])
-    found = LinearSet(meshed, (stiffness[0], stiffness[1]), modes, damping_ratio, np.array(error))
+    found = LinearSet(meshed, (stiffness[0], stiffness[1]), modes, damping_ratio, np.array(error), harmonics)
     if exactness is None:
         return found
     (sun, of_sun), (ring, of_ring) = exactness
@@ -139,7 +142,7 @@ class ForcedResponse:
         In every mesh [N].
     mesh_frequency : ndarray, shape (speeds,)
     others : tuple of ForcedResponse
-        The same with the teeth off by one of their errors each, and with twice as many harmonics.
+        The same with the teeth off by one of their errors each, and with all harmonics that are looked at.
     """
 
     coordinate: Complex
@@ -213,7 +216,7 @@ def forced_response(linear: LinearSet, mesh_frequency: ArrayLike) -> ForcedRespo
         raise RangeError("speed", float(frequency.min()), "must be positive", "at standstill the static answer holds")
     own = _response(linear, frequency, linear.harmonics)
     others = [_response(one, frequency, linear.harmonics) for one in linear.shifted]
-    return replace(own, others=(*others, _response(linear, frequency, 2 * linear.harmonics)))
+    return replace(own, others=(*others, _response(linear, frequency, linear.error.shape[2])))
 
 
 def _response(linear: LinearSet, frequency: Array, count: int) -> ForcedResponse:

@@ -68,11 +68,13 @@ def _inputs(scene: Scene, name: str) -> VibrationInputs:
 
 
 def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearSet:
-    from fegear.dynamics.planetary.set_response import linear_set
+    from fegear.dynamics.planetary.set_response import linear_set, looked_at
 
     meshed = meshed_set(upstream, inputs.name)
     sun, ring = (
-        _exactness(upstream, Task("loaded-pair", set_pair(inputs.name, mesh)), meshed.mean_force, 2 * inputs.harmonics)
+        _exactness(
+            upstream, Task("loaded-pair", set_pair(inputs.name, mesh)), meshed.mean_force, looked_at(inputs.harmonics)
+        )
         for mesh in MESHES
     )
     return linear_set(meshed, inputs.damping_ratio, inputs.harmonics, (sun, ring))
