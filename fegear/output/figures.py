@@ -126,7 +126,7 @@ class Drawing:
 
 def _write_field(field: MeshField | SolidMeshField, folder: Path) -> None:
     """Write ``<name>.vtu`` for ParaView."""
-    from fegear.output.vtu import write_vtu
+    from fegear.fem.plane.imported_mesh import write_vtu
 
     folder.mkdir(exist_ok=True)
     solid = isinstance(field, SolidMeshField)

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.plane.imported_mesh import write_mesh_file
+from fegear.fem.plane.imported_mesh import write_mesh_file, write_vtu
 from fegear.fem.plane.whole_gear import loaded_gear, nodal_fields
 from fegear.output.dxf import AS_GENERATED
-from fegear.output.vtu import write_vtu
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,11 +10,11 @@ import numpy as np
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.fem.plane.gear_section import gear_section, uneven_section
+from fegear.fem.plane.imported_mesh import write_vtu
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.solid.extruded import SolidMesh, extruded, graded_stations, pressed_band
 from fegear.geometry.gear import Gear
 from fegear.output.dxf import AS_GENERATED
-from fegear.output.vtu import write_vtu
 
 _MM = 1e3
 #: Abaqus' names of the elements.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from fegear.output.vtu import write_vtu
+from fegear.fem.plane.imported_mesh import write_vtu
 
 POINTS = 300
 #: VTK's numbers of the quadratic triangle, wedge and hexahedron.

@@ -13,6 +13,7 @@ Mesh files of any format that meshio knows (its only door).
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 
 GROUPS = ("flank", "fillet", "bore", "side_a", "side_b")
+#: meshio's name of the quadratic element of so many nodes.
+_ELEMENTS = {6: "triangle6", 15: "wedge15", 20: "hexahedron20"}
 
 
 def read_sector_mesh(
@@ -338,6 +341,46 @@ def write_mesh_file(path: Path, points: Array, triangles: Index, boundaries: Map
         field_data=names,
     )
     mesh.write(path, file_format="gmsh22", binary=False)
+
+
+def write_vtu(
+    path: Path,
+    points: Array,
+    elements: tuple[Index, ...],
+    point_data: Mapping[str, Array],
+    *,
+    remark: str = "",
+    single: bool = False,
+) -> None:
+    """Write quadratic elements with nodal fields as ``.vtu``, for ParaView.
+
+    Parameters
+    ----------
+    path : Path
+    points : ndarray, shape (2 or 3, N)
+    elements : tuple of ndarray of int, shape (n, M)
+        Six-node triangles, 15-node wedges or 20-node hexahedra.
+    point_data : mapping of str to ndarray, shape (N,) or (N, 3)
+    remark : str
+        A comment at the head of the file.
+    single : bool
+        Whether the file holds seven digits and is not packed: as large as 16 packed digits, and written at once.
+    """
+    import meshio
+    from meshio._mesh import topological_dimension
+
+    topological_dimension.setdefault("wedge15", 3)  # meshio 5.3 reads and writes these, but forgot to list them here
+    real, whole = (np.float32, np.int32) if single else (np.float64, np.int64)
+    flat = np.zeros((points.shape[1], 3), dtype=real)
+    flat[:, : points.shape[0]] = points.T
+    cells = [(_ELEMENTS[block.shape[0]], block.T.astype(whole)) for block in elements if block.size]
+    # meshio writes names as they are, whatever they mean in XML.
+    data = {escape(name, {'"': "&quot;"}): values.astype(real) for name, values in point_data.items()}
+    mesh = meshio.Mesh(flat, cells, point_data=data)
+    mesh.write(path, binary=True, compression=None if single else "zlib")
+    if remark:
+        head, _, rest = path.read_bytes().partition(b"\n")
+        path.write_bytes(head + f"\n<!-- {remark} -->\n".encode() + rest)
 
 
 def read_mesh_file(path: Path) -> Any:
