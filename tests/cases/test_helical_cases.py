@@ -273,7 +273,7 @@ def test_general_pair_and_mesh_from_a_load_distribution(tmp_path):
         ("pair.I.width='plane'", "pair.I.width.*load moves along the face"),
         ("gear.pinion.normal_module='5 mm'", "must be given once"),
         ("gear.pinion.hand='spur'", "contradicts the helix angle"),
-        ("pair.I.axial_offset='100 mm'", "beside each other"),
+        ("pair.I.axial_offset='100 mm'", "next to each other"),
         ("pair.I.centre_distance='381 mm'", "jams the teeth"),
         ("pair.I.misalignment={ lead = '1 mm', lead_angle = '3 arcmin' }", "misalignment.lead.*contradicts lead_angle"),
         ("pair.I.misalignment={ lead = '1 m' }", "pair.I.misalignment.lead.*no small error of a lead of 957"),

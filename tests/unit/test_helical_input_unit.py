@@ -39,7 +39,7 @@ def gear(teeth=30, hand="left", beta=30.0, **more):
         (lambda: helical_gear(30, 5e-3, 1.0, 0.5, 0.04, "left"), InputError, "between 5 and 45"),
         (lambda: HelicalPair(gear(), gear(100, "left")), GeometryError, "opposite hands"),
         (lambda: HelicalPair(gear(), gear(100, "right", 20.0)), GeometryError, "equal by design"),
-        (lambda: HelicalPair(gear(), gear(100, "right"), axial_offset=0.04), GeometryError, "beside each other"),
+        (lambda: HelicalPair(gear(), gear(100, "right"), axial_offset=0.04), GeometryError, "next to each other"),
         (lambda: HelicalPair(gear(), gear(100, "right"), Misalignment(centre_distance=0.02)), GeometryError, "no path"),
         (
             lambda: HelicalPair(gear(), gear(100, "right"), Misalignment(centre_distance=-0.1)),
