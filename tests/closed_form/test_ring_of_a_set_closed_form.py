@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.planetary import set_inputs
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -51,7 +52,8 @@ def test_error_of_one_planet_is_that_of_both_meshes_one_behind_the_other(cache, 
     results = run_plan(scene, make_plan(scene, STAGES), cache=cache)
     data = results.outcomes[Task("planet-load-sharing", "P")].data
     force, total = float(data.mean_force), np.zeros(data.s.size)
-    for pair, behind in (("P_sun", 0.0), ("P_ring", float(data.meshed.phases.ring_behind_sun))):
+    phases = set_inputs(scene, "P").phases
+    for pair, behind in (("P_sun", 0.0), ("P_ring", float(phases.ring_behind_sun))):
         engagement = results.outcomes[Task("loaded-pair", pair)].data.engagement
         x = engagement.meshing.reduced((data.s - behind) * scene.pairs[pair].base_pitch)
         total += engagement.solve(engagement.grid(x), [force]).transmission_error[:, 0]
