@@ -17,13 +17,11 @@ values, axes, datasets and the tables of the docs take unit and meaning from her
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
-from typing import TYPE_CHECKING, Any, TypeVar
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from typing import Any, TypeVar
 
 _KEY = "shown"
 _F = TypeVar("_F", bound="Callable[..., Any]")

@@ -7,12 +7,9 @@ import hashlib
 import os
 import tempfile
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 #: First bytes of an entry; the SHA-256 of its key and of the rest follows.
 _MAGIC = b"fegear2\n"

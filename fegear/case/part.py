@@ -11,8 +11,17 @@ import difflib
 import math
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
-from pydantic_core import PydanticCustomError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+)
+from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import definitions_schema, with_info_plain_validator_function
 
 from fegear.base.errors import FegearError, InputError, shown
@@ -20,9 +29,6 @@ from fegear.base.units import as_text, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator
-
-    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-    from pydantic_core import CoreSchema
 
     from fegear.case.model import Case
     from fegear.case.reading import Scene

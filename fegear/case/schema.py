@@ -8,10 +8,10 @@ What keys a case file knows, table by table.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -20,10 +20,7 @@ from fegear.case.model import Case
 from fegear.case.part import QUANTITY
 from fegear.case.renamed import current
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    Node = Mapping[str, Any]
+Node = Mapping[str, Any]
 
 
 #: By which a schema of fegear is known.

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Mapping
+from typing import Annotated
 
 import typer
 
 from fegear.commands.common import CaseFile, Quiet, Voice
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 #: The list of wanted results in a case file.
 _RESULTS = re.compile(r"^(results[ \t]*=[ \t]*\[)(.*?)(\])", re.DOTALL | re.MULTILINE)

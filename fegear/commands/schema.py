@@ -8,16 +8,13 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
 from fegear.commands.common import AsJson, Voice, out_option, two_columns
-
-if TYPE_CHECKING:
-    from fegear.engine.stage import Stage
-
+from fegear.engine.stage import Stage
 
 #: Name by which drafted cases ask for it.
 SCHEMA_FILE = "fegear.schema.json"

@@ -6,24 +6,18 @@ load sharing factors.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.formulas.flash_temperature import flash_temperature
+from fegear.formulas.flash_temperature import FlankSpeeds, flash_temperature
 from fegear.formulas.iso6336 import part20_flash, part22_micropitting
+from fegear.formulas.iso6336.rated import RatedSurface
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.flash_temperature import FlankSpeeds
-    from fegear.formulas.iso6336.rated import RatedSurface
-
-    #: Friction coefficient from speeds and line loads [N/m] of one shape.
-    FrictionLaw = Callable[[FlankSpeeds, Array], Array]
+FrictionLaw = Callable[[FlankSpeeds, Array], Array]
 
 
 @dataclass(frozen=True)

@@ -7,29 +7,22 @@ Transmission error of many reliefs, loads and errors at once, on one grid evalua
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.fourier import Panels, effective_error, fourier_series, panels
-from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.load_sharing import share_load
-from fegear.geometry.relief import Shape, roll_of_radius
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Loaded
-    from fegear.contact.plane.roll_grids import RollGrid
-    from fegear.geometry.relief import Relief
-
+from fegear.contact.plane.roll_grids import RollGrid
+from fegear.geometry.relief import Relief, Shape, roll_of_radius
 
 Metric = Literal["effective_error", "peak_to_peak"]
 

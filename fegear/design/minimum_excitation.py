@@ -22,7 +22,7 @@ import numpy as np
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown
 from fegear.design.relief_bound import refuse_deeper_than_the_tooth
-from fegear.geometry.relief import TabulatedRelief
+from fegear.geometry.relief import Relief, TabulatedRelief
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.design.loading import LoadingFunction
     from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.relief import Relief
 
 
 #: The extrapolation takes its slope from the end of the design zone to this fraction of the ramp inside it: the slope

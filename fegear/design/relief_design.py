@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.contact.plane.transmission_error import roll_positions, transmission_error
-from fegear.design.minimum_excitation import minimum_excitation, relief_nodes, relief_table
-from fegear.design.root_stress_loading import design_stress, least_root_stress
-from fegear.design.tip_relief.grindable import grindable
-from fegear.geometry.pair import MEMBERS
-from fegear.geometry.relief import UNMODIFIED
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement, Loaded
-    from fegear.contact.plane.transmission_error import TransmissionError
-    from fegear.design.charts import Metric
-    from fegear.design.loading import LoadingFunction
-    from fegear.design.minimum_excitation import MinimumExcitationRelief, OilFilm, ReliefTable
-    from fegear.design.root_stress_loading import Allowed, StressOptimum
-    from fegear.design.tip_relief.grindable import TipReliefPair
-    from fegear.geometry.pair import Member
-    from fegear.geometry.relief import Shape
-
+from fegear.base.arrays import Array
+from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.transmission_error import TransmissionError, roll_positions, transmission_error
+from fegear.design.charts import Metric
+from fegear.design.loading import LoadingFunction
+from fegear.design.minimum_excitation import (
+    MinimumExcitationRelief,
+    OilFilm,
+    ReliefTable,
+    minimum_excitation,
+    relief_nodes,
+    relief_table,
+)
+from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
+from fegear.design.tip_relief.grindable import TipReliefPair, grindable
+from fegear.geometry.pair import MEMBERS, Member
+from fegear.geometry.relief import UNMODIFIED, Shape
 
 #: No error of a relief is stated below this part of the largest deflection: the last digits of a mesh's coordinates,
 #: which another processor rounds otherwise, move finite-element compliances, and the reliefs made of them, by up to

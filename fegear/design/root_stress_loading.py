@@ -14,7 +14,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.contact.plane.compliance import largest_stress
 from fegear.design.loading import LoadingFunction, Ramp
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.fem.plane.root_stress import FilletCurve
-    from fegear.geometry.pair import Member
 
 
 @dataclass(frozen=True)

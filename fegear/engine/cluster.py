@@ -10,14 +10,12 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, MissingLibraryError
-from fegear.engine.point_job import Reply, failed
+from fegear.engine.point_job import Job, Reply, failed
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator, Mapping
 
     from dask.distributed import Client, Future
-
-    from fegear.engine.point_job import Job
 
     Todo = Mapping[int, object]
 

@@ -8,23 +8,20 @@ from __future__ import annotations
 
 import contextlib
 import functools
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fegear.base.errors import InputError
 from fegear.base.plain import code_version, content_key
 from fegear.base.solution_cache import SolutionCache
+from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
 from fegear.engine.point_job import Job, Reply, here, opened
 from fegear.engine.processes import cores, on_cores
+from fegear.engine.stage import Progress
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Mapping, Sequence
-
-    from fegear.base.store import Store
-    from fegear.engine.stage import Progress
-
-    Todo = Mapping[int, object]
+Todo = Mapping[int, object]
 
 
 @dataclass(frozen=True, slots=True)

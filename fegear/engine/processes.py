@@ -15,14 +15,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import FegearError
-from fegear.engine.point_job import Reply, failed
+from fegear.engine.point_job import Job, Reply, failed
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator, Mapping
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
-
-    from fegear.engine.point_job import Job
 
     Todo = Mapping[int, object]
 

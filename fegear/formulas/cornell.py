@@ -21,23 +21,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.formulas import beam, palmgren
 from fegear.formulas.cornell_heywood import RootSection, critical_angle, lever
+from fegear.formulas.hertz import Plane
 from fegear.formulas.outcome import ComplianceSource, ToothCompliance
 from fegear.formulas.root_section import fillet_parameter, load_line, tangent_range
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.hertz import Plane
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.tooth import Tooth
-
+from fegear.geometry.gear import Gear
+from fegear.geometry.tooth import Tooth
 
 #: Tangent angle of the fillet at which Cornell builds the beam in [rad].
 FOUNDATION_TANGENT = math.radians(75.0)

@@ -24,20 +24,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas.flash_temperature import contact_ratios
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.lubricant import Oil
-    from fegear.geometry.pair import GearPair
-
+from fegear.formulas.lubricant import Oil
+from fegear.geometry.pair import GearPair
 
 MeanLaw = Literal["schlenk", "iso-6336-20", "iso-6336-21", "iso-6336-22"]
 

@@ -23,7 +23,7 @@ import numpy as np
 
 import fegear
 from fegear.engine.citation import bibliography
-from fegear.engine.outcome import error_columns
+from fegear.engine.outcome import Value, error_columns
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.io import netcdf_file, netcdf_variable
 
-    from fegear.engine.outcome import Value
     from fegear.engine.run import Results
     from fegear.engine.table import Column, Table
 

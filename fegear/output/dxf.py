@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.geometry.curves import Arc, Line
-from fegear.geometry.outline import gear_outline, relieved_outline, tooth_outline, turned
+from fegear.geometry.gear import Gear
+from fegear.geometry.outline import Drawn, gear_outline, relieved_outline, tooth_outline, turned
+from fegear.geometry.relief import Relief
 from fegear.geometry.spline import DEGREE, Spline, smooth_pieces, spline_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.outline import Drawn
-    from fegear.geometry.relief import Relief
-
-    Array = NDArray[np.float64]
 
 #: How far chords and splines may lie off the exact curve [modules].
 CHORD_TOLERANCE = 1e-4

@@ -3,30 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 import fegear
+from fegear.case.reading import Scene
 from fegear.engine.table import Column, Table
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.effects import effects_page, stated_errors
 from fegear.output.report.page import write_page
 from fegear.output.tables import write_json, write_table
-from fegear.studies.effects import clearest_curve, effect_figure
+from fegear.studies.effects import Fixed, Switched, clearest_curve, effect_figure
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from fegear.case.reading import Scene
-    from fegear.studies.effects import Fixed, Switched
-
-    Array = NDArray[np.float64]
-    Curve = tuple[Table, Table, str, str]
+Curve = tuple[Table, Table, str, str]
 
 
 #: Name, unit and meaning of the columns.

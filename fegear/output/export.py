@@ -19,7 +19,7 @@ from fegear.case.part import nearest
 from fegear.engine.table import Column, Table
 from fegear.geometry.outline import relieved_outline
 from fegear.geometry.pair import MEMBERS, active_profile
-from fegear.geometry.relief import chart_points, roll_of_radius
+from fegear.geometry.relief import Relief, chart_points, roll_of_radius
 from fegear.output.dxf import AS_GENERATED, write_dxf
 from fegear.output.file_names import file_name
 from fegear.output.tables import write_table
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.geometry.relief import Relief
     from fegear.studies.comparison.compare import Side
 
 

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import MissingLibraryError
-from fegear.engine.figure.figure import Figure, SolidMeshField
+from fegear.engine.figure.figure import Figure, MeshField, SolidMeshField
 from fegear.engine.processes import cores
 from fegear.output.file_names import file_name
 
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fegear.engine.figure.figure import MeshField
     from fegear.engine.outcome import Outcome
     from fegear.engine.run import Results
     from fegear.engine.stage import Task

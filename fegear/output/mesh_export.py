@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.fem.plane.imported_mesh import write_mesh_file, write_vtu
-from fegear.fem.plane.whole_gear import loaded_gear, nodal_fields
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.whole_gear import WholeGear, loaded_gear, nodal_fields
+from fegear.geometry.gear import Gear
 from fegear.output.dxf import AS_GENERATED
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.fem.plane.whole_gear import WholeGear
-    from fegear.geometry.gear import Gear
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 _MM = 1e3
 

@@ -21,7 +21,7 @@ from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.page import write_page
 from fegear.output.report.swept import sweep_page
 from fegear.output.tables import write_json, write_table
-from fegear.studies.sweep import Point
+from fegear.studies.sweep import Point, SweepResults
 from fegear.studies.sweep_figures import sweep_figures
 from fegear.studies.swept import axis_head, failures, shared_clauses, swept_values, varying
 
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from scipy.io import netcdf_file
 
     from fegear.engine.figure.figure import Figure
-    from fegear.studies.sweep import SweepResults
 
     Array = NDArray[np.generic]
 

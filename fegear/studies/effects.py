@@ -10,35 +10,29 @@ from __future__ import annotations
 import math
 import os
 import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.tally import tallying
 from fegear.case.effects import EFFECTS, EffectsPart
 from fegear.case.part import nearest
-from fegear.case.reading import build_scene, case_text, read_document
+from fegear.case.reading import Scene, build_scene, case_text, read_document
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.plan import make_plan
-from fegear.engine.run import run_plan
+from fegear.engine.run import Results, run_plan
+from fegear.engine.table import Table
 from fegear.results.catalogue import STAGES
-from fegear.studies.comparison.compare import paired
+from fegear.studies.comparison.compare import Pairing, paired
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
-
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.engine.run import Results
-    from fegear.engine.table import Table
-    from fegear.studies.comparison.compare import Pairing
-
-    Document = dict[str, Any]
-    EffectCurve = tuple[Table, Table, str, str]
+Document = dict[str, Any]
+EffectCurve = tuple[Table, Table, str, str]
 
 
 #: Curves that show an effect, the clearest first: start of the table's name, its abscissa and ordinate.

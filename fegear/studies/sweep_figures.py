@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark, Points, few, ramp
-from fegear.studies.swept import failures, is_geometric
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.studies.sweep import Axis as SweepAxis
-    from fegear.studies.sweep import SweepResults
-    from fegear.studies.swept import Swept
-
+from fegear.studies.sweep import Axis as SweepAxis
+from fegear.studies.sweep import SweepResults
+from fegear.studies.swept import Swept, failures, is_geometric
 
 #: Curves with fewer points than this show them.
 _FEW_ENOUGH = 40

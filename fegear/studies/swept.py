@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.engine.point_job import Failure
-from fegear.studies.sweep import Point
+from fegear.studies.sweep import Axis, Point, SweepResults
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+Array = NDArray[np.generic]
 
-    from numpy.typing import NDArray
-
-    from fegear.studies.sweep import Axis, SweepResults
-
-    Array = NDArray[np.generic]
 
 #: Values that vary by less than this share of their size do not vary.
 _ROUND_OFF = 1e-12

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from fegear.verify.row import Compared, Rows, near
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 ROWS = Rows()
 

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import copy
+import os
+from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.reading import build_scene
-from fegear.workbench.given import brief, name_of, table, taken, working_folder
+from fegear.case.reading import Scene, build_scene
+from fegear.geometry import gear as geometry
+from fegear.workbench.given import Length, brief, name_of, table, taken, working_folder
+from fegear.workbench.results import Results
 from fegear.workbench.run import run_scene
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from fegear.case.reading import Scene
-    from fegear.geometry import gear as geometry
-    from fegear.workbench.given import Length
-    from fegear.workbench.results import Results
 
 
 class Described:

@@ -8,7 +8,7 @@ from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
 from fegear.results.pair.root_stress_history import table_names
 from fegear.workbench.gear import Described, Gear
-from fegear.workbench.given import brief, name_of, table, taken
+from fegear.workbench.given import Length, brief, name_of, table, taken
 from fegear.workbench.results import Results
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.geometry.pair import GearPair, Member
-    from fegear.workbench.given import Length
 
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
 

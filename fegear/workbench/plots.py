@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
 from fegear.engine.figure.items import outline
 from fegear.geometry.outline import gear_outline
 from fegear.output.draw_plotly.notebook import page_html, still_html
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     import os
 
     from fegear.base.arrays import Array
-    from fegear.engine.figure.figure import DeferredFigure
     from fegear.geometry import gear as geometry
     from fegear.workbench.gear import Gear
     from fegear.workbench.pair import Pair

@@ -7,21 +7,29 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from fegear.base.errors import InputError, shown
-from fegear.case.reading import build_scene
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import Scene, build_scene
 from fegear.workbench.gear import Gear
-from fegear.workbench.given import brief, cache_of, in_si, listed, table, taken, texts, working_folder
+from fegear.workbench.given import (
+    Force,
+    Length,
+    Speed,
+    Torque,
+    brief,
+    cache_of,
+    in_si,
+    listed,
+    table,
+    taken,
+    texts,
+    working_folder,
+)
 from fegear.workbench.pair import Pair
+from fegear.workbench.results import Results
 from fegear.workbench.run import run_scene
-
-if TYPE_CHECKING:
-    from fegear.base.solution_cache import SolutionCache
-    from fegear.case.reading import Scene
-    from fegear.workbench.given import Force, Length, Speed, Torque
-    from fegear.workbench.results import Results
-
 
 #: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
 DAMPING_RATIO = 0.1

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError
-from fegear.engine.outcome import Named, html_table
+from fegear.engine.outcome import Named, Value, html_table
 from fegear.engine.run import Results as Found
 from fegear.engine.run import Silence
 from fegear.engine.table import Column, Table
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from fegear.engine.outcome import Value
 
 #: Values that the short form shows, and characters of a remark.
 _FEW, _CLAUSE = 12, 140

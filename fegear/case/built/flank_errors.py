@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.base.arrays import distinct
+from fegear.base.arrays import Array, distinct
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of, on_shafts
@@ -20,20 +20,18 @@ from fegear.case.part import at
 from fegear.case.text_file import read_columns
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from fegear.base.arrays import Array
     from fegear.case.gear import GearPart
     from fegear.case.reading import Scene
     from fegear.case.studies import TolerancePart
     from fegear.design.robustness.tolerance_draws import Kind, Limits
     from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair
 
 
 #: Points of a crowned line error: between them its chords are off by 2e-7 of the crowning, less than any spot is flat.

@@ -7,27 +7,22 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError
-from fegear.case.built.flank_errors import cutter_modification, flank_errors
-from fegear.case.built.flank_modifications import gear_face
+from fegear.case.built.flank_errors import FlankErrors, cutter_modification, flank_errors
+from fegear.case.built.flank_modifications import FaceModifications, gear_face
 from fegear.case.built.loaded_pair import build_relief
-from fegear.case.built.pair_inputs import gear_flanks, gear_name
+from fegear.case.built.pair_inputs import Flanks, gear_flanks, gear_name
 from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear
-from fegear.case.effects import WIDE_EFFECTS
+from fegear.case.effects import WIDE_EFFECTS, EffectsPart
 from fegear.case.part import at
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.plausible import refuse_load
 
 if TYPE_CHECKING:
-    from fegear.case.built.flank_errors import FlankErrors
-    from fegear.case.built.flank_modifications import FaceModifications
-    from fegear.case.built.pair_inputs import Flanks
-    from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.shaft_gaps import ShaftGaps
     from fegear.geometry.flank_modification import FlankModification
-    from fegear.geometry.pair import GearPair
 
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0

@@ -12,16 +12,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import pair_inputs, refuse_formulas
+from fegear.case.built.pair_inputs import Flanks, PairInputs, pair_inputs, refuse_formulas
 from fegear.case.part import at
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible import refuse_deep_relief, refuse_load, refuse_relief_elsewhere
-from fegear.geometry.relief import CombinedRelief, Relief, crowning, normalised_tip_relief, root_relief, tip_relief
+from fegear.geometry.relief import (
+    CombinedRelief,
+    Crowning,
+    EndRelief,
+    Relief,
+    crowning,
+    normalised_tip_relief,
+    root_relief,
+    tip_relief,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.case.built.pair_inputs import Flanks, PairInputs
     from fegear.case.reading import Scene
     from fegear.case.relief import EndReliefPart
     from fegear.contact.plane.compliance import GearCompliance
@@ -29,8 +37,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.fem.plane.gear import GearInfluence
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.relief import Crowning, EndRelief
 
     Sources = tuple[GearCompliance, GearCompliance]
 

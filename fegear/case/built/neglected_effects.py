@@ -13,8 +13,8 @@ import numpy as np
 from fegear.base.errors import FegearError, InputError
 from fegear.base.tally import tallying
 from fegear.case.built.loaded_pair import relieved, spaced
-from fegear.case.effects import AT_REST, PLANE_EFFECTS
-from fegear.contact.loaded_teeth import Neglected
+from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
+from fegear.contact.loaded_teeth import Answer, Change, Neglected
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.built.train import MotionInputs
-    from fegear.case.effects import EffectsPart
-    from fegear.contact.loaded_teeth import Answer, Change
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.dynamics.motion.steady_state import SteadyState

@@ -13,12 +13,12 @@ import numpy as np
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.rated_duty import bore_remarks, width_remarks
-from fegear.case.effects import PLANE_EFFECTS
+from fegear.case.effects import PLANE_EFFECTS, EffectsPart
 from fegear.case.part import at
-from fegear.case.relief import ReliefPart
+from fegear.case.relief import ReliefPart, ReliefTablePart
 from fegear.case.text_file import read_columns
 from fegear.geometry.interference import interference
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible import heavy_load, refuse_spacing_errors
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
 
@@ -26,15 +26,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.base.arrays import Array
-    from fegear.case.effects import EffectsPart
     from fegear.case.pair import CompliancePart
     from fegear.case.reading import Scene
-    from fegear.case.relief import ReliefTablePart
     from fegear.contact.plane.closed_form_compliance import FormulaRootStress
     from fegear.contact.plane.compliance import RootStressInfluence
     from fegear.fem.plane.gear import GearInfluence
     from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
 
 
 #: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.train import build_train, train_inputs
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fegear.formulas.friction import Surface
     from fegear.formulas.iso6336.rated import Both, LoadFactors, RatedSurface
     from fegear.formulas.lubricant import Oil
-    from fegear.geometry.pair import GearPair
 
 #: Tolerance class of flanks whose class the case does not give, and their roughness [m].
 _CLASS = 6

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.geometry.gear import USUAL_RING_RIM
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fegear.case.pair import PairPart
     from fegear.case.reading import Scene
     from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry.pair import GearPair
 
 
 #: Load cycles that are taken where a case says nothing.

@@ -7,25 +7,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, InputError, RangeError
-from fegear.contact.plane.compliance import OneTooth, Rigid
+from fegear.contact.plane.compliance import OneTooth, Rigid, Side
 from fegear.contact.plane.fe_compliance import Spline, spline
+from fegear.fem.plane.root_stress import FilletCurve
+from fegear.formulas.outcome import ComplianceSource, RootStressSource
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.compliance import Side
-    from fegear.fem.plane.root_stress import FilletCurve
-    from fegear.formulas.outcome import ComplianceSource, RootStressSource
-    from fegear.geometry.gear import Gear
-
+from fegear.geometry.gear import Gear
 
 _POINTS = 81
 

@@ -5,22 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.tally import note
 from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
+from fegear.contact.plane.meshing import Contacts, Meshing
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrid, RollGrids
+from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import UNMODIFIED, Relief
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.meshing import Contacts, Meshing
-    from fegear.contact.plane.pair_compliance import PairCompliance
-    from fegear.geometry.pair import GearPair
 
 #: Roll positions nearer to each other are one [base pitches]: beyond round-off, below any length that a shop measures.
 _APART = 1e-12

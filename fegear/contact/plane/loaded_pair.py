@@ -17,9 +17,9 @@ from fegear.contact.loaded_teeth import (
     Neglected,
     RootStressInMesh,
 )
-from fegear.contact.plane.pair_history import pair_history
+from fegear.contact.plane.pair_history import PairHistory, pair_history
 from fegear.contact.plane.shifted_compliance import load_shift, transmission_error_shift
-from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress, with_peaks
+from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
 from fegear.contact.plane.transmission_error import (
     mean_secant_stiffness,
     pair_stiffness,
@@ -28,7 +28,7 @@ from fegear.contact.plane.transmission_error import (
     secant_stiffness,
     transmission_error,
 )
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -39,11 +39,8 @@ if TYPE_CHECKING:
     from fegear.contact.fourier import FourierSeries
     from fegear.contact.plane.compliance import RootStressInfluence
     from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.pair_history import PairHistory
-    from fegear.contact.plane.tooth_stress import ToothStress
     from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
-    from fegear.geometry.pair import GearPair, Member
 
 #: Places along the path at which losses are integrated (half as many for the estimate of their error), and at which the
 #: state of the flanks is looked at.

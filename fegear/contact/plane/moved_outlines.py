@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement, Loaded
     from fegear.fem.plane.outline_motion import OutlineMotion
     from fegear.geometry.pair import Member

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.loaded_teeth import Change
+from fegear.contact.loaded_teeth import Answer, Change
 from fegear.contact.plane.pair_history import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
-    from fegear.contact.loaded_teeth import Answer
     from fegear.contact.plane.engagement import Engagement, Loaded
 
 #: Roll positions spread over the base pitch.

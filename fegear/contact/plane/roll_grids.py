@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fegear.contact.plane.load_sharing import share_load
+from fegear.base.arrays import Array, Mask
+from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.contact.plane.meshing import Contacts, Meshing
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Mask
-    from fegear.contact.plane.load_sharing import SharedLoad
-    from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
 
 #: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.
 _KEPT = 8

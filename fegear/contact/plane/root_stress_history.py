@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.contact.plane.compliance import largest_stress
+from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_stress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
-    from fegear.contact.plane.compliance import RootStressInfluence, Side
     from fegear.contact.plane.engagement import Engagement, Loaded
     from fegear.geometry.pair import Member
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.fourier import fourier_series
-from fegear.contact.plane.engagement import Loaded
+from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
-from fegear.contact.plane.transmission_error import mean_secant_stiffness
+from fegear.contact.plane.transmission_error import TransmissionError, mean_secant_stiffness
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import Side
-    from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.fe_compliance import FiniteElementCompliance
     from fegear.contact.plane.pair_history import PairHistory
-    from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.fem.plane.root_stress import FilletCurve
 
 

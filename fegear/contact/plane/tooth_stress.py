@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import first_of_largest
+from fegear.base.arrays import Array, first_of_largest
 from fegear.base.shown import shown, shows
+from fegear.contact.plane.compliance import RootStressInfluence, Side
+from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.pair_history import refined_peaks
-from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.root_stress_history import RootStressHistory, root_stress_history
 from fegear.contact.plane.shifted_compliance import solve_again
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.compliance import RootStressInfluence, Side
-    from fegear.contact.plane.engagement import Engagement, Loaded
-    from fegear.contact.plane.root_stress_history import RootStressHistory
-    from fegear.geometry.pair import Member
-
+from fegear.geometry.pair import Member
 
 #: Both fillets of a tooth, and the sign of the stress that is looked for.
 _FILLETS: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))

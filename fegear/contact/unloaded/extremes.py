@@ -10,20 +10,16 @@ Roots of many scalar functions at once that cannot escape their brackets.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from fegear.base.arrays import Array
 
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-
-    Pieces = Callable[[Array], tuple[Array, ...]]
-    Parameters = tuple[NDArray[np.generic], ...]
+Pieces = Callable[[Array], tuple[Array, ...]]
+Parameters = tuple[NDArray[np.generic], ...]
 
 
 #: Cells per period to begin with, each with a place in its middle.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.contact.unloaded.contact_ellipse import parting, pinion_normal
 from fegear.contact.unloaded.extremes import Extreme, extremes
@@ -22,7 +22,6 @@ from fegear.contact.unloaded.separation import Earliest, Placement, earliest_con
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from fegear.base.arrays import Array
     from fegear.contact.unloaded.pair import HelicalPair
 
 

@@ -27,13 +27,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
 from fegear.base.tally import note, tallied
 from fegear.contact.plane.load_sharing import edge_law
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index, Mask
     from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.lines import ContactLines
 

@@ -16,22 +16,19 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.plain import code_version, content_key, pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
 from fegear.contact.wide.complementarity import Averages, averages
-from fegear.fem.solid.bands import bands
-from fegear.geometry.pair import MEMBERS
+from fegear.fem.solid.bands import Bands, bands
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from fegear.base.arrays import Array
     from fegear.contact.wide.lines import ContactLines
-    from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.flank_body import FlankBody, FlankLines
-    from fegear.geometry.pair import GearPair, Member
 
 Hertz = Literal["load-dependent", "linear", "none"]
 

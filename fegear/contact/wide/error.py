@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.shown import shown
 from fegear.contact.wide.lines import long_line
-from fegear.contact.wide.over_pitch import Stated
+from fegear.contact.wide.over_pitch import OverPitch, Stated
 from fegear.contact.wide.spots import missed_of_spots
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-    from fegear.contact.wide.over_pitch import OverPitch
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
 

@@ -14,26 +14,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.tally import note
-from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide.lines import ContactLines, base_twist
 from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.flank_modification import FlankModification
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import UNMODIFIED, Relief
-from fegear.geometry.shaft_tilt import PARALLEL
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.lines import ContactLines
-    from fegear.geometry.flank_modification import FlankModification
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.shaft_tilt import ShaftTilt
+from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
 
 
 @dataclass(frozen=True)

@@ -10,30 +10,34 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
-from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.compliance import FlankCompliance, Hertz, flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import BESIDE_EDGE, base_twist, contact_lines, edge_reach, long_line, roll_points
+from fegear.contact.wide.lines import (
+    BESIDE_EDGE,
+    ContactLines,
+    base_twist,
+    contact_lines,
+    edge_reach,
+    long_line,
+    roll_points,
+)
 from fegear.contact.wide.load_factors import load_below, swept_mean
 from fegear.contact.wide.spots import solve_spots
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array, Mask
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.complementarity import Contact
-    from fegear.contact.wide.compliance import FlankCompliance, Hertz
-    from fegear.contact.wide.lines import ContactLines
     from fegear.fem.solid.flank_body import FlankBody
-    from fegear.geometry.pair import GearPair, Member
 
 
 #: Parts of the face whose loads are distinguished: so long at most [modules], so many at least.

@@ -12,11 +12,15 @@ import numpy as np
 from fegear.contact.loaded_teeth import ErrorOverPitch, FlankLoad, LoadHistory, Neglected, RootStressInMesh
 from fegear.contact.plane.tooth_stress import ToothStress
 from fegear.contact.wide.pair_history import flank_pair_history, history_error
-from fegear.contact.wide.root_stress import rooted_lines
-from fegear.contact.wide.transmission_error import flank_transmission_error_shift, flank_transmission_errors
+from fegear.contact.wide.root_stress import RootedLines, StressOverFace, rooted_lines
+from fegear.contact.wide.transmission_error import (
+    FlankTransmissionError,
+    flank_transmission_error_shift,
+    flank_transmission_errors,
+)
 from fegear.fem.plane.root_stress import curves_apart
-from fegear.fem.solid.influence import ENTRY_SHARES
-from fegear.geometry.pair import MEMBERS
+from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -32,11 +36,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
     from fegear.contact.wide.over_pitch import OverPitch, Stated
-    from fegear.contact.wide.root_stress import RootedLines, StressOverFace
-    from fegear.contact.wide.transmission_error import FlankTransmissionError
     from fegear.fem.plane.influence import Side
-    from fegear.fem.solid.influence import SolidInfluence
-    from fegear.geometry.pair import GearPair, Member
 
 #: Places along the face per module, at which root stress is looked for, and how many at least.
 _PER_MODULE, _FEWEST = 4.0, 17

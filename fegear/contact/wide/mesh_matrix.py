@@ -26,14 +26,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.contact.wide.complementarity import hat_averages, tangent_compliance
-from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide.lines import ContactLines, base_twist
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Mask
     from fegear.contact.fourier import Panels
-    from fegear.contact.wide.lines import ContactLines
     from fegear.contact.wide.loaded import LoadedFlanks
     from fegear.geometry.pair import GearPair
 

@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.contact.wide.load_factors import swept_mean
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Mask
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks

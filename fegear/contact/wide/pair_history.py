@@ -17,12 +17,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.contact.plane.pair_history import PairHistory
 from fegear.contact.wide.complementarity import averaged_gaps, deflection
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.contact.wide.loaded import LoadedFlanks
 
 

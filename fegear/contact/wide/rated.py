@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.formulas.iso6336.conditions import Replacement
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.solid.influence import SolidInfluence
     from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True)

@@ -12,20 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays, first_of_largest
+from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
-from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide.lines import ContactLines, base_twist
 from fegear.fem.plane.root_stress import extreme
-from fegear.fem.solid.bands import loads_of
+from fegear.fem.solid.bands import Bands, loads_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array, Index
-    from fegear.contact.wide.lines import ContactLines
     from fegear.fem.plane.influence import Side
-    from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.fillet import SolidFillet
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import GearPair, Member

@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from fegear.base.arrays import ReadOnlyArrays
-from fegear.contact.fourier import effective_error, fourier_series, panels
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
+from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
 from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
 from fegear.contact.wide.complementarity import secant_compliance
 from fegear.contact.wide.mesh_matrix import stiffness_of
 from fegear.contact.wide.over_pitch import every_second
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.contact.fourier import FourierSeries, Panels
     from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.loaded import LoadedFlanks
 

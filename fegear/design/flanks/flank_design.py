@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.one_thread import one_thread
-from fegear.contact.wide.compliance import flank_compliance
-from fegear.design.flanks.forms import FAMILIES, GroundRelief, held_by, usual_grid
-from fegear.design.flanks.judge import SEARCHED, flank_judge
-from fegear.design.flanks.search import best_of_family, led_on, settled
+from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
+from fegear.design.flanks.forms import FAMILIES, Family, GroundRelief, ReliefGrid, held_by, usual_grid
+from fegear.design.flanks.judge import SEARCHED, FlankJudge, Judged, flank_judge
+from fegear.design.flanks.search import FamilyBest, best_of_family, led_on, settled
 from fegear.design.flanks.topography import (
+    FlankLoading,
+    StationRelief,
     design_force,
     design_lines,
     lines_at,
@@ -22,21 +24,14 @@ from fegear.design.flanks.topography import (
     tabulated,
     topography,
 )
-from fegear.design.flanks.trials import FlankTrials, Scatter
+from fegear.design.flanks.trials import FlankTrials, Scatter, Tried
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.lines import ContactLines
     from fegear.contact.wide.loaded import FlankPair
-    from fegear.design.flanks.forms import Family, ReliefGrid
-    from fegear.design.flanks.judge import FlankJudge, Judged
-    from fegear.design.flanks.search import FamilyBest
-    from fegear.design.flanks.topography import FlankLoading, StationRelief
-    from fegear.design.flanks.trials import Tried
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.flank_modification import Topography
     from fegear.geometry.pair import Member

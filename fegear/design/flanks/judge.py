@@ -16,7 +16,7 @@ import numpy as np
 from fegear.base.one_thread import one_thread
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import flank_compliance
-from fegear.contact.wide.lines import contact_lines, roll_points
+from fegear.contact.wide.lines import ContactLines, contact_lines, roll_points
 from fegear.design.flanks.trials import NOMINAL, FlankTrials, Scatter, Tried
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.lines import ContactLines
     from fegear.contact.wide.loaded import FlankPair
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member

@@ -25,18 +25,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import RangeError
 from fegear.contact.wide.complementarity import deflection
-from fegear.contact.wide.lines import base_twist, contact_lines
+from fegear.contact.wide.lines import ContactLines, base_twist, contact_lines
 from fegear.geometry.flank_modification import Topography
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array
     from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.lines import ContactLines
     from fegear.design.loading import LoadingFunction
     from fegear.geometry.pair import GearPair, Member
 

@@ -13,11 +13,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
 from fegear.base.shown import shows
 from fegear.contact.wide.complementarity import (
@@ -27,15 +26,12 @@ from fegear.contact.wide.complementarity import (
     solve_contact,
     tangent_compliance,
 )
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.load_factors import swept_mean
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.design.flanks.forms import FormsAt
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Mask
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.lines import ContactLines
-    from fegear.geometry.pair import GearPair
+from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.contact.fourier import effective_error
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.charts import Metric
 from fegear.design.tip_relief.search import SHARE, search
+from fegear.geometry.gear import Gear
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.design.charts import Metric
-    from fegear.geometry.gear import Gear
 
 #: Reliefs and what they leave are found again within this of themselves whatever the last digits of inputs are.
 REPEATED = 1e-6

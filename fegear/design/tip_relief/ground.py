@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.design.tip_relief.descent import Aim
+from fegear.design.tip_relief.descent import Aim, Limits
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Floats, Mask
-    from fegear.design.tip_relief.descent import Limits
     from fegear.design.tip_relief.trials import Trials, Tried
 
 #: Step of the differences, in the units of the numbers.

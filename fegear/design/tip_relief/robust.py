@@ -8,34 +8,27 @@ them is taken. Common draws make differences between candidates far surer than e
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Floats
 from fegear.base.errors import FegearError, InputError
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.plane.roll_grids import RollGrid
 from fegear.design.quick_sharing import quick_sharing
-from fegear.design.robustness.deviated_pair import deviated
+from fegear.design.robustness.deviated_pair import Bench, deviated
+from fegear.design.robustness.tolerance_draws import Deviations
 from fegear.design.tip_relief.grindable import relief_over_path
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.plausible import deepest_relief
-from fegear.geometry.relief import UNMODIFIED, roll_of_radius
+from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+_Numbers = tuple[float, float, float, float]
 
-    from fegear.base.arrays import Array, Floats
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.roll_grids import RollGrid
-    from fegear.design.robustness.deviated_pair import Bench
-    from fegear.design.robustness.tolerance_draws import Deviations
-    from fegear.geometry.pair import Member
-    from fegear.geometry.relief import EndRelief
-
-    #: Amount [m] and length over the path of driver and driven gear.
-    _Numbers = tuple[float, float, float, float]
 
 #: Even roll positions over the base pitch; both sides of changes of pairs come in addition.
 _POSITIONS = 60

@@ -18,24 +18,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Floats, Index, Mask
 from fegear.contact.fourier import Panels
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.charts import Bench, bench
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.ground import refine
 from fegear.design.tip_relief.trials import Trials
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Floats, Index, Mask
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.pair_compliance import PairCompliance
-    from fegear.geometry.pair import GearPair
 
 #: Reliefs that leave at most this much more than the least, over it, are equally good.
 SHARE = 0.01

@@ -11,7 +11,7 @@ import numpy as np
 
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
-from fegear.design.tip_relief.extremes import Between, removed
+from fegear.design.tip_relief.extremes import Bends, Between, removed
 from fegear.design.tip_relief.kink_quadrature import KinkQuadrature
 from fegear.design.tip_relief.kinks import Positions
 from fegear.geometry.relief import roll_of_radius
@@ -19,7 +19,6 @@ from fegear.geometry.relief import roll_of_radius
 if TYPE_CHECKING:
     from fegear.base.arrays import Floats, Index, Mask
     from fegear.design.charts import Bench
-    from fegear.design.tip_relief.extremes import Bends
 
 _HARMONICS = 12
 

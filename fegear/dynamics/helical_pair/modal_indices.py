@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
 from fegear.dynamics.train.modes import same_way_up, undamped_modes
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+Model = HelicalPairModel | ReducedPairModel
 
-    from fegear.base.arrays import Array
-
-    Model = HelicalPairModel | ReducedPairModel
 
 #: Relative round-off beyond which fewer than half of the digits are left.
 HALF_THE_DIGITS = 1e-8

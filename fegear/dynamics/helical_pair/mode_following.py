@@ -12,23 +12,20 @@ The branches are therefore those of the limit of small steps, and do not depend 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, InputError
+from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
 from fegear.dynamics.train.modes import undamped_modes
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+Model = HelicalPairModel | ReducedPairModel
 
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
-
-    Model = HelicalPairModel | ReducedPairModel
 
 #: Frequencies nearer than this share of the highest are one: round-off would mix their shapes.
 SAME = 1e-10

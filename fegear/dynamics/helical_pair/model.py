@@ -14,16 +14,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError, InputError, RangeError
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 from fegear.dynamics.train.modes import undamped_modes
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 
 #: Signs that carry the motion of gear j into the mesh deflection.
 P = np.diag([-1.0, -1.0, -1.0, 1.0, 1.0])

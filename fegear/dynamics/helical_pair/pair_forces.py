@@ -10,21 +10,16 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
+from fegear.dynamics.helical_pair.model import HelicalPairModel
 from fegear.dynamics.helical_pair.transmissibility import natural_frequencies, transmissibility
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.helical_pair.model import HelicalPairModel
 
 
 @dataclass(frozen=True)

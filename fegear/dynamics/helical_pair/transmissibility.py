@@ -7,20 +7,18 @@ stay accurate down to frequency zero, where the compliance itself does not exist
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import ConvergenceError, InputError, RangeError
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
 from fegear.dynamics.train.modes import undamped_modes
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+Model = HelicalPairModel | ReducedPairModel
 
-    from fegear.base.arrays import Array, Complex
-
-    Model = HelicalPairModel | ReducedPairModel
 
 #: Twice a damping ratio, over the highest natural frequency, below which there is no damping.
 _UNDAMPED = 1e-14

@@ -9,23 +9,20 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.dynamics.motion.kernel.arrays import MeshArrays, SpringArrays, TrainArrays
+from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.matrices import damping_matrix, elements, projected, static_forces
 from fegear.dynamics.train.modes import modes
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.segments import segment_shapes
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.excitation import MeshExcitation
-    from fegear.dynamics.train.train import Train
+from fegear.dynamics.train.train import Train
 
 
 @dataclass(frozen=True)

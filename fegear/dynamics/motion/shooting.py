@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.dynamics.motion.motion import Passage, propagate
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.motion.motion_model import Packed
+from fegear.dynamics.motion.motion_model import Packed
 
 #: How far a multiplier may exceed one before the motion counts as unstable.
 UNSTABLE = 1e-6

@@ -8,22 +8,15 @@ what each link passes on, made once for each stretch between two gear pairs.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Floats
+from fegear.dynamics.train.network import Network
 from fegear.dynamics.train.rounded import Rounded, in_series, share
 from fegear.dynamics.train.star_mesh import Response, close_pair
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from numpy.typing import NDArray
-
-    from fegear.dynamics.train.network import Network
-
-    Reals = NDArray[np.floating]
 
 
 @dataclass(frozen=True)
@@ -101,7 +94,7 @@ class _Side:
 class _Solved:
     """Both sides of every link between gear pairs, at some frequencies."""
 
-    def __init__(self, network: Network, plan: Branches, w: Reals) -> None:
+    def __init__(self, network: Network, plan: Branches, w: Floats) -> None:
         self.network, self.plan, self.w = network, plan, w
         self.y: dict[int, Rounded] = {}
         #: of the link between each node and its parent: the node's own side, and its parent's
@@ -202,7 +195,7 @@ class Ways:
         Angular frequencies [rad/s], all positive or all zero, in the floats of the network.
     """
 
-    def __init__(self, network: Network, plan: Branches, w: Reals) -> None:
+    def __init__(self, network: Network, plan: Branches, w: Floats) -> None:
         self.solved = _Solved(network, plan, w)
         self.near: dict[int, list[int]] = {}
         for node in self.solved.out:

@@ -6,23 +6,18 @@ Dynamic factor predicted from the effective error of the static transmission err
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.dynamics.train.charts import SpeedChart
+from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.single_tooth import force_history
 from fegear.dynamics.train.tooth_force import mesh_force_range
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.gear_train import GearTrain
 
 
 def linear_chart(

@@ -6,28 +6,23 @@ Tooth friction over the path of contact: coefficient, torques on both gears, and
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown, shows
 from fegear.base.tally import tallied
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.gear_train import TrainMesh
 from fegear.dynamics.train.mesh_excitation import FIT
 from fegear.dynamics.train.periodic import Periodic
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.excitation import MeshExcitation
-    from fegear.dynamics.train.gear_train import TrainMesh
-    from fegear.dynamics.train.train import Mesh
-
+from fegear.dynamics.train.train import Mesh
 
 _INCH = 0.0254
 

@@ -24,30 +24,21 @@ the force of the teeth that press on it.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array, Complex, Floats
 from fegear.base.errors import RangeError
 from fegear.dynamics.train.branches import Branches, Ways
 from fegear.dynamics.train.modes import modes
 from fegear.dynamics.train.network import Network
 from fegear.dynamics.train.segments import lags_by_pivots
-from fegear.dynamics.train.star_mesh import RESONANCE, respond
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.train.star_mesh import Response
-    from fegear.dynamics.train.train import Train
-
-    Reals = NDArray[np.floating]
-
+from fegear.dynamics.train.star_mesh import RESONANCE, Response, respond
+from fegear.dynamics.train.train import Train
 
 #: Estimated relative round-off beyond which a frequency is solved again.
 DOUBTFUL = 1e-13
@@ -109,7 +100,7 @@ class _Column:
     """Q[i] for one mesh that excites, with its doubt, shape (meshes, frequencies), and where there is none."""
 
     q: Complex
-    doubt: Reals
+    doubt: Floats
     resonance: NDArray[np.bool_]
 
     def weak(self) -> NDArray[np.bool_]:
@@ -158,7 +149,7 @@ class _Solver:
             self.orders[mesh, variant] = self.plain.order(mesh, variant)
         return self.orders[mesh, variant]
 
-    def columns(self, w: Reals, meshes: Sequence[int]) -> Iterator[Complex]:
+    def columns(self, w: Floats, meshes: Sequence[int]) -> Iterator[Complex]:
         """Q[i, mesh] at frequencies that are all positive or all zero, shape (meshes, frequencies), mesh by mesh."""
         if self.branches is None:
             for mesh in meshes:
@@ -177,7 +168,7 @@ class _Solver:
         for column in columns:
             yield self._bounded(w, column)
 
-    def _bounded(self, w: Reals, found: _Column) -> Complex:
+    def _bounded(self, w: Floats, found: _Column) -> Complex:
         if np.any(found.resonance):
             where = float(w[found.resonance][0]) / (2.0 * math.pi)
             raise RangeError(
@@ -188,12 +179,12 @@ class _Solver:
             )
         return found.q
 
-    def _careful(self, w: Reals, mesh: int) -> _Column:
+    def _careful(self, w: Floats, mesh: int) -> _Column:
         """Longer floats, then other orders of elimination, the way from i to j, and pivots; the best of each."""
         best = self._solve(self.long, w, mesh)
         if not np.all(w > 0.0):
             return best
-        tries: list[Callable[[Reals], _Column]] = [
+        tries: list[Callable[[Floats], _Column]] = [
             partial(self._solve, self.long, mesh=mesh, variant=order) for order in range(1, ORDERS + 1)
         ]
         tries += [partial(self._back, i=i, mesh=mesh) for i in range(len(self.train.meshes)) if i != mesh]
@@ -205,7 +196,7 @@ class _Solver:
             best = best.improved(left, attempt(w[left]))
         return best
 
-    def _back(self, w: Reals, i: int, mesh: int) -> _Column:
+    def _back(self, w: Floats, i: int, mesh: int) -> _Column:
         """Entry i of a column by the way from mesh i to the one that excites: their forces are the same."""
         back = self._solve(self.long, w, i)
         scale = self._scale(w, i, mesh) / self._scale(w, mesh, i)
@@ -213,12 +204,12 @@ class _Solver:
         q[i], doubt[i] = back.q[mesh] * scale, back.doubt[mesh] * np.abs(scale)
         return _Column(q, doubt, back.resonance)
 
-    def _scale(self, w: Reals, i: int, j: int) -> Complex:
+    def _scale(self, w: Floats, i: int, j: int) -> Complex:
         """From the difference of approach at mesh i per force at mesh j to Q_ij: k_j (1 + i w c_i / k_i)."""
         one, other = self.train.meshes[i], self.train.meshes[j]
         return np.asarray(other.stiffness * (1.0 + 1j * w * (one.damping / one.stiffness)))
 
-    def _solve(self, network: Network, w: Reals, mesh: int, variant: int = 0) -> _Column:
+    def _solve(self, network: Network, w: Floats, mesh: int, variant: int = 0) -> _Column:
         if network.links[mesh].a == network.links[mesh].b:
             return self._rigid(w, mesh)
         return self._column(w, mesh, respond(network, w, mesh, self._order(mesh, variant)))
@@ -227,13 +218,13 @@ class _Solver:
         w, link = ways.solved.w, self.plain.links[mesh]
         return self._rigid(w, mesh) if link.a == link.b else self._column(w, mesh, ways.respond(mesh))
 
-    def _rigid(self, w: Reals, mesh: int) -> _Column:
+    def _rigid(self, w: Floats, mesh: int) -> _Column:
         """Rigid shafts join the two gears: the teeth take all of the error."""
         q = np.zeros((len(self.train.meshes), w.size), dtype=complex)
         q[mesh] = -1.0
         return _Column(q, np.zeros(q.shape), np.zeros(w.size, dtype=bool))
 
-    def _column(self, w: Reals, mesh: int, response: Response) -> _Column:
+    def _column(self, w: Floats, mesh: int, response: Response) -> _Column:
         count, eps = len(self.train.meshes), float(np.finfo(w.dtype).eps)
         q = np.zeros((count, w.size), dtype=complex)
         doubt = np.zeros((count, w.size))
@@ -243,7 +234,7 @@ class _Solver:
             q[i], doubt[i] = lag.value * scale, eps * lag.error * np.abs(scale)
         return _Column(q, doubt, response.resonance)
 
-    def _by_pivots(self, w: Reals, mesh: int) -> _Column:
+    def _by_pivots(self, w: Floats, mesh: int) -> _Column:
         """Increments as Mark writes them, R H - 1, from the equations as they stand."""
         lags = lags_by_pivots(self.long, w.astype(np.longdouble), mesh)
         scales = [self._scale(w, i, mesh) for i in range(len(lags))]

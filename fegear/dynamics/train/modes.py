@@ -7,20 +7,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import first_of_largest
+from fegear.base.arrays import Array, Complex, first_of_largest
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.dynamics.train.matrices import damping_matrix, elements
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.train.train import Train
+from fegear.dynamics.train.train import Train
 
 #: A squared frequency below this part of the largest one counts as rigid-body motion.
 RIGID = 1e-12

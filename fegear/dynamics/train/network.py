@@ -14,14 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Floats
 from fegear.dynamics.train.matrices import elements
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from fegear.dynamics.train.train import Train
-
-    Reals = NDArray[np.floating]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +62,11 @@ class Network:
     """
 
     size: int
-    mass: Reals
-    ground: Reals
+    mass: Floats
+    ground: Floats
     links: tuple[Link, ...]
     slips: tuple[Slip, ...]
-    turns: Reals
+    turns: Floats
 
     @classmethod
     def of(cls, train: Train, kind: type[np.floating] = np.float64) -> Network:

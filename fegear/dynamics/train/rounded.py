@@ -7,15 +7,12 @@ It says which of two ways to one number kept more digits, and when longer floats
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Values = NDArray[np.inexact]
-    Bounds = NDArray[np.floating]
+Values = NDArray[np.inexact]
+Bounds = NDArray[np.floating]
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,26 +10,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
-from fegear.contact.plane.compliance import largest_stress
+from fegear.contact.plane.compliance import RootStressInfluence, largest_stress
 from fegear.contact.wide.lines import life_of_contact
+from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
-from fegear.dynamics.train.tooth_force import dynamic_error, root_stress, tooth_force
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.compliance import RootStressInfluence
-    from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.dynamics.train.periodic import Periodic
-    from fegear.dynamics.train.tooth_force import ToothForce
-    from fegear.geometry.pair import GearPair, Member
-
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.tooth_force import ToothForce, dynamic_error, root_stress, tooth_force
+from fegear.geometry.pair import GearPair, Member
 
 #: Lines that tooth forces are summed from, at least.
 _LINES = 256

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.dynamics.train.increments import dynamic_increments
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.train.periodic import Periodic
-    from fegear.dynamics.train.train import Train
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Train
 
 
 @dataclass(frozen=True)

@@ -14,21 +14,15 @@ never added to a stiffness, so nothing of them is lost beside it. For a train wi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Floats
+from fegear.dynamics.train.network import Network
 from fegear.dynamics.train.rounded import Rounded, beside_zero, in_series, share
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from fegear.dynamics.train.network import Network
-
-    Reals = NDArray[np.floating]
 
 #: Relative change of inertias and stiffnesses that is enough to bring an undamped resonance to a frequency that counts
 #: as one.
@@ -73,7 +67,7 @@ def _plus(one: Rounded | None, other: Rounded) -> Rounded:
 class _Elimination:
     """The network at some frequencies while nodes are taken out of it."""
 
-    def __init__(self, network: Network, w: Reals, mesh: int) -> None:
+    def __init__(self, network: Network, w: Floats, mesh: int) -> None:
         self.network, self.mesh, self.w = network, mesh, w
         iw = 1j * w
         self.leak = [Rounded.given(-np.square(w) * mass + 0j) for mass in network.mass]
@@ -142,7 +136,7 @@ class Root:
 
 
 def close_pair(
-    w: Reals,
+    w: Floats,
     A: Rounded,
     B: Rounded,
     around: Rounded,
@@ -284,7 +278,7 @@ def _reduce_slips(state: _Elimination, a: int, b: int, around: Rounded, none: Ro
     return _Slips(phi[0, 0], turn_a, turn_b, around, tuple(ratios[1:]), tuple(reversed(rows)), places)
 
 
-def respond(network: Network, w: Reals, mesh: int, order: Sequence[tuple[int, tuple[int, ...]]]) -> Response:
+def respond(network: Network, w: Floats, mesh: int, order: Sequence[tuple[int, tuple[int, ...]]]) -> Response:
     """What the transmission error of one gear pair does to all, at positive frequencies or at zero.
 
     Parameters

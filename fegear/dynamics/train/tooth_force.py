@@ -9,28 +9,23 @@ How far the force of a linearised mesh falls below zero: what contact loss would
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.compliance import largest_stress
+from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.spectra import mesh_force_spectrum
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.dynamics.train.periodic import Periodic
-    from fegear.dynamics.train.train import Train
-    from fegear.fem.plane.root_stress import FilletCurve
-
+from fegear.dynamics.train.train import Train
+from fegear.fem.plane.root_stress import FilletCurve
 
 #: Harmonics summed at once.
 _BLOCK = 256

@@ -8,24 +8,20 @@ right flank is the loaded one. A ring gear is held at its outer circle, which is
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.curves import Curve, arc_length
+from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.outline import turned
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+Law = Callable[[Array], Array]
 
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.involute_tooth import InvoluteTooth
-
-    #: Edge length as a function of arc length, both in modules.
-    Law = Callable[[Array], Array]
 
 #: Root lands shorter than this [modules] (a rack tip all but full) are dropped: the fillets meet on the sector's
 #: side. Fillet and root circle are tangent there, so the outline moves by the square of it.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
-from fegear.fem.plane.estimate import QUANTITIES
+from fegear.fem.plane.estimate import QUANTITIES, Estimate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
-    from fegear.fem.plane.estimate import Estimate
     from fegear.fem.plane.influence import Influence, Side
     from fegear.fem.plane.settings import MeshSettings
     from fegear.fem.plane.solution import Round

@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
-from fegear.fem.plane.elasticity import assemble, assemble_two_orders
+from fegear.fem.plane.elasticity import SectorElasticity, assemble, assemble_two_orders
 from fegear.fem.plane.ring import close_ring
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from fegear.base.arrays import Array
-    from fegear.fem.plane.elasticity import SectorElasticity
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth

@@ -11,8 +11,9 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -27,15 +28,10 @@ from fegear.fem.plane.root_stress import FilletStrain
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
 from fegear.fem.plane.trace import LoadedFlank
+from fegear.geometry.gear import Gear, Plane
+from fegear.geometry.involute_tooth import InvoluteTooth
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from fegear.geometry.gear import Gear, Plane
-    from fegear.geometry.involute_tooth import InvoluteTooth
-
-    Progress = Callable[[str], None]
-
+Progress = Callable[[str], None]
 
 #: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md).
 _LEVELS = ((1e-2, -4.5), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))

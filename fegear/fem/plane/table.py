@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.fem.plane.contact_width import check_half_widths
+from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import SIDES
-from fegear.fem.plane.solution import solve_gear
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.gear import GearInfluence
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.fem.plane.solution import Progress
-    from fegear.geometry.gear import Gear
-
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import Progress, solve_gear
+from fegear.geometry.gear import Gear
 
 #: Load positions at a time: compliances between neighbours come as a matrix over all of them.
 _BLOCK = 512

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import RangeError
 from fegear.fem.solid.settings import whole
 
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array
     from fegear.fem.plane.trace import LoadedFlank
     from fegear.fem.solid.face import FaceFunctions
 

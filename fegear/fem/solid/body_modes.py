@@ -9,27 +9,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from fegear.base.arrays import first_of_largest
+from fegear.base.arrays import Array, Index, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.shown import shown
 from fegear.fem.plane.elements import sector_elements
-from fegear.fem.solid.face import face_functions, solid_unknowns
-from fegear.fem.solid.section import make_section, turned_matrices
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.solid.face import FaceFunctions, face_functions, solid_unknowns
+from fegear.fem.solid.section import Section, make_section, turned_matrices
+from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import section_mesh
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.solid.face import FaceFunctions
-    from fegear.fem.solid.section import Section
-    from fegear.fem.solid.settings import SolidSettings
-    from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Functions along the face of a disc or a hub: a body's low waves are as good as linear, at most cubic, through its
 #: thickness, and each module of width adds some.

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.solid.bands import (
+    Bands,
     band_cosines,
     check_half_width,
     end_slope,
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
-    from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.flank_body import TwistedFlank
     from fegear.fem.solid.solution import SolidSolution
 

@@ -6,24 +6,17 @@ How many functions along the face each node of the section needs: short waves di
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.fem.plane.elements import line_functions
 from fegear.fem.solid.dissection import Unknowns, unknowns
-from fegear.fem.solid.section import upward
-from fegear.fem.solid.settings import whole
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.solid.section import Section
-    from fegear.fem.solid.settings import SolidSettings
-
+from fegear.fem.solid.section import Section, upward
+from fegear.fem.solid.settings import SolidSettings, whole
 
 #: Coefficients of a function's series that are smaller than this share of its largest are none.
 _NOISE = 1e-10

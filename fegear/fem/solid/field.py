@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array, Index
 from fegear.base.one_thread import one_thread
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.gear_section import Section as PlaneSection
+from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring import closed_ring
-from fegear.fem.solid.bands import loads_of
+from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of, with_stations
 from fegear.fem.solid.face import face_functions, solid_unknowns
 from fegear.fem.solid.section import make_section
+from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import flank_nodes, section_flank, section_mesh
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.solid.bands import Bands
-    from fegear.fem.solid.settings import SolidSettings
-    from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Six-node triangles want edges so much shorter than those of third order.
 _SIX_NODE_EDGES = 0.7

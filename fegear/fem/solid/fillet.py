@@ -13,17 +13,12 @@ sigma_tt = (e_tt + nu e_bb) / (1 - nu^2) and so on.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.fem.plane.trace import lagrange, lagrange_slope
-from fegear.fem.solid.section import upward
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.solid.section import Section
+from fegear.fem.solid.section import Section, upward
 
 
 @dataclass(frozen=True)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array, Mask
 from fegear.base.plain import code_version, content_key, pack, read_only, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import known_or_solved
@@ -26,15 +29,7 @@ from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.gear_body import GearBody
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Mask
-    from fegear.fem.plane.influence import Side
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: What a solution consists of, for those that keep it.
 _KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody)

@@ -9,20 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.fem.plane.body import zones
 from fegear.fem.plane.elasticity import lame
-from fegear.fem.plane.elements import sector_elements
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.elements import SectorElements
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.gear_body import GearBody
+from fegear.fem.plane.elements import SectorElements, sector_elements
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.geometry.gear_body import GearBody
 
 #: From where to where a disc fills the face: all of it.
 _WHOLE_FACE = ((-math.inf, math.inf),)

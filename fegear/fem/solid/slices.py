@@ -17,31 +17,23 @@ are as stiff as the middle. Kept to compare with; for results take `solve_slices
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
-from fegear.fem.plane.trace import lagrange
-from fegear.fem.solid.bands import function_cosines, overlap
+from fegear.fem.plane.trace import LoadedFlank, lagrange
+from fegear.fem.solid.bands import Bands, function_cosines, overlap
 from fegear.fem.solid.contact import widened_by_curvature
 from fegear.fem.solid.face import face_functions
 from fegear.fem.solid.flank_body import TwistedFlank
-from fegear.fem.solid.slice_laws import LAWS, Spread
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.slice_laws import LAWS, SliceLaws, Spread
 from fegear.fem.solid.solution import SolidSolution, solve_solid
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.trace import LoadedFlank
-    from fegear.fem.solid.bands import Bands
-    from fegear.fem.solid.settings import SolidSettings
-    from fegear.fem.solid.slice_laws import SliceLaws
-    from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.involute_tooth import InvoluteTooth
-
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Functions along the face of the plane section, all but the constant of which stay at rest; and its width.
 _PLANE_DEGREE, _PLANE_WIDTH = 3, 1.0

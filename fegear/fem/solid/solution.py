@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import RangeError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.body import with_body
+from fegear.fem.plane.influence import Side
+from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring import closed_ring
 from fegear.fem.plane.root_stress import extreme, search_end
 from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.contact import PressedLines
@@ -24,18 +29,8 @@ from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
 from fegear.fem.solid.flank_body import TwistedFlank
 from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.influence import Side
-    from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: How far below the edge of a pressed band root tension begins [modules].
 _CLEARANCE = 0.25

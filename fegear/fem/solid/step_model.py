@@ -10,22 +10,19 @@ import math
 import os
 import sys
 from collections import Counter
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
 from fegear.fem.plane.sector import gmsh_session
+from fegear.geometry.gear import Gear
+from fegear.geometry.outline import Drawn
 from fegear.geometry.spline import DEGREE, Spline, enclosed_area, fitted, smooth_pieces, spline_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from pathlib import Path
-
-    from fegear.base.arrays import Array
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.outline import Drawn
 
 #: How far the surfaces may lie off the exact ones [modules]: some ten nanometres.
 TOLERANCE = 1e-5

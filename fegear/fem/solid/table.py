@@ -4,31 +4,23 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fegear.base.arrays import ReadOnlyArrays, first_of_largest
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays, first_of_largest
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
+from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart, extreme
-from fegear.fem.solid.bands import bands, hats
+from fegear.fem.solid.bands import Bands, bands, hats
 from fegear.fem.solid.contact import line_compliance
-from fegear.fem.solid.influence import ENTRY_SHARES
+from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
 from fegear.fem.solid.settings import whole
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Mask
-    from fegear.fem.plane.influence import Side
-    from fegear.fem.solid.bands import Bands
-    from fegear.fem.solid.influence import SolidInfluence
-    from fegear.fem.solid.solution import SolidSolution
-    from fegear.geometry.gear import Gear
+from fegear.fem.solid.solution import SolidSolution
+from fegear.geometry.gear import Gear
 
 #: What each number is called among the errors of the influence functions.
 _MISSED = {

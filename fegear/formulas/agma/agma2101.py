@@ -19,8 +19,9 @@ They are for ten million cycles, one direction of load and a reliability of 99 %
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from fegear.base.errors import RangeError
 from fegear.formulas.agma.agma908 import bending_factor, contact_geometry, pitting_factor
@@ -38,14 +39,9 @@ from fegear.formulas.agma.agma2101_factors import (
     work_hardening_factor,
 )
 from fegear.formulas.iso6336.conditions import Factor
+from fegear.formulas.iso6336.rated import Both
 from fegear.formulas.symbols import AGMA_2101
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
-
-    from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry.pair import GearPair, Member
-
+from fegear.geometry.pair import GearPair, Member
 
 _STANDARD = "ANSI/AGMA 2101-D04"
 

@@ -9,20 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import flash_temperature
 from fegear.formulas.friction import FASTEST, mean_friction
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.iso6336.rated import RatedSurface
-    from fegear.geometry.pair import GearPair
+from fegear.formulas.iso6336.rated import RatedSurface
+from fegear.geometry.pair import GearPair
 
 #: Share of the mean flash temperature by which the teeth are warmer than the oil (Eq. 22).
 _BULK = 0.47

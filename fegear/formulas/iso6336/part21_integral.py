@@ -9,15 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
 from fegear.formulas.flash_temperature import STEEL_HEAT, contact_ratios
 from fegear.formulas.friction import FASTEST, helical_load_factor, mean_friction
-
-if TYPE_CHECKING:
-    from fegear.formulas.iso6336.rated import RatedSurface
-    from fegear.geometry.pair import GearPair
+from fegear.formulas.iso6336.rated import RatedSurface
+from fegear.geometry.pair import GearPair
 
 #: C_1 and C_2: weights of the mean flash temperature in the bulk and in the integral temperature (Eqs. 17 and 20).
 _BULK, _WEIGHT = 0.7, 1.5

@@ -11,23 +11,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds, contact_ratios
 from fegear.formulas.friction import Surface, helical_load_factor, mean_friction
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.formulas.iso6336.rated import RatedSurface
-    from fegear.formulas.lubricant import Oil
-    from fegear.geometry.pair import GearPair
+from fegear.formulas.iso6336.rated import RatedSurface
+from fegear.formulas.lubricant import Oil
+from fegear.geometry.pair import GearPair
 
 #: B_M of the test gears: density, specific heat, conductivity of the steel of Table 2 (Formula 82) [N/(m s^0.5 K)].
 _TEST_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)

@@ -9,18 +9,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+from numpy.typing import ArrayLike
 
 from fegear.base.errors import RangeError
 from fegear.formulas.flash_temperature import FlankSpeeds, flank_speeds, reduced_modulus
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.formulas.friction import Surface
-    from fegear.formulas.iso6336.part5_materials import Group
-    from fegear.geometry.pair import GearPair
-
+from fegear.formulas.friction import Surface
+from fegear.formulas.iso6336.part5_materials import Group
+from fegear.geometry.pair import GearPair
 
 #: Which editions of parts 1, 2 and 3 a rating follows.
 Edition = Literal[2006, 2019]

@@ -16,10 +16,10 @@ from fegear.formulas.iso6336 import part1_face_load as misalignment
 from fegear.formulas.iso6336 import part1_transverse as running_in
 from fegear.formulas.iso6336 import part1_transverse as transverse
 from fegear.formulas.iso6336 import part2_pitting as contact
-from fegear.formulas.iso6336.conditions import COMPUTED
+from fegear.formulas.iso6336.conditions import COMPUTED, Conditions, FactorTable, Replacement
 from fegear.formulas.iso6336.part1_face_load import root_exponent
-from fegear.formulas.iso6336.part1_stiffness import blank_factor, pair_blank_factor, stiffness
-from fegear.formulas.iso6336.part2_pitting import contact_ratio_factor, flank_strength
+from fegear.formulas.iso6336.part1_stiffness import Stiffness, blank_factor, pair_blank_factor, stiffness
+from fegear.formulas.iso6336.part2_pitting import FlankStrength, contact_ratio_factor, flank_strength
 from fegear.formulas.iso6336.part3_internal import outline_root_form, ring_load_diameter
 from fegear.formulas.iso6336.part3_pair import RatingChoice, RootRating, ToothLoad, rate, rate_form
 from fegear.formulas.iso6336.part3_root_stress import (
@@ -28,14 +28,10 @@ from fegear.formulas.iso6336.part3_root_stress import (
     ring_rim_factor,
     virtual_teeth,
 )
-from fegear.formulas.iso6336.part3_strength import STANDARD_GEAR, root_strength
+from fegear.formulas.iso6336.part3_strength import STANDARD_GEAR, RootStrength, root_strength
 
 if TYPE_CHECKING:
-    from fegear.formulas.iso6336.conditions import Conditions, FactorTable, Replacement
     from fegear.formulas.iso6336.pair_geometry import PairGeometry
-    from fegear.formulas.iso6336.part1_stiffness import Stiffness
-    from fegear.formulas.iso6336.part2_pitting import FlankStrength
-    from fegear.formulas.iso6336.part3_strength import RootStrength
     from fegear.formulas.iso6336.rated import Both
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.engine.table import Table
 from fegear.output.file_names import file_name
 from fegear.output.numbers import plain_number, pretty_unit
-from fegear.output.report.blocks import DataTable, Facts, Folded, Grid, Paragraph, Plot
+from fegear.output.report.blocks import Block, DataTable, Facts, Folded, Grid, Paragraph, Plot
 from fegear.output.report.page import Page, Section
 
 if TYPE_CHECKING:
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.engine.figure.figure import Figure
-    from fegear.output.report.blocks import Block
     from fegear.studies.comparison.compare import Pairing
     from fegear.studies.effects import EffectCurve, Fixed, Switched
 

@@ -13,15 +13,16 @@ import numpy as np
 
 import fegear
 from fegear.case.effects import EFFECTS
-from fegear.engine.citation import bibliography
+from fegear.engine.citation import Citation, bibliography
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Mark, Points
-from fegear.engine.table import Column
+from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
 from fegear.output.file_names import file_name
 from fegear.output.numbers import plain_number
 from fegear.output.report.blocks import (
     Bars,
+    Block,
     Code,
     DataTable,
     Download,
@@ -50,13 +51,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from fegear.engine.citation import Citation
     from fegear.engine.outcome import Value
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
-    from fegear.engine.table import Table
     from fegear.output.figures import Drawn
-    from fegear.output.report.blocks import Block
 
 
 #: More values than this are folded, task by task: forty numbers before the first plot are too many.

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
+from fegear.engine.figure.figure import Figure
+from fegear.engine.table import Table
 from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import DataTable, Facts, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section
-from fegear.studies.swept import varying
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from fegear.engine.figure.figure import Figure
-    from fegear.engine.table import Table
-    from fegear.studies.sweep import SweepResults
-    from fegear.studies.swept import Swept
-
-    Array = NDArray[np.float64]
+from fegear.studies.sweep import SweepResults
+from fegear.studies.swept import Swept, varying
 
 
 def _title(one: Swept) -> str:

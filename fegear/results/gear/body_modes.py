@@ -14,7 +14,7 @@ from fegear.engine.declared import column_of, error_column
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import TriangleField
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.outline import turned
 from fegear.results.forecasts import RING
@@ -22,7 +22,6 @@ from fegear.results.forecasts import RING
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.solid.body_modes import BodyModes
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.gear import Gear

@@ -21,11 +21,11 @@ from fegear.engine.declared import column_of, columns_of, error_column, tiled
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark, Zone
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
-from fegear.results.gear.crosscheck_iso import iso_inputs, iso_table, section_figure, section_table
+from fegear.results.gear.crosscheck_iso import IsoInputs, iso_inputs, iso_table, section_figure, section_table
 from fegear.results.gear.load_positions import chosen_gears
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 
@@ -36,14 +36,12 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.compared.iso_check import RatedPair
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
     from fegear.formulas.outcome import Outcome as Answer
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
-    from fegear.results.gear.crosscheck_iso import IsoInputs
 
 
 #: Line load of the pairs when the case names none [N/m].

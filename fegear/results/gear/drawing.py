@@ -15,20 +15,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.engine.figure.figure import Axis, Figure, MeshField, Panel
 from fegear.engine.figure.items import Curve, Mark, Points, TriangleField, edges, outline, polylines
 from fegear.geometry.outline import tool_in_gear, tool_in_space, tooth_outline, turned
-from fegear.geometry.pair import MEMBERS, path_points, specific_sliding
+from fegear.geometry.pair import MEMBERS, GearPair, Member, path_points, specific_sliding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.base.arrays import Array, Index
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
     from fegear.results.gear.geometry import Drawing
 
 

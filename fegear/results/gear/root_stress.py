@@ -8,21 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import first_of_largest
+from fegear.base.arrays import Array, first_of_largest
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import deformed_figure
 from fegear.results.gear.load_positions import chosen_gears
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.table import StiffnessTable
 

@@ -18,7 +18,7 @@ from fegear.engine.citation import citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark, Points, Zone
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.studies import StudyPart
     from fegear.contact.compared.root_stress_study import Variant, VariantStress
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear
 

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 from fegear.case.built.solid_influence import (
+    SolidGearToSolve,
     check_solid_gear,
     seconds_of_solid_gear,
     solid_gear_to_solve,
@@ -19,6 +20,7 @@ from fegear.case.built.solid_influence import (
     solve_solid_influence,
 )
 from fegear.case.built.tooth_influence import (
+    GearToSolve,
     gear_to_solve,
     mesh_settings,
     solution_remarks,
@@ -33,8 +35,6 @@ from fegear.results import forecasts
 from fegear.results.forecasts import RING
 
 if TYPE_CHECKING:
-    from fegear.case.built.solid_influence import SolidGearToSolve
-    from fegear.case.built.tooth_influence import GearToSolve
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Influence
     from fegear.fem.solid.influence import SolidInfluence

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import first_of_largest
+from fegear.base.arrays import Array, first_of_largest
 from fegear.case.built.tooth_influence import solution_settings
 from fegear.engine.citation import citing
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
 from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.forecasts import HERTZ, PATCH, RING
 from fegear.results.gear.drawing import tooth_figure
@@ -26,10 +26,7 @@ from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_o
 from fegear.results.gear.solved_gear import needs_solution
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.engine.outcome import Value
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.table import StiffnessTable
     from fegear.fem.solid.table import SolidTable
     from fegear.geometry.gear import Gear

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.base.arrays import first_of_largest
+from fegear.base.arrays import Array, Index, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.engine.citation import Citation, citing
@@ -26,8 +26,8 @@ from fegear.engine.declared import (
 )
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
 from fegear.engine.figure.items import Curve, HeatMap, Skin
-from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, stiffness_inputs
@@ -35,10 +35,7 @@ from fegear.results.gear.solved_gear import needs_solid_solution
 from fegear.results.gear.stiffness import compliance_errors, tolerance_remarks
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
     from fegear.case.reading import Scene
-    from fegear.engine.outcome import Value
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.field import SolidField
     from fegear.fem.solid.table import SolidTable

@@ -8,27 +8,23 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.case.reading import Scene
+from fegear.contact.unloaded.contact_lines import LineContact, LineLength
+from fegear.contact.unloaded.pair import HelicalPair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark, Surface, outline, ramp
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.results.helical.drawn_tooth_contact import solid_tooth
 from fegear.results.helical.tooth_contact import check_misalignment
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.contact.unloaded.contact_lines import LineContact, LineLength
-    from fegear.contact.unloaded.pair import HelicalPair
-    from fegear.engine.stage import Upstream, Work
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,29 +9,22 @@ import dataclasses
 import math
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.case.reading import Scene
+from fegear.contact.unloaded.pair import HelicalPair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
-from fegear.engine.figure.items import Item, Mark, Points, Surface, outline, polylines
+from fegear.engine.figure.items import Curve, Item, Mark, Points, Surface, outline, polylines
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack_cutter import RackCutter
 from fegear.results.helical.drawn_tooth_contact import section_figures
 from fegear.results.helical.tooth_contact import check_misalignment
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.contact.unloaded.pair import HelicalPair
-    from fegear.engine.figure.items import Curve
-    from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.rack_cutter import RackCutter
-
 
 #: Places across a flank, and heights (shares of the face width) at which its generation is followed.
 _PLACES, _HEIGHTS = 41, (-0.5, 0.0, 0.5)

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from fegear.dynamics.helical_pair.model import P, ReducedPairModel
+from fegear.base.arrays import Array
+from fegear.dynamics.helical_pair.modal_indices import ModeTable
+from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.helical_pair.modal_indices import ModeTable
-    from fegear.dynamics.helical_pair.model import HelicalPairModel
 
 #: Coordinates of q as bars have them.
 _NAMES = ("y", "z", "bθ_{x}", "aθ_{y}", "aθ_{z}")

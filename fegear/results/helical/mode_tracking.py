@@ -7,35 +7,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.case.built.helical_pair import helical_pair_inputs, model_at, own_value
+from fegear.case.built.helical_pair import HelicalPairInputs, helical_pair_inputs, model_at, own_value
 from fegear.case.part import at
+from fegear.case.reading import Scene
+from fegear.case.transmissibility import TransmissibilityPart
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.mode_following import FollowedModes, Meeting
+from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.helical.transmissibility import LAMBDA, ends, mesh_needs, own_mesh, resolved_response
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.case.built.helical_pair import HelicalPairInputs
-    from fegear.case.reading import Scene
-    from fegear.case.transmissibility import TransmissibilityPart
-    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
-    from fegear.dynamics.helical_pair.mode_following import FollowedModes, Meeting
-    from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
-    from fegear.engine.stage import Upstream, Work
-
-    Model = HelicalPairModel | ReducedPairModel
+Model = HelicalPairModel | ReducedPairModel
 
 
 @dataclass(frozen=True, eq=False)

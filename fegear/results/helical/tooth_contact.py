@@ -13,7 +13,7 @@ from fegear.case.part import at
 from fegear.contact.unloaded.manufacture import lead_angle_error_of_cut, lead_error_as_cut
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.helical.drawn_tooth_contact import tooth_contact_figures
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.contact.unloaded.predesign import Predesign
     from fegear.contact.unloaded.tooth_contact import PairContact, ToothContact
-    from fegear.engine.stage import Upstream, Work
 
 
 #: How far past an end of the face, over its width, an ellipse may reach without a remark.

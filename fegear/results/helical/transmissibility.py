@@ -6,42 +6,33 @@ Figures of a helical pair's frequency response: every entry of the mesh force tr
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
-from fegear.case.built.helical_pair import full_matrix_frequencies, helical_pair_inputs, mesh_of_pair
+from fegear.case.built.helical_pair import HelicalPairInputs, full_matrix_frequencies, helical_pair_inputs, mesh_of_pair
 from fegear.case.part import at
-from fegear.dynamics.helical_pair.model import COORDINATES
+from fegear.case.reading import Scene
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.modal_indices import ModeTable, RankedMode
+from fegear.dynamics.helical_pair.model import COORDINATES, HelicalPairModel, ReducedPairModel
+from fegear.dynamics.helical_pair.transmissibility import ReducedTransmissibility, Transmissibility
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.helical.mode_shapes import mode_shape_figures
-from fegear.results.pair.mesh_stiffness_matrix import mesh_stiffness_of, needs_mesh_stiffness
+from fegear.results.pair.mesh_stiffness_matrix import MeshStiffnessData, mesh_stiffness_of, needs_mesh_stiffness
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.case.built.helical_pair import HelicalPairInputs
-    from fegear.case.reading import Scene
-    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
-    from fegear.dynamics.helical_pair.modal_indices import ModeTable, RankedMode
-    from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
-    from fegear.dynamics.helical_pair.transmissibility import ReducedTransmissibility, Transmissibility
-    from fegear.engine.stage import Task, Upstream, Work
-    from fegear.results.pair.mesh_stiffness_matrix import MeshStiffnessData
-
-    Response = Transmissibility | ReducedTransmissibility
-    Entry = tuple[str, Array]
+Response = Transmissibility | ReducedTransmissibility
+Entry = tuple[str, Array]
 
 
 #: Even points from which a drawn response starts; it is refined wherever it bends.

@@ -14,7 +14,7 @@ from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import HeatMap, few
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.pair.load_distribution import distributed_pairs
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.contact.wide.pair_history import ContactPattern
-    from fegear.engine.stage import Upstream, Work
 
 #: Loads that are drawn.
 _DRAWN = 4

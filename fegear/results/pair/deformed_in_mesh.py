@@ -2,36 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import check_relief
 from fegear.case.effects import PLANE_EFFECTS
+from fegear.case.reading import Scene
+from fegear.contact.plane.moved_outlines import MovedOutline
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage, Task
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.outline_motion import OutlineMotion
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
 from fegear.results.gear.solved_gear import of_solved_gear, solution_of
 from fegear.results.pair.loaded_teeth import loaded_pair, needs_gears, plane_pairs
-from fegear.results.pair.stress_in_mesh import mesh_inputs
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.contact.plane.moved_outlines import MovedOutline
-    from fegear.engine.stage import Upstream, Work
-    from fegear.fem.plane.influence import Influence
-    from fegear.fem.plane.outline_motion import OutlineMotion
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.results.pair.stress_in_mesh import MeshInputs
+from fegear.results.pair.stress_in_mesh import MeshInputs, mesh_inputs
 
 #: Teeth behind the one whose pair touches first and ahead of it that a picture shows.
 _BEHIND, _AHEAD = 3, 4

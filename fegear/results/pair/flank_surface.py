@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.case.built.pair_surface import pair_surface, tip_reliefs
+from fegear.case.built.pair_surface import PairSurface, pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results.pair.flank_surface_tables import surface_figures, surface_tables, surface_values
 from fegear.results.pair.loaded_teeth import (
     TEETH_EFFECTS,
@@ -24,10 +24,8 @@ from fegear.results.pair.loaded_teeth import (
 )
 
 if TYPE_CHECKING:
-    from fegear.case.built.pair_surface import PairSurface
     from fegear.case.reading import Scene
     from fegear.contact.surface import FlankSurface
-    from fegear.engine.stage import Upstream, Work
     from fegear.formulas.iso6336.part20_flash import FlashTemperatures
     from fegear.formulas.iso6336.part21_integral import IntegralTemperature
     from fegear.formulas.iso6336.part22_micropitting import RatedFilm

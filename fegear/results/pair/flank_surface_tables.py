@@ -18,14 +18,13 @@ from fegear.engine.figure.items import Curve, HeatMap, Mark, Skin
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
 from fegear.geometry.outline import tooth_outline, turned
-from fegear.geometry.pair import MEMBERS, specific_sliding
+from fegear.geometry.pair import MEMBERS, GearPair, Member, specific_sliding
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.case.built.pair_surface import PairSurface
     from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.geometry.pair import GearPair, Member
     from fegear.results.pair.flank_surface import FlankSurfaceData
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.case.built.pair_surface import check_speed, pair_friction, pair_speed
+from fegear.case.built.pair_surface import PairFriction, check_speed, pair_friction, pair_speed
 from fegear.case.built.train import build_train, check_train, train_inputs, train_part
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.contact.tooth_loss import ToothLoss
@@ -21,7 +21,7 @@ from fegear.engine.declared import column_of, column_over, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.pair.loaded_teeth import (
@@ -38,10 +38,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.base.arrays import Array
-    from fegear.case.built.pair_surface import PairFriction
     from fegear.case.reading import Scene
     from fegear.contact.surface import FrictionLaw
-    from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import GearPair
 
 

@@ -14,7 +14,7 @@ from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, error_column, value_of
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.wide.load_factors import RootFactors
     from fegear.contact.wide.loaded_pair import LoadedWidePair
-    from fegear.engine.stage import Task, Upstream, Work
     from fegear.geometry.pair import Member
 
 #: Seconds of a roll position: both gears, both solutions, three loads.

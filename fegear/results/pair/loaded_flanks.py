@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
+from fegear.case.built.loaded_flanks import FlanksToLoad, check_flanks_to_load, flanks_to_load
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import on_shafts
@@ -14,8 +14,8 @@ from fegear.case.effects import GAPS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import Change, Neglected
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Task
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.plausible import heavy_load
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
@@ -25,16 +25,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.base.solution_cache import SolutionCache
-    from fegear.case.built.loaded_flanks import FlanksToLoad
     from fegear.case.reading import Scene
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
     from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.contact.wide.over_pitch import Stated
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.solid.flank_body import FlankBody
-    from fegear.geometry.pair import Member
 
 #: Where the shafts of a case come from (`fegear.results.shafts.loaded_shafts`).
 _SHAFTS = Task("loaded-shafts", "all")

@@ -14,10 +14,10 @@ from fegear.case.built.loaded_pair import (
     shifted_sources,
 )
 from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks, whole_ratio_remarks
-from fegear.case.built.pair_inputs import pair_inputs
-from fegear.case.effects import AT_REST, PLANE_EFFECTS
+from fegear.case.built.pair_inputs import PairInputs, pair_inputs
+from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 from fegear.results.pair.loaded_teeth import plane_pairs
@@ -25,14 +25,11 @@ from fegear.results.pair.loaded_teeth import plane_pairs
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.case.built.pair_inputs import PairInputs
-    from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.loaded_teeth import Answer
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.citation import Citation
-    from fegear.engine.stage import Task, Upstream, Work
 
 #: What the results that load a pair stand on; those of the train stand on its transmission error.
 _ANSWERS: dict[str, Answer] = {

@@ -19,8 +19,8 @@ from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis
 from fegear.engine.figure.items import Mark, few, ramp
-from fegear.engine.stage import Task
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Task, Upstream
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution
 
@@ -31,9 +31,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.loaded_teeth import LoadedTeeth as LoadedTeeth  # noqa: PLC0414  (for the window)
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.engine.stage import Upstream
     from fegear.engine.table import Column
-    from fegear.geometry.pair import GearPair, Member
 
 #: Abscissa of figures over one base pitch.
 BASE_PITCH = Axis("roll position over one base pitch", "mm")

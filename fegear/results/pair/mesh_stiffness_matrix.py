@@ -17,7 +17,7 @@ from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Subject, Task
+from fegear.engine.stage import Forecast, Stage, Subject, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import wide_pairs
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.contact.wide.mesh_matrix import MeshStiffness
-    from fegear.engine.stage import Upstream, Work
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, err
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.drawing import path_marks
@@ -42,9 +42,7 @@ if TYPE_CHECKING:
     from fegear.contact.loaded_teeth import LoadedTeeth, RootStressInMesh
     from fegear.contact.plane.tooth_stress import ToothStress
     from fegear.contact.wide.root_stress import StressOverFace
-    from fegear.engine.stage import Task, Upstream, Work
     from fegear.fem.plane.influence import Side
-    from fegear.geometry.pair import Member
 
 #: Of a pair with a width: seconds to begin with, and of a roll position, both gears and both solutions, for each load.
 _WIDE, _WIDE_POSITION = 0.5, 0.05

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays, first_of_largest
+from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, root_stress_source
 from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage, Task
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
@@ -40,13 +40,10 @@ from fegear.results.pair.loaded_teeth import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.base.arrays import Array, Index
     from fegear.case.reading import Scene
     from fegear.contact.wide.root_stress import RootedLines
-    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
-    from fegear.geometry.pair import GearPair, Member
 
 
 _SIDES: tuple[Side, ...] = ("tension", "compression")

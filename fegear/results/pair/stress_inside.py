@@ -6,31 +6,25 @@ superposition where it is drawn, so that a load or a relief that is moved asks f
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
-from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.case.reading import Scene
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage, Task
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.inner_stress import InnerStress
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
 from fegear.results.gear.solved_gear import of_solved_gear
 from fegear.results.pair.loaded_teeth import gears_of, plane_pairs
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.engine.stage import Upstream, Work
-    from fegear.fem.plane.influence import Influence
-    from fegear.fem.plane.inner_stress import InnerStress
-    from fegear.geometry.pair import GearPair, Member
 
 #: Neighbours whose stress under a load is known.
 _REACH = 3

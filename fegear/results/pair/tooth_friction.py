@@ -14,7 +14,7 @@ from fegear.engine.declared import axis_of, column_of, column_over, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, few, ramp
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Need, Stage
+from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.train.gear_train import (
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.train.friction import FrictionOverPath
     from fegear.dynamics.train.gear_train import TrainMesh
-    from fegear.engine.stage import Upstream, Work
 
 #: Each speed [s].
 _SPEED = 0.01

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES
+from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES, ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, error_column, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
+from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
 from fegear.engine.figure.items import Bars, Stems
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import (
@@ -30,18 +30,14 @@ from fegear.results.pair.loaded_teeth import (
     pitch_marks,
     under_load,
 )
-from fegear.results.pair.mark_transmission_error import mark_data, present_mark
+from fegear.results.pair.mark_transmission_error import MarkData, mark_data, present_mark
 from fegear.results.pair.mesh_table import mesh_table
 
 if TYPE_CHECKING:
     from fegear.case.loading import TransmissionErrorPart
     from fegear.case.reading import Scene
     from fegear.contact.fourier import FourierSeries
-    from fegear.contact.loaded_teeth import ErrorOverPitch
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.engine.figure.figure import DeferredFigure
-    from fegear.engine.stage import Upstream, Work
-    from fegear.results.pair.mark_transmission_error import MarkData
 
 #: One engagement solved over a base pitch [s], what corners off the path add to it, and a pair with a width.
 _ERROR, _ERROR_CORNERS, _WIDE = 0.015, 0.1, 0.1

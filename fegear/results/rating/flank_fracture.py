@@ -21,11 +21,11 @@ from fegear.engine.declared import column_of, column_over, columns_of, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
-from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE
+from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE, Exposure
 from fegear.formulas.iso6336.part5_case_depth import recommended
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.results.rating.rating import given, rated
 from fegear.results.rating.shared_load import NotRated, external_rated_pairs, needs_shares, with_shares
 
@@ -35,10 +35,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
-    from fegear.engine.stage import Upstream, Work
     from fegear.formulas.hardened_case import HardenedCase
-    from fegear.formulas.iso6336.part4_flank_fracture import Exposure
-    from fegear.geometry.pair import Member
 
 
 #: Places from A to E besides the named points, and depths.

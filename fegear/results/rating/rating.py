@@ -17,7 +17,7 @@ from fegear.case.effects import WIDE_EFFECTS
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution, solid_solution_of, solution_of
@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.contact.wide.rated import Computed
-    from fegear.engine.stage import Upstream, Work
     from fegear.formulas.agma.agma2101 import AgmaRating
     from fegear.formulas.iso6336.conditions import Conditions, Factor, PairRating, Replacement
     from fegear.formulas.iso6336.rated import Both, Duty

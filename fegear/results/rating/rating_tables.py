@@ -21,7 +21,7 @@ from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
 from fegear.formulas.symbols import AGMA_2101, ISO_6336
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from fegear.formulas.iso6336.part6_spectrum import Bin
     from fegear.formulas.iso6336.rated import Both
     from fegear.formulas.iso6336.safety import SpectrumRating
-    from fegear.geometry.pair import Member
     from fegear.results.rating.rating import RatingData
 
 

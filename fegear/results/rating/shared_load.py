@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from fegear.case.planetary import MESHES, set_of_pair, set_pair, set_that_shares
-from fegear.engine.stage import Task
+from fegear.engine.stage import Task, Upstream
 
 if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
-    from fegear.engine.stage import Upstream
     from fegear.results.planetary.planet_root_stress import PlanetStress
     from fegear.results.rating.rating import RatingInputs
 

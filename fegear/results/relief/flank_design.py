@@ -19,8 +19,8 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Points, ramp
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Task
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.design.flanks.flank_design import FlankDesign, FlankDesignTask, FlankState
     from fegear.design.flanks.forms import ReliefGrid
-    from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.pair import GearPair, Member
 
 
 #: The gears' own reliefs are what the design replaces.

@@ -11,14 +11,13 @@ from fegear.contact.wide.lines import ContactLines
 from fegear.engine.declared import column_of, column_over, error_column, value_of
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.design.flanks.flank_design import FlankDesign
     from fegear.design.flanks.forms import GroundRelief
-    from fegear.geometry.pair import GearPair, Member
     from fegear.results.relief.flank_design import FlankDesignData
 
 

@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.contact.loaded_teeth import POSITIONS
+from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth
 from fegear.engine.figure.figure import Axis, Figure, Panel
-from fegear.engine.figure.items import Curve, Points
+from fegear.engine.figure.items import Curve, Item, Points
 from fegear.results.pair.loaded_teeth import BASE_PITCH, drawn_loads, pitch_marks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
-    from fegear.contact.loaded_teeth import LoadedTeeth
     from fegear.contact.plane.engagement import Loaded
-    from fegear.engine.figure.items import Item
     from fegear.geometry.pair import GearPair
 
 #: Loads of a family up to the greatest, and roll positions of the curve that follows a slider.

@@ -5,28 +5,24 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown
 from fegear.case.loading import LoadingPart
+from fegear.case.reading import Scene
+from fegear.design.loading import LoadingFunction, SlopeTradeOff, ToothResponse
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, column_over, repeated, tiled, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark, few, ramp
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.design.loading import LoadingFunction, SlopeTradeOff, ToothResponse
-    from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 #: Positions on a ramp and over the path.
 _RAMP, _PATH = 201, 401

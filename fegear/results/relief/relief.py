@@ -15,17 +15,17 @@ import numpy as np
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
-from fegear.case.built.pair_inputs import gear_name, pair_inputs
+from fegear.case.built.pair_inputs import PairInputs, gear_name, pair_inputs
 from fegear.case.design import DesignPart
-from fegear.case.effects import AT_REST
+from fegear.case.effects import AT_REST, EffectsPart
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, Zone
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, needs_teeth, pitch_marks
@@ -43,8 +43,6 @@ from fegear.results.relief.relief_tables import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from fegear.case.built.pair_inputs import PairInputs
-    from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.loading import LoadingFunction
@@ -52,9 +50,7 @@ if TYPE_CHECKING:
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.run import Results
-    from fegear.engine.stage import Upstream, Work
     from fegear.engine.table import Table
-    from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True)

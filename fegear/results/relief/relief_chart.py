@@ -14,7 +14,7 @@ from fegear.engine.declared import axis_of, column_of, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.charts import Metric, ReliefChart, Robustness
     from fegear.design.tip_relief.grindable import TipReliefPair
-    from fegear.engine.stage import Upstream, Work
 
 
 #: Abscissas of a chart, and how its single best is found.

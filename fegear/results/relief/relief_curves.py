@@ -15,7 +15,7 @@ from fegear.engine.declared import column_of, column_over, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, ramp
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Reads, Stage
+from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import needs_teeth
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.plane.transmission_error import TransmissionError
-    from fegear.engine.stage import Upstream, Work
 
 _POSITIONS, _HARMONICS, _TOLD = 200, 12, 4
 #: Reliefs that one figure still tells apart.

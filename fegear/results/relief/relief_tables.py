@@ -10,7 +10,7 @@ import numpy as np
 from fegear.engine.declared import column_of, column_over, columns_of, error_column, value_of
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.root_stress_loading import StressOptimum
     from fegear.design.tip_relief.grindable import TipReliefPair
-    from fegear.geometry.pair import GearPair, Member
     from fegear.geometry.relief import Shape
     from fegear.results.relief.relief import ReliefInputs
 

@@ -17,11 +17,18 @@ from fegear.case.built.flank_errors import (
     tolerance_part,
     untold,
 )
-from fegear.case.built.loaded_flanks import flanks_to_load
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, pair_inputs, root_stress_source
+from fegear.case.built.loaded_flanks import FlanksToLoad, flanks_to_load
+from fegear.case.built.pair_inputs import (
+    FINITE_ELEMENTS,
+    PairInputs,
+    check_formulas,
+    gear_name,
+    pair_inputs,
+    root_stress_source,
+)
 from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.built.tooth_influence import gear_to_solve
-from fegear.engine.stage import Forecast
+from fegear.engine.stage import Forecast, Task, Upstream
 from fegear.geometry.pair import MEMBERS
 from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks
@@ -29,13 +36,10 @@ from fegear.results.pair.loaded_teeth import check_teeth, loaded_pair, needs_gea
 from fegear.results.pair.root_stress_history import needs_sources, stress_sources
 
 if TYPE_CHECKING:
-    from fegear.case.built.loaded_flanks import FlanksToLoad
-    from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.reading import Scene
     from fegear.case.studies import TolerancePart
     from fegear.design.robustness.deviated_pair import Bench, DrawBench, FlankBench
     from fegear.design.robustness.tolerance_draws import Kind, Limits
-    from fegear.engine.stage import Task, Upstream
 
 #: Kinds that are drawn of plane teeth, and of teeth with a width, unless the case names others.
 _PLANE: tuple[Kind, ...] = ("centre-distance", "profile-slope", "profile-form", "pitch")

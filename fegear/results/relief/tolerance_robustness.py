@@ -18,10 +18,11 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Stage, Upstream, Work
 from fegear.results.forecasts import HERTZ
 from fegear.results.pair.loaded_teeth import TEETH_EFFECTS, effects_of_teeth
 from fegear.results.relief.tolerance_benches import (
+    DrawInputs,
     check_draws,
     draw_inputs,
     forecast_draws,
@@ -53,9 +54,7 @@ if TYPE_CHECKING:
     from fegear.design.robustness.deviated_pair import Bench, DrawBench
     from fegear.design.robustness.tolerance_draws import Deviations
     from fegear.design.tip_relief.robust import RobustRelief
-    from fegear.engine.stage import Upstream, Work
     from fegear.geometry.relief import Relief
-    from fegear.results.relief.tolerance_benches import DrawInputs
 
 #: Beside the seed of the case, that of the draws over which reliefs are searched for.
 _SEARCHED = 1

@@ -10,13 +10,21 @@ import numpy as np
 
 from fegear.base.errors import FegearError, InputError
 from fegear.base.shown import shown
-from fegear.case.built.pair_inputs import pair_inputs
-from fegear.case.built.tooth_influence import gear_to_solve
-from fegear.case.built.train import assemble, motion_inputs, steady_motions, train_inputs, train_part
+from fegear.case.built.pair_inputs import PairInputs, pair_inputs
+from fegear.case.built.tooth_influence import GearToSolve, gear_to_solve
+from fegear.case.built.train import (
+    MotionInputs,
+    TrainInputs,
+    assemble,
+    motion_inputs,
+    steady_motions,
+    train_inputs,
+    train_part,
+)
 from fegear.dynamics.train.dynamic_factor import FactorLine, factor_between, factor_line
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Need, Stage, Task
+from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import loaded_pair
@@ -26,14 +34,10 @@ from fegear.results.train.motion import check_motion
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.case.built.pair_inputs import PairInputs
-    from fegear.case.built.tooth_influence import GearToSolve
-    from fegear.case.built.train import MotionInputs, TrainInputs
     from fegear.case.dynamics import DesignChartPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.engagement import Engagement
     from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.engine.stage import Upstream, Work
     from fegear.geometry.relief import Shape
 
 #: Harmonics of the static transmission error that the chart keeps (TM-89901, Fig. 7).

@@ -8,22 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.train import motion_inputs, train_part
+from fegear.case.built.train import MotionInputs, motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Table
 from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
 
 if TYPE_CHECKING:
-    from fegear.case.built.train import MotionInputs
     from fegear.case.reading import Scene
     from fegear.dynamics.train.charts import SpeedChart
     from fegear.dynamics.train.tooth_force import Pull
-    from fegear.engine.stage import Upstream, Work
     from fegear.results.train.motion import SweepData
 
 

@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Complex
+from fegear.case.reading import Scene
+from fegear.dynamics.train.gear_train import GearTrain
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_train, the_train
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.case.reading import Scene
-    from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.engine.stage import Upstream, Work
 
 #: Most meshes of a train whose pairs each have a figure and asymptotes of their own.
 _MOST_MESHES = 3

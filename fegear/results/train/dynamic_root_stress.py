@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
 from fegear.case.built.train import train_part
+from fegear.case.reading import Scene
 from fegear.dynamics.train.single_tooth import ToothRootStress
+from fegear.dynamics.train.tooth_force import ToothForce
 from fegear.engine.citation import Citation
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Table
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import solution_of
@@ -33,16 +35,7 @@ from fegear.results.pair.root_stress_history import (
     told,
 )
 from fegear.results.train.gear_train import RPM, needs_one_speed, needs_plane_teeth, own_meshes
-from fegear.results.train.tooth_force import over_time
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from fegear.case.reading import Scene
-    from fegear.dynamics.train.tooth_force import ToothForce
-    from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.pair import Member
-    from fegear.results.train.tooth_force import ToothForceData
+from fegear.results.train.tooth_force import ToothForceData, over_time
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,11 @@ from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.neglected_effects import percent
 from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
 from fegear.case.effects import PLANE_EFFECTS
-from fegear.dynamics.train.gear_train import a_drives
+from fegear.dynamics.train.gear_train import GearTrain, a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import loaded_pair
@@ -31,9 +31,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.excitation import MeshExcitation
-    from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.tooth_force import Pull
-    from fegear.engine.stage import Upstream, Work
 
 
 #: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.

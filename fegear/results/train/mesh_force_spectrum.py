@@ -13,7 +13,7 @@ from fegear.engine.declared import axis_of, column_of, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Points, Stems
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Reads, Stage
+from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, gear_train, meshes, needs_one_speed, needs_train, pull_remarks
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.spectra import MeshForceSpectrum
     from fegear.dynamics.train.tooth_force import Pull
-    from fegear.engine.stage import Upstream, Work
 
 
 #: Harmonics of the waterfall at most.

@@ -11,7 +11,7 @@ from fegear.case.built.neglected_effects import NeglectedInMotion, motion_remark
 from fegear.case.built.train import MotionInputs, motion_inputs, steady_motions
 from fegear.engine.citation import Citation
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_train, the_train
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.engine.stage import Upstream, Work
 
 _RPM = 30.0 / math.pi
 

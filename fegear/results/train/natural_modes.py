@@ -4,28 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.case.dynamics import DynamicsPart
+from fegear.dynamics.train.gear_train import GearTrain
+from fegear.dynamics.train.modes import Campbell, Modes
 from fegear.engine.colours import DASHES
 from fegear.engine.declared import column_of, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Reads, Stage
+from fegear.engine.stage import Reads, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.train.gear_train import TRAIN_SOURCES, gear_train, needs_train, the_train
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.case.dynamics import DynamicsPart
-    from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.dynamics.train.modes import Campbell, Modes
-    from fegear.engine.stage import Upstream, Work
-
 
 _RPM = 30.0 / math.pi
 #: A share of energy below this is none.

@@ -12,7 +12,7 @@ from fegear.engine.declared import axis_of, column_of, columns_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Reads, Stage
+from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, own_meshes, pull_remarks
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.single_tooth import MeshForce
     from fegear.dynamics.train.tooth_force import Pull, ToothForce
-    from fegear.engine.stage import Upstream, Work
 
 
 @dataclass(frozen=True)

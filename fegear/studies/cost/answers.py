@@ -22,7 +22,7 @@ from fegear.case.built.train import motion_inputs, motion_model, train_inputs
 from fegear.contact.plane.closed_form_compliance import ConstantCompliance, closed_form_compliance
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.table_compliance import table_sources
-from fegear.contact.plane.transmission_error import transmission_error
+from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.dynamics.train.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
@@ -30,7 +30,7 @@ from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 from fegear.formulas.outcome import attempt
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source
-from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.train.gear_train import compute_train
 from fegear.studies.cost.ladder import ISO_STIFFNESS
 
@@ -40,10 +40,8 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import GearCompliance
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.fem.plane.gear import GearInfluence
-    from fegear.geometry.pair import Member
     from fegear.studies.cost.asked import Asked
 
 

@@ -15,16 +15,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.fourier import fourier_series
-from fegear.contact.plane.transmission_error import transmission_error
+from fegear.contact.fourier import FourierSeries, fourier_series
+from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solver_of
-from fegear.fem.solid.table import band_numbers, bands_of_table
+from fegear.fem.solid.table import BandNumbers, band_numbers, bands_of_table
 from fegear.results.gear.load_positions import face_positions
 from fegear.studies.cost.answers import (
     HARMONICS,
     FiniteElements,
+    Quantity,
+    Source,
     answer,
     factor_at,
     largest_force,
@@ -33,21 +35,16 @@ from fegear.studies.cost.answers import (
     speed_looked_at,
     train_of,
 )
-from fegear.studies.cost.result import make_knob, timed
+from fegear.studies.cost.result import Knob, make_knob, timed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from fegear.base.arrays import Array
-    from fegear.contact.fourier import FourierSeries
     from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.transmission_error import TransmissionError
-    from fegear.fem.solid.table import BandNumbers
-    from fegear.studies.cost.answers import Quantity, Source
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.ladder import Configuration, Ladder
     from fegear.studies.cost.measure import Found
-    from fegear.studies.cost.result import Knob
 
 
 #: Widths in equal ratio: their successive differences fall at the order of the error itself.

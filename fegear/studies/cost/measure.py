@@ -21,25 +21,27 @@ from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.built.tooth_influence import gear_to_solve, needed_reach, solve_influence_functions
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.fem.plane.gear import GearInfluence
-from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.results.pair.loaded_flanks import load_flanks
 from fegear.studies.cost.answers import (
     CaseTable,
     ComplianceFormula,
     FiniteElements,
     Miss,
+    Quantity,
+    Source,
     StressFormula,
     answer,
     miss,
     pair_compliance,
     without_neighbours,
 )
-from fegear.studies.cost.ladder import FlankConfiguration
-from fegear.studies.cost.result import NOTHING, Measured, Seconds, timed
+from fegear.studies.cost.ladder import Configuration, FlankConfiguration, Ladder
+from fegear.studies.cost.result import NOTHING, Knob, Measured, Seconds, timed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -47,16 +49,11 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.fem.plane.influence import Influence
     from fegear.fem.plane.settings import MeshSettings
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import Member
-    from fegear.studies.cost.answers import Quantity, Source
     from fegear.studies.cost.asked import Asked
-    from fegear.studies.cost.ladder import Configuration, Ladder
-    from fegear.studies.cost.result import Knob
 
 
 #: Gauss points of the reference's transmission error; a run takes 16.

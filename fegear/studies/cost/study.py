@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
 
 from fegear.base.one_thread import one_thread
 from fegear.case.built.loaded_flanks import flanks_to_load
 from fegear.case.built.solid_influence import seconds_of_solid_gear
 from fegear.case.built.tooth_influence import seconds_of_gear
-from fegear.engine.run import Silence
+from fegear.engine.run import Silence, Watcher
 from fegear.fem.solid.settings import SolidSettings
-from fegear.studies.cost.answers import CaseTable, answer
+from fegear.studies.cost.answers import CaseTable, FiniteElements, Source, answer
+from fegear.studies.cost.asked import Asked
 from fegear.studies.cost.knobs import ladder_knobs, pair_knobs, solid_knobs
-from fegear.studies.cost.ladder import flank_ladder, flank_seconds, make_ladder
+from fegear.studies.cost.ladder import Ladder, flank_ladder, flank_seconds, make_ladder
 from fegear.studies.cost.measure import (
     Found,
     answered,
@@ -28,14 +29,6 @@ from fegear.studies.cost.measure import (
     solve_gears,
 )
 from fegear.studies.cost.result import CostResults
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from fegear.engine.run import Watcher
-    from fegear.studies.cost.answers import FiniteElements, Source
-    from fegear.studies.cost.asked import Asked
-    from fegear.studies.cost.ladder import Ladder
 
 #: What answering takes from a solved gear, about [s].
 _ANSWER_SECONDS = {"te-peak-to-peak": 0.15, "tooth-force": 1.1, "dynamic-factor": 2.0}

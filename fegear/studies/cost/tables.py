@@ -12,17 +12,15 @@ import numpy as np
 
 from fegear.base.units import from_si
 from fegear.engine.figure.figure import Axis, Figure, Panel
-from fegear.engine.figure.items import Curve, Mark, Points, Zone
+from fegear.engine.figure.items import Curve, Item, Mark, Points, Zone
 from fegear.engine.table import Column, Table
 from fegear.studies.cost.ladder import FlankConfiguration
-from fegear.studies.cost.result import ALL, TOLERANCES
+from fegear.studies.cost.result import ALL, TOLERANCES, CostResults, Measured
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from fegear.engine.figure.items import Item
     from fegear.studies.cost.answers import Quantity
-    from fegear.studies.cost.result import CostResults, Measured
 
 
 def cost_table(results: CostResults) -> Table:
