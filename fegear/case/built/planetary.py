@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.part import at
-from fegear.case.planetary import angles_of, set_pair, set_teeth
+from fegear.case.planetary import MESHES, angles_of, set_pair, set_teeth
 from fegear.dynamics.planetary.kinematics import Running, running
 from fegear.dynamics.planetary.phases import Phases, mesh_phases
 from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet
@@ -49,6 +49,8 @@ class SetInputs:
         Stiffness of the meshes "sun" and "ring" that the case gives [N/m].
     at_speed : bool
         Whether a speed is given.
+    base_twist : float
+        tan(beta_b) of the sun, positive for a right hand; zero of spur sets.
     name : str
     """
 
@@ -59,6 +61,7 @@ class SetInputs:
     sun_torque: float
     given: dict[str, tuple[float, ...] | None]
     at_speed: bool
+    base_twist: float
     name: str = field(compare=False)
 
 
@@ -77,11 +80,12 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
     """
     part = planetary_part(scene, name)
     sun, planet, pair = scene.gears[part.sun], scene.gears[part.planet], scene.pairs[set_pair(name, "sun")]
-    if sun.helix_angle:
-        raise InputError(
-            f"planetary.{name}.sun", f'"{part.sun}"', "is helical, and sets of helical gears are not known yet",
-            "give spur gears",
-        )  # fmt: skip
+    for one in (set_pair(name, mesh) for mesh in MESHES):
+        if sun.helix_angle and scene.pairs.get(one, pair).axial_offset:
+            raise InputError(
+                f"pair.{one}.axial_offset", "(given)", "moves the phase of one mesh of a helical set",
+                "leave it out: faces of a set stand middle to middle",
+            )  # fmt: skip
     tooth, teeth = planet.tooth, set_teeth(scene.case, part)
     at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
     half = float(tooth.half_thickness_angle(at_pitch)) + float(inv(pair.working_pressure_angle))
@@ -103,7 +107,8 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
     meshes = {"sun": part.stiffness.sun_mesh, "ring": part.stiffness.ring_mesh}
     given = {mesh: None if one is None else tuple(one) for mesh, one in meshes.items()}
     return SetInputs(
-        found, run, phases, model, teeth.sun_torque(part), given, part.speed is not None, name
+        found, run, phases, model, teeth.sun_torque(part), given, part.speed is not None,
+        sun.twist * sun.base_radius, name,
     )  # fmt: skip
 
 

@@ -131,6 +131,41 @@ def running(
 
 
 @dataclass(frozen=True)
+class AxialForces:
+    """What helical teeth do along the axis where all planets carry alike; heights count toward the observer.
+
+    Parameters
+    ----------
+    sun : float
+        On the sun by all planets [N]. The ring takes the opposite, and the carrier nothing.
+    tilting : float
+        On each planet by its two meshes, about the tangent of its path counter-clockwise [N m].
+    """
+
+    sun: float = shown("N", "of all planets on the sun along the axis, toward the observer", name="axial_force")
+    tilting: float = shown(
+        "N.m", "tilts each planet about the tangent of its path, where all carry alike", name="tilting_moment"
+    )
+
+
+def axial_forces(found: PlanetarySet, run: Running, base_twist: float) -> AxialForces:
+    """Forces along the axis, by the principle of the screw: without friction F_z = -(tan(beta_b) / r_b) M on any gear.
+
+    A planet's two meshes push it along the axis with opposite forces, which act at the pitch points of both.
+
+    Parameters
+    ----------
+    found : PlanetarySet
+    run : Running
+    base_twist : float
+        tan(beta_b) of the sun, positive for a right hand.
+    """
+    on_sun = base_twist * run.torque["sun"] / found.base_radius("sun")
+    arm = found.base_radius("planet") * (1.0 / math.cos(found.sun_angle) + 1.0 / math.cos(found.ring_angle))
+    return AxialForces(on_sun, -on_sun / found.count * arm)
+
+
+@dataclass(frozen=True)
 class Passing:
     """How often things meet [Hz].
 

@@ -103,21 +103,42 @@ class LawSprings:
 
     def at(self, place: Array) -> MeshSprings:
         """Springs at places [base pitches from the pitch point], shape (Q,)."""
-        few = [one for one in _LEVELS if one <= self.planets] + [one for one in _LEVELS if one > self.planets][:1]
-        force = self.load * np.array(few)
+        force, at_mean = forces(self.load, self.planets)
         grid = self.engagement.grid(place * self.engagement.pair.base_pitch, again=False)
         state = self.engagement.solve(grid, force)
-        approach, at_mean = state.transmission_error, few.index(1.0)
-        first = approach[:, :1] - force[0] / state.local_stiffness[:, :1]
-        approach, force = np.hstack([first, approach]), np.append(0.0, force)
-        slope = np.diff(force) / np.diff(approach, axis=1)
-        added = np.diff(slope, axis=1, prepend=0.0)
-        added = np.where(added > _NOTHING * slope[:, -1:], added, 0.0)  # teeth never soften: less is round-off
         mean = state.transmission_error[:, at_mean]
-        alone = self.engagement.solve(grid, force[at_mean + 1 : at_mean + 2])
+        alone = self.engagement.solve(grid, force[at_mean : at_mean + 1])
         off = [solve_again(other, alone).transmission_error[:, 0] - mean for other in self.shifted]
         changes = np.array(off).reshape(len(self.shifted), place.size)
-        return MeshSprings(added, approach[:, :-1], force[:-1], changes, _bent(force, approach))
+        return springs(force, state.transmission_error, state.local_stiffness[:, 0], changes)
+
+
+def forces(load: float, planets: int) -> tuple[Array, int]:
+    """Mesh forces at which a law is solved [N], ascending, and which of them is that of an equal share."""
+    few = [one for one in _LEVELS if one <= planets] + [one for one in _LEVELS if one > planets][:1]
+    return load * np.array(few), few.index(1.0)
+
+
+def springs(force: Array, approach: Array, stiffness: Array, off: Array) -> MeshSprings:
+    """Springs that together follow a law at Q places of the base pitch.
+
+    Parameters
+    ----------
+    force : ndarray, shape (L,)
+        At which the law is known [N], ascending.
+    approach : ndarray, shape (Q, L)
+        [m].
+    stiffness : ndarray, shape (Q,)
+        Slope of the law at the least force [N/m].
+    off : ndarray, shape (K, Q)
+        See `MeshSprings`.
+    """
+    first = approach[:, :1] - force[0] / stiffness[:, None]
+    approach, force = np.hstack([first, approach]), np.append(0.0, force)
+    slope = np.diff(force) / np.diff(approach, axis=1)
+    added = np.diff(slope, axis=1, prepend=0.0)
+    added = np.where(added > _NOTHING * slope[:, -1:], added, 0.0)  # teeth never soften: less is round-off
+    return MeshSprings(added, approach[:, :-1], force[:-1], off, _bent(force, approach))
 
 
 def _bent(force: Array, approach: Array) -> Array:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 #: Accuracy of the fit relative to the largest value, and length of its shortest pieces [base pitches].
 FIT, SHORTEST = 1e-7, 2e-4
@@ -113,6 +114,12 @@ def _fills(points: Panels, piece: int) -> bool:
         return False
     x = points.x[np.searchsorted(points.breaks, points.x) == piece]
     return bool(max(x[0] - points.breaks[piece - 1], points.breaks[piece] - x[-1]) < _ON_END * points.period)
+
+
+def excitation_of_flanks(teeth: LoadedWidePair, force: float, *, forward: bool = True) -> MeshExcitation:
+    """Springs of a pair with a width, linear about a mean force [N]; about its nominal load where it idles."""
+    found = teeth.flanks.solve([force or teeth.nominal], teeth.gaps, teeth.known)
+    return flank_excitation(teeth.flanks, found, forward=forward)
 
 
 def flank_excitation(flanks: FlankPair, found: LoadedFlanks, *, forward: bool = True) -> MeshExcitation:

@@ -12,8 +12,8 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
-from fegear.case.effects import PLANE_EFFECTS
 from fegear.case.planetary import MESHES, set_pair
+from fegear.dynamics.planetary.kinematics import axial_forces
 from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
 from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_loads import force_on, planet_loads
@@ -27,7 +27,8 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
-from fegear.results.pair.loaded_teeth import loaded_pair
+from fegear.results.pair.loaded_flanks import loaded_flanks
+from fegear.results.pair.loaded_teeth import TEETH_EFFECTS, effects_of_teeth, kind_of, loaded_pair
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
@@ -69,7 +70,14 @@ def _solved(scene: Scene, name: str) -> tuple[Mesh, ...]:
 
 def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
     """The loaded pairs of its solved meshes."""
-    return tuple(Task("loaded-pair", set_pair(name, mesh)) for mesh in _solved(scene, name))
+    pairs = (set_pair(name, mesh) for mesh in _solved(scene, name))
+    return tuple(Task(kind_of(scene, pair).stage, pair) for pair in pairs)
+
+
+def _effects(scene: Scene, name: str) -> tuple[str, ...]:
+    """Effects that change the teeth of a set."""
+    known = (effects_of_teeth(scene, set_pair(name, mesh)) for mesh in _solved(scene, name))
+    return tuple(dict.fromkeys(effect for one in known for effect in one))
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -80,12 +88,6 @@ def _check(scene: Scene, name: str) -> None:
             f"planetary.{name}.stiffness.ring_mesh", "(not given)", "is needed, for the ring is no gear of the case",
             'write stiffness = { ring_mesh = "700 N/um" }, or describe the ring and write ring = "its name"',
         )  # fmt: skip
-    for pair in (set_pair(name, mesh) for mesh in _solved(scene, name)):
-        if pair in scene.wide_pairs:
-            raise InputError(
-                f"pair.{pair}.width", f'"{scene.width_of(pair)}"', "is not known to a set: its teeth are plane",
-                'write width = "plane"',
-            )  # fmt: skip
 
 
 def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
@@ -95,7 +97,12 @@ def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
         given = asked.given[mesh]
         if given is not None:
             return SlotSprings(given_teeth(given))
-        pair = loaded_pair(upstream, set_pair(asked.name, mesh))
+        name = set_pair(asked.name, mesh)
+        if Task("loaded-flanks", name) in upstream:
+            from fegear.dynamics.planetary.flank_law import FlankSprings
+
+            return FlankSprings(loaded_flanks(upstream, name), load, asked.model.count)
+        pair = loaded_pair(upstream, name)
         return LawSprings(pair.engagement, pair.shifted, load, asked.model.count)
 
     return set_cycle(asked.model, (teeth("sun"), teeth("ring")), asked.phases, asked.sun_torque, asked.run.input)
@@ -117,7 +124,8 @@ SET_CYCLE = Stage(
     compute=_cycle,
     present=_present_cycle,
     check=_check,
-    effects=PLANE_EFFECTS,
+    effects=TEETH_EFFECTS,
+    effects_of=_effects,
     cites=citing(Citation("mark", "load sharing of coupled tooth pairs", "App. A")),
     forecast=lambda _scene, _name: forecasts.constant(_LAWS),
     internal=True,
@@ -125,6 +133,7 @@ SET_CYCLE = Stage(
 
 
 def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
+    from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
     force = mean_force(asked.model, asked.sun_torque)
@@ -133,7 +142,10 @@ def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
         given = asked.given[mesh]
         if given is not None:
             return given_teeth(given)
-        return mesh_excitation(loaded_pair(upstream, set_pair(asked.name, mesh)).engagement, force)
+        name = set_pair(asked.name, mesh)
+        if Task("loaded-flanks", name) in upstream:
+            return excitation_of_flanks(loaded_flanks(upstream, name), force)
+        return mesh_excitation(loaded_pair(upstream, name).engagement, force)
 
     return MeshedSet(asked.model, teeth("sun"), teeth("ring"), asked.phases, asked.sun_torque, asked.run.input)
 
@@ -151,7 +163,8 @@ MESHED_SET = Stage(
     compute=_meshed,
     present=_present_meshed,
     check=_check,
-    effects=PLANE_EFFECTS,
+    effects=TEETH_EFFECTS,
+    effects_of=_effects,
     cites=citing(Citation("mark", "tooth pairs as springs about the mean load", "section 2")),
     forecast=lambda _scene, _name: forecasts.constant(_TEETH),
     internal=True,
@@ -168,17 +181,21 @@ class LoadInputs:
         Of the pins, radial and counter-clockwise [m].
     phasing : Phasing
         What the phases of the meshes cancel.
+    tilting : float
+        Moment by which helical teeth tilt each planet where all carry alike [N m]; zero of spur sets.
     name : str
     """
 
     errors: Array
     phasing: Phasing
+    tilting: float
     name: str
 
 
 def _load_inputs(scene: Scene, name: str) -> LoadInputs:
-    part = planetary_part(scene, name)
-    return LoadInputs(pin_errors(part), phasing(set_inputs(scene, name).found, part.harmonics), name)
+    part, asked = planetary_part(scene, name), set_inputs(scene, name)
+    tilting = axial_forces(asked.found, asked.run, asked.base_twist).tilting
+    return LoadInputs(pin_errors(part), phasing(asked.found, part.harmonics), tilting, name)
 
 
 def _compute(inputs: LoadInputs, upstream: Upstream, _work: Work) -> PlanetLoads:
@@ -203,7 +220,7 @@ def _tables(data: PlanetLoads, inputs: LoadInputs) -> tuple[Table, ...]:
     pins = data.pin_force @ data.weights
     pins = np.where(np.abs(pins) < _ROUND_OFF * data.mean_force, 0.0, pins)
     of_pins = data.mean_error(lambda one: one.pin_force)
-    shares = (
+    shares = [
         Column("planet", np.arange(1, count + 1), "", "counter-clockwise"),
         Column("tangential_error", inputs.errors[1], "um", "of its pin, counter-clockwise"),
         Column("radial_error", inputs.errors[0], "um", "of its pin, outward"),
@@ -214,10 +231,14 @@ def _tables(data: PlanetLoads, inputs: LoadInputs) -> tuple[Table, ...]:
         *with_error(Column("pin_radial", pins[0], "N", "mean force of the pin on the planet, outward"), of_pins[0]),
         *with_error(Column("pin_tangential", pins[1], "N", "mean force of the pin on the planet, counter-clockwise"),
                     of_pins[1]),
-    )  # fmt: skip
+    ]  # fmt: skip
+    if inputs.tilting:
+        meaning = "mean moment of its meshes on the planet about the tangent of its path, which its pin takes"
+        shares += with_error(Column("tilting_moment", inputs.tilting * data.shares, "N.m", meaning),
+                             abs(inputs.tilting) * data.shares_error)  # fmt: skip
     return (
         Table(f"planet_loads_{name}", tuple(cycle), f"Loads of the planets of {name} over the mesh cycle"),
-        Table(f"planet_shares_{name}", shares, f"Load sharing of the planets of {name}", printed=True),
+        Table(f"planet_shares_{name}", tuple(shares), f"Load sharing of the planets of {name}", printed=True),
         _forces(data, inputs),
     )
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import cast
 
 import numpy as np
@@ -18,6 +19,7 @@ from fegear.case.planetary import MESHES, Mesh, set_pair
 from fegear.case.reading import Scene
 from fegear.contact.plane.both_flanks import AlternatingStress, FilletTrace
 from fegear.contact.plane.loaded_pair import LoadedPair
+from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_over, error_column, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -27,9 +29,13 @@ from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import Member
 from fegear.results import forecasts
+from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
+from fegear.results.pair.loaded_teeth import gears_of
 from fegear.results.pair.root_stress_history import RootStressData
 from fegear.results.planetary.planet_set import planetary_sets
 
+#: Of the mesh that pulls a fillet, and of the one that presses it.
+Traces = tuple[FilletTrace, FilletTrace | None]
 #: Columns of the summary.
 _SHOWN = ("highest", "lowest", "range", "mean", "ratio")
 
@@ -107,41 +113,48 @@ def _check(scene: Scene, name: str) -> None:
             'describe the ring as a gear with internal = true and write ring = "its name"',
         )  # fmt: skip
     for pair in (set_pair(name, mesh) for mesh in MESHES):
-        if pair in scene.wide_pairs:
-            raise InputError(f"pair.{pair}.width", f'"{scene.width_of(pair)}"',
-                             "is not known to this result: its teeth are plane", 'write width = "plane"')  # fmt: skip
         first = scene.case.pair[pair].root_stress.source[0]
         if first != "fe":
             raise InputError(f"pair.{pair}.root_stress.source", f'"{first}"', "knows no stress along the fillet",
                              'write "fe" first')  # fmt: skip
 
 
-def needs_planet_stress(_scene: Scene, name: str) -> tuple[Task, ...]:
-    """Loaded teeth of both meshes, and root stress with its errors."""
-    return tuple(Task("root-stress-history", set_pair(name, mesh)) for mesh in MESHES)
+def needs_planet_stress(scene: Scene, name: str) -> tuple[Task, ...]:
+    """Loaded teeth of both meshes, and root stress with its errors; gears with a width, as these stand along a face."""
+    pairs = [set_pair(name, mesh) for mesh in MESHES]
+    wide = [gear for pair in pairs if pair in scene.wide_pairs for gear in gears_of(scene, pair).values()]
+    return (*(Task("root-stress-history", pair) for pair in pairs), *needs_solid_solution(*wide))
 
 
 def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> PlanetStress:
     from fegear.contact.plane.both_flanks import alternating_stress, fillet_trace
+    from fegear.contact.wide.both_flanks import fillet_trace_at
 
     data = {mesh: cast("RootStressData", upstream[Task("root-stress-history", set_pair(asked.name, mesh))])
             for mesh in MESHES}  # fmt: skip
-    pairs = {mesh: cast("LoadedPair", one.teeth) for mesh, one in data.items()}
+    pairs = {mesh: one.teeth for mesh, one in data.items()}
 
-    def trace(mesh: Mesh, *, planet: bool) -> FilletTrace:
-        return fillet_trace(pairs[mesh].engagement, asked.member(mesh, planet=planet), pairs[mesh].nominal)
+    @cache
+    def trace(mesh: Mesh, planet: bool, z: float | None) -> FilletTrace:
+        member, teeth = asked.member(mesh, planet=planet), pairs[mesh]
+        if z is None:
+            return fillet_trace(cast("LoadedPair", teeth).engagement, member, teeth.nominal)
+        solved = solid_solution_of(upstream, asked.gears["planet" if planet else mesh])
+        return fillet_trace_at(cast("LoadedWidePair", teeth), member, solved.fine, z)
 
-    def bent(
-        pulled: Mesh, pressed: Mesh, of: FilletTrace, other: FilletTrace | None
-    ) -> tuple[AlternatingStress, Array]:
+    def bent(pulled: Mesh, pressed: Mesh) -> tuple[AlternatingStress, Traces, list[Array]]:
         """Stress at one place over both traces; its errors are those of each mesh's largest, and of the place."""
-        planet, i = other is not None, pairs[pulled].loads.index(pairs[pulled].nominal)
+        planet, i = pulled != pressed, pairs[pulled].loads.index(pairs[pulled].nominal)
+        over = data[pulled].found.over_face.get(asked.member(pulled, planet=planet))
+        z = None if over is None else float(over["tension"].z[np.argmax(over["tension"].value.max(axis=0))])
+        # seen from the planet's other end
+        traces = trace(pulled, planet, z), trace(pressed, True, None if z is None else -z) if planet else None
         pull, press = (
             next(iter(data[mesh].found.stress[asked.member(mesh, planet=planet)].values()))
             for mesh in (pulled, pressed)
         )
         most, least = pull.largest_tension[i], press.largest_compression
-        found, *history = alternating_stress(of, other)
+        found, *history = alternating_stress(*traces)
         missed = abs(found.highest / most - 1.0)
         shares = [
             math.nan if error is None or size is None else abs(error / size) + missed
@@ -150,19 +163,19 @@ def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> Plan
         # nowhere is the stress lower than the most negative of all places
         under = 0.0 if least is None else max(float(least[i]) - found.lowest, 0.0)
         high, low = float(shares[0] * abs(found.highest)), float(shares[1] * abs(found.lowest)) + under
-        return replace(found, highest_error=high, lowest_error=low), np.concatenate(history)
+        return replace(found, highest_error=high, lowest_error=low), traces, history
 
-    planet = {mesh: trace(mesh, planet=True) for mesh in MESHES}
-    of_sun, by_sun = bent("sun", "ring", planet["sun"], planet["ring"])
-    of_ring, by_ring = bent("ring", "sun", planet["ring"], planet["sun"])
+    of_sun, placed, by_sun = bent("sun", "ring")
+    of_ring, _, by_ring = bent("ring", "sun")
     found = {"planet_sun_side": of_sun, "planet_ring_side": of_ring}
     for mesh in MESHES:
-        found[mesh], _ = bent(mesh, mesh, trace(mesh, planet=False), None)
-    x = np.concatenate([planet[mesh].x for mesh in MESHES])
-    angle = x / asked.planet_radius + np.repeat([0.0, asked.between], [planet[mesh].x.size for mesh in MESHES])
-    mesh_of = tuple(mesh for mesh in MESHES for _ in planet[mesh].x)
-    stress = np.array([by_sun, np.roll(by_ring, planet["sun"].x.size)])  # the second was pulled by the ring first
-    return PlanetStress(found, angle, mesh_of, x, stress)
+        found[mesh], *_ = bent(mesh, mesh)
+    ways = [one.x for one in placed if one is not None]
+    angle = np.concatenate(ways) / asked.planet_radius
+    angle += np.repeat([0.0, asked.between], [one.size for one in ways])
+    mesh_of = tuple(mesh for mesh, one in zip(MESHES, ways, strict=True) for _ in one)
+    stress = np.array([np.concatenate(by_sun), np.concatenate(by_ring[::-1])])  # the ring pulls the second one
+    return PlanetStress(found, angle, mesh_of, np.concatenate(ways), stress)
 
 
 #: What the rows of the summary are.

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.shown import declared
 from fegear.case.built.planetary import planetary_part, ring_checks, set_inputs
-from fegear.dynamics.planetary.kinematics import passing, sidebands
+from fegear.dynamics.planetary.kinematics import axial_forces, passing, sidebands
 from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
@@ -70,16 +70,16 @@ def _compute(inputs: PlanetSetInputs, _upstream: Upstream, _work: Work) -> Plane
 def _members(asked: SetInputs) -> Table:
     run = asked.run
     speed, torque = (np.array([of[name] for name in CENTRALS]) for of in (run.speed, run.torque))
-    return Table(
-        f"planet_members_{asked.name}",
-        (
-            Column("member", np.array(CENTRALS), "", "of the set"),
-            Column("speed", speed, "rpm", "counter-clockwise"),
-            Column("torque", torque, "N.m", "from outside, counter-clockwise"),
-            Column("power", torque * speed, "W", "into the set"),
-        ),
-        f"Speeds and torques of set {asked.name}",
-    )
+    columns = [
+        Column("member", np.array(CENTRALS), "", "of the set"),
+        Column("speed", speed, "rpm", "counter-clockwise"),
+        Column("torque", torque, "N.m", "from outside, counter-clockwise"),
+        Column("power", torque * speed, "W", "into the set"),
+    ]
+    if asked.base_twist:
+        axial = axial_forces(asked.found, run, asked.base_twist).sun * np.array([1.0, -1.0, 0.0])
+        columns.append(Column("axial_force", axial, "N", "of the planets along the axis, toward the observer"))
+    return Table(f"planet_members_{asked.name}", tuple(columns), f"Speeds and torques of set {asked.name}")
 
 
 def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
@@ -120,6 +120,9 @@ def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
     ]
     if found.count > 1:
         values.append(value_of(found, "neighbour_clearance", name))
+    if asked.base_twist:
+        along = axial_forces(found, run, asked.base_twist)
+        values += [value_of(along, "sun", name), value_of(along, "tilting", name)]
     if asked.at_speed:
         values += [value_of(run, "mesh_frequency", name), value_of(run, "planet_speed", name)]
     return Outcome(data, tuple(tables), tuple(values), {"mirrored": run.mirrored}, _remarks(inputs),
@@ -145,6 +148,9 @@ def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
     said = [f"Set {name}: teeth fit between sun and ring at whole multiples of 360/{teeth} deg."]
     if found.count > 1:
         said[0] += f" Neighbours clear each other by {found.neighbour_clearance * 1e3:.4g} mm."
+    if asked.base_twist:
+        said.append(f"Set {name}: axial forces of sun and ring, and moments that tilt the planets, are carried by "
+                    "bearings taken as rigid.")  # fmt: skip
     said += [f"Set {name}: {one.sentence(inputs.module)}." for one in inputs.checks if one.margin < 0.0]
     if not asked.at_speed:
         said.append(f"Set {name}: no speed is given; frequencies need planetary.{name}.speed, and speeds of "

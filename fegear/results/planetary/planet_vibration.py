@@ -22,6 +22,7 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
+from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import loaded_pair
 from fegear.results.planetary.planet_load_sharing import meshed_set, needs_meshed, needs_teeth
 from fegear.results.planetary.planet_set import planetary_sets
@@ -72,30 +73,40 @@ def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearS
 
     meshed = meshed_set(upstream, inputs.name)
     sun, ring = (
-        _exactness(
-            upstream, Task("loaded-pair", set_pair(inputs.name, mesh)), meshed.mean_force, looked_at(inputs.harmonics)
-        )
+        _exactness(upstream, set_pair(inputs.name, mesh), meshed.mean_force, looked_at(inputs.harmonics))
         for mesh in MESHES
     )
     return linear_set(meshed, inputs.damping_ratio, inputs.harmonics, (sun, ring))
 
 
-def _exactness(upstream: Upstream, task: Task, load: float, harmonics: int) -> tuple[float, Array]:
+def _exactness(upstream: Upstream, name: str, load: float, harmonics: int) -> tuple[float, Array]:
     """Errors of a mesh's mean stiffness and of the amplitudes of its transmission error, as shares of them."""
     from fegear.contact.plane.shifted_compliance import transmission_error_shift
     from fegear.contact.plane.transmission_error import mean_secant_stiffness, transmission_error
 
     none = 0.0, np.zeros(harmonics)
-    if task not in upstream:
+    if Task("loaded-flanks", name) in upstream:
+        flanks = loaded_flanks(upstream, name)
+        over = flanks.transmission_error(lambda _done: None)
+        if over.shift is None or not flanks.estimated:
+            return none
+        return over.shift.stiffness / over.mesh_stiffness_mean, _shares(
+            over.shift.amplitude, over.series[over.at].amplitude, harmonics
+        )
+    if Task("loaded-pair", name) not in upstream:
         return none
-    pair = loaded_pair(upstream, task.subject)
+    pair = loaded_pair(upstream, name)
     te = transmission_error(pair.engagement, load, harmonics)
     shift = transmission_error_shift(te, pair.shifted)
     if shift is None:
         return none
-    amplitude = te.series.amplitude
-    share = np.divide(shift.amplitude, amplitude, out=np.zeros_like(amplitude), where=amplitude > 0.0)
-    return shift.stiffness / mean_secant_stiffness(te), np.minimum(share, 1.0)
+    return shift.stiffness / mean_secant_stiffness(te), _shares(shift.amplitude, te.series.amplitude, harmonics)
+
+
+def _shares(error: Array, amplitude: Array, harmonics: int) -> Array:
+    """Errors of amplitudes as shares of them, one at most, and one where roll positions do not show the harmonic."""
+    share = np.divide(error, amplitude, out=np.zeros_like(amplitude), where=amplitude > 0.0)[:harmonics]
+    return np.pad(np.minimum(share, 1.0), (0, harmonics - share.size), constant_values=1.0)
 
 
 def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:

@@ -87,6 +87,7 @@ def _check_spacing(scene: Scene, name: str) -> None:
 
 def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTrain:
     """Springs and excitation of every mesh under its mean force, put into the train."""
+    from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
     part, train = asked.part, build_train(asked)
@@ -96,7 +97,7 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
         pair, force = part.loaded_pair_of(name), abs(float(forces[number]))
         width = mesh.like.width_ratio if mesh.like else 1.0
         if Task("loaded-flanks", pair) in upstream:
-            found = _of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
+            found = excitation_of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
         else:
             loaded = loaded_pair(upstream, pair)
             engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
@@ -112,14 +113,6 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
         for name, one in zip(part.mesh, made.meshes, strict=True)
     )
     return replace(made, meshes=meshes)
-
-
-def _of_flanks(data: LoadedWidePair, force: float, *, forward: bool) -> MeshExcitation:
-    """Springs of a pair with a width under a mean force [N]; under its nominal load where it idles."""
-    from fegear.dynamics.train.flank_excitation import flank_excitation
-
-    found = data.flanks.solve([force or data.nominal], data.gaps, data.known)
-    return flank_excitation(data.flanks, found, forward=forward)
 
 
 def _doubt(data: LoadedWidePair) -> tuple[float, float]:
