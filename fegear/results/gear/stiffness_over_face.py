@@ -14,16 +14,7 @@ from fegear.base.arrays import Array, Index, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import (
-    axis_of,
-    column_of,
-    columns_of,
-    drawn,
-    error_column,
-    repeated,
-    tiled,
-    value_of,
-)
+from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, repeated, tiled, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
 from fegear.engine.figure.items import Curve, HeatMap, Skin
 from fegear.engine.outcome import Outcome, Value

@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import HeatMap, few
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Stage, Upstream, Work
+from fegear.engine.stage import Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
-from fegear.results.pair.load_distribution import distributed_pairs
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.pair.load_distribution import flank_stage
+from fegear.results.pair.loaded_flanks import loaded_flanks
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -118,14 +117,10 @@ def _figure(inputs: ContactPatternInputs, data: ContactPatternData) -> Figure:
     )
 
 
-CONTACT_PATTERN = Stage(
-    subjects=distributed_pairs,
+CONTACT_PATTERN = flank_stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
-    needs=needs_flanks,
-    effects=WIDE_EFFECTS,
     cites=citing(Citation("iso-21771", "contact lines in the plane of action", "5.4")),
     forecast=lambda _scene, _name: forecasts.constant(0.1),
-    internal=True,
 )

@@ -12,16 +12,9 @@ from fegear.base.errors import RangeError
 from fegear.case.built.pair_surface import PairSurface, pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Upstream, Work
 from fegear.results.pair.flank_surface_tables import surface_figures, surface_tables, surface_values
-from fegear.results.pair.loaded_teeth import (
-    TEETH_EFFECTS,
-    check_teeth,
-    effects_of_teeth,
-    loaded_pairs,
-    loaded_teeth,
-    needs_teeth,
-)
+from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -235,15 +228,12 @@ _CITES = citing(
     Citation("blok", "flash temperature of sliding flanks"),
 )
 
-FLANK_SURFACE = Stage(
-    subjects=loaded_pairs,
-    needs=needs_teeth,
+FLANK_SURFACE = teeth_stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=_CITES,
     forecast=_forecast,
+    internal=False,
 )

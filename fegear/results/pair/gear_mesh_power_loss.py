@@ -24,14 +24,7 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
-from fegear.results.pair.loaded_teeth import (
-    TEETH_EFFECTS,
-    check_teeth,
-    effects_of_teeth,
-    loaded_pairs,
-    loaded_teeth,
-    needs_teeth,
-)
+from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage
 from fegear.results.train.gear_train import the_train
 
 if TYPE_CHECKING:
@@ -421,18 +414,13 @@ def _check_train(scene: Scene, _subject: str) -> None:
     check_train(scene)
 
 
-GEAR_MESH_POWER_LOSS = Stage(
-    subjects=loaded_pairs,
-    needs=needs_teeth,
+GEAR_MESH_POWER_LOSS = teeth_stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=_cites,
     forecast=_forecast,
-    internal=True,
 )
 
 

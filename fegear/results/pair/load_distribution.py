@@ -215,6 +215,10 @@ def distributed_pairs(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in loaded if scene.case.pair[name].width != "plane") or tuple(loaded or scene.pairs)
 
 
+#: Stage of a result that stands on a load distributed over the face.
+flank_stage = partial(Stage, subjects=distributed_pairs, needs=needs_flanks, effects=WIDE_EFFECTS, internal=True)
+
+
 def _check(scene: Scene, name: str) -> None:
     if scene.case.pair[name].width == "plane":
         raise InputError(
@@ -317,15 +321,11 @@ def _over_face_loads(name: str, found: LoadedFlanks, case: int) -> Figure:
     )
 
 
-LOAD_DISTRIBUTION = Stage(
-    subjects=distributed_pairs,
+LOAD_DISTRIBUTION = flank_stage(
     inputs=_inputs,
     compute=lambda inputs, upstream, _work: loaded_flanks(upstream, inputs.name),
     present=_present,
-    needs=needs_flanks,
     check=_check,
-    effects=WIDE_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
-    internal=True,
 )

@@ -9,16 +9,15 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
-from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, error_column, value_of
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
-from fegear.results.pair.load_distribution import distributed_pairs
+from fegear.results.pair.load_distribution import flank_stage
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import gears_of
 
@@ -171,14 +170,11 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
     return Forecast({"positions": positions}, 0.05 + _SECONDS * positions)
 
 
-FLANK_LOAD_FACTORS = Stage(
-    subjects=distributed_pairs,
+FLANK_LOAD_FACTORS = flank_stage(
     inputs=lambda scene, name: FlankGears(name, gears_of(scene, name)),
     compute=_compute,
     present=_present,
     needs=_needs,
-    effects=WIDE_EFFECTS,
     cites=citing(*RING, Citation("iso-6336-1", "face and transverse load factors", "clauses 7 to 9")),
     forecast=_forecast,
-    internal=True,
 )

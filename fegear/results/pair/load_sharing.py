@@ -10,22 +10,12 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Subject, Upstream, Work
+from fegear.engine.stage import Forecast, Subject, Upstream, Work
 from fegear.engine.table import Table
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
-from fegear.results.pair.loaded_teeth import (
-    TEETH_EFFECTS,
-    check_teeth,
-    drawn_loads,
-    effects_of_teeth,
-    loaded_pairs,
-    loaded_teeth,
-    needs_teeth,
-    over_loads,
-    under_load,
-)
+from fegear.results.pair.loaded_teeth import drawn_loads, loaded_teeth, over_loads, teeth_stage, under_load
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
 _HISTORY, _HISTORY_CORNERS, _WIDE = 0.006, 0.02, 0.05
@@ -118,16 +108,10 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     return Forecast(settings, each * forecasts.engagements(scene, name))
 
 
-LOAD_SHARING = Stage(
-    subjects=loaded_pairs,
-    needs=needs_teeth,
+LOAD_SHARING = teeth_stage(
     inputs=Subject.of,
     compute=_compute,
     present=_present,
-    check=check_teeth,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=citing(Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ),
     forecast=_forecast,
-    internal=True,
 )

@@ -7,6 +7,7 @@ and effects from here and knows no kind.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -19,7 +20,7 @@ from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis
 from fegear.engine.figure.items import Mark, few, ramp
-from fegear.engine.stage import Task, Upstream
+from fegear.engine.stage import Stage, Task, Upstream
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution
@@ -110,6 +111,13 @@ def check_teeth(scene: Scene, name: str) -> None:
 def effects_of_teeth(scene: Scene, name: str) -> tuple[str, ...]:
     """Effects that change a pair."""
     return kind_of(scene, name).effects
+
+
+#: Stage of a result that stands on loaded pairs of any kind.
+teeth_stage = partial(
+    Stage, subjects=loaded_pairs, needs=needs_teeth, check=check_teeth, effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth, internal=True,
+)  # fmt: skip
 
 
 def teeth_of(task: Task, data: Any) -> LoadedTeeth | None:

@@ -16,7 +16,7 @@ from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, err
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
@@ -24,15 +24,13 @@ from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.loaded_teeth import (
-    TEETH_EFFECTS,
     check_teeth,
-    effects_of_teeth,
     gears_of,
     loaded_pair,
-    loaded_pairs,
     loaded_teeth,
     needs_gears,
     needs_teeth,
+    teeth_stage,
 )
 
 if TYPE_CHECKING:
@@ -390,16 +388,12 @@ def _map(
     )
 
 
-ROOT_STRESS_HISTORY = Stage(
-    subjects=loaded_pairs,
+ROOT_STRESS_HISTORY = teeth_stage(
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=_cites,
     forecast=_forecast,
-    internal=True,
 )

@@ -19,23 +19,14 @@ from fegear.case.built.pair_inputs import FINITE_ELEMENTS, root_stress_source
 from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.engine.stage import Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
 from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks
-from fegear.results.pair.loaded_teeth import (
-    PLANE,
-    TEETH_EFFECTS,
-    check_teeth,
-    effects_of_teeth,
-    gears_of,
-    loaded_pair,
-    loaded_pairs,
-    needs_gears,
-)
+from fegear.results.pair.loaded_teeth import PLANE, gears_of, loaded_pair, needs_gears, teeth_stage
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -342,16 +333,11 @@ def _compute(asked: MeshInputs, upstream: Upstream, work: Work) -> StressInMeshD
     return (_stress if plane else _stress_over_face)(asked, upstream, work)
 
 
-STRESS_IN_MESH = Stage(
-    subjects=loaded_pairs,
+STRESS_IN_MESH = teeth_stage(
     needs=needs_gears,
     inputs=mesh_inputs,
     compute=_compute,
     present=lambda data, _inputs: Outcome(data),
-    check=check_teeth,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.15),
-    internal=True,
 )

@@ -14,20 +14,17 @@ from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, dra
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
 from fegear.engine.figure.items import Bars, Stems
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import (
     BASE_PITCH,
-    TEETH_EFFECTS,
     check_teeth,
     drawn_loads,
-    effects_of_teeth,
-    loaded_pairs,
     loaded_teeth,
-    needs_teeth,
     over_loads,
     pitch_marks,
+    teeth_stage,
     under_load,
 )
 from fegear.results.pair.mark_transmission_error import MarkData, mark_data, present_mark
@@ -285,20 +282,15 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-TRANSMISSION_ERROR = Stage(
-    subjects=loaded_pairs,
-    needs=needs_teeth,
+TRANSMISSION_ERROR = teeth_stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=citing(
         Citation("mark", "static transmission error, its Fourier series and the mean compliance", "1.1 to 1.32, A.11"),
         Citation("lin-townsend-oswald", "effective error A_e"),
         Citation("harris", "transmission error over the mesh cycle for a family of loads"),
     ),
     forecast=_forecast,
-    internal=True,
 )

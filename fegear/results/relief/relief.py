@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -110,6 +111,10 @@ def design_pairs(scene: Scene) -> tuple[str, ...]:
     if len(scene.spur_pairs) > 1:
         raise InputError("design.pair", "(not given)", "is needed where there are several pairs", "name one of them")
     return tuple(scene.spur_pairs)
+
+
+#: Stage of a result about the reliefs that a case asks to design.
+relief_stage = partial(Stage, subjects=design_pairs, needs=needs_teeth, effects=AT_REST, internal=True)
 
 
 def _loading(part: DesignPart, p: GearPair) -> LoadingFunction:
@@ -410,19 +415,15 @@ def _harris_figure(name: str, data: ReliefData) -> Figure:
     )
 
 
-RELIEF = Stage(
-    subjects=design_pairs,
-    needs=needs_teeth,
+RELIEF = relief_stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=AT_REST,
     cites=citing(
         Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.16, 5.4"),
         Citation("lin-townsend-oswald", "linear and parabolic tip relief"),
         Citation("harris", "Harris maps"),
     ),
     forecast=_forecast,
-    internal=True,
 )

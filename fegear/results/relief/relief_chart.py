@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import declared
-from fegear.case.effects import AT_REST
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
-from fegear.results.pair.loaded_teeth import needs_teeth
-from fegear.results.relief.relief import ReliefData, design_pairs, design_part
+from fegear.results.relief.relief import ReliefData, design_pairs, design_part, relief_stage
 from fegear.results.relief.relief_tables import tip_values
 
 if TYPE_CHECKING:
@@ -303,27 +301,21 @@ _CITES = citing(
 )
 
 
-RELIEF_CHART = Stage(
-    subjects=design_pairs,
-    needs=needs_teeth,
+RELIEF_CHART = relief_stage(
     inputs=_chart_inputs,
     compute=_compute_chart,
     present=_present_chart,
-    effects=AT_REST,
     cites=_CITES,
     forecast=_chart_forecast,
-    internal=True,
 )
 
 
-ROBUSTNESS = Stage(
+ROBUSTNESS = relief_stage(
     subjects=_robustness_pairs,
     needs=lambda _scene, name: (Task("relief", name),),
     inputs=_robustness_inputs,
     compute=_compute_robustness,
     present=_present_robustness,
-    effects=AT_REST,
     cites=_CITES,
     forecast=_robustness_forecast,
-    internal=True,
 )

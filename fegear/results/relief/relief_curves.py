@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.effects import AT_REST
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, column_over, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, ramp
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Reads, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
-from fegear.results.pair.loaded_teeth import needs_teeth
-from fegear.results.relief.relief import design_pairs, design_part
+from fegear.results.relief.relief import design_part, relief_stage
 
 if TYPE_CHECKING:
     from fegear.case.design import ChartPart
@@ -192,15 +190,11 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
     return Forecast({"reliefs": count}, count * _EACH * (3.0 if scene.case.effects.corner_contact else 1.0))
 
 
-RELIEF_CURVES = Stage(
-    subjects=design_pairs,
-    needs=needs_teeth,
+RELIEF_CURVES = relief_stage(
     inputs=Reads.of(lambda scene: design_part(scene).chart),
     compute=_compute,
     present=_present,
     check=_check,
-    effects=AT_REST,
     cites=citing(Citation("lin-townsend-oswald", "tip reliefs by amount over Delta and length L_n", "Figs. 3 to 6")),
     forecast=_forecast,
-    internal=True,
 )

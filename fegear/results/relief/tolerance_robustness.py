@@ -18,9 +18,9 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage, Upstream, Work
+from fegear.engine.stage import Upstream, Work
 from fegear.results.forecasts import HERTZ
-from fegear.results.pair.loaded_teeth import TEETH_EFFECTS, effects_of_teeth
+from fegear.results.pair.loaded_teeth import teeth_stage
 from fegear.results.relief.tolerance_benches import (
     DrawInputs,
     check_draws,
@@ -346,19 +346,16 @@ def _drawn_reliefs(data: ToleranceData, asked: DrawInputs) -> Figure:
     )  # fmt: skip
 
 
-TOLERANCE_ROBUSTNESS = Stage(
+TOLERANCE_ROBUSTNESS = teeth_stage(
     subjects=pairs_to_draw,
     needs=needs_of_draws,
     inputs=draw_inputs,
     compute=_compute,
     present=_present,
     check=check_draws,
-    effects=TEETH_EFFECTS,
-    effects_of=effects_of_teeth,
     cites=citing(
         Citation("iso-1328-1", "tolerances that deviations are drawn inside", "5.3, formulas (5) to (12)"),
         Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ,
     ),
     forecast=forecast_draws,
-    internal=True,
 )  # fmt: skip
