@@ -6,6 +6,7 @@ Stage ``meshed-set`` has the same teeth as springs for motion: linear about an e
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -117,18 +118,17 @@ def _present_cycle(data: SetCycle, asked: SetInputs) -> Outcome:
     return Outcome(data, remarks=tuple(said))
 
 
-SET_CYCLE = Stage(
-    subjects=planetary_sets,
-    needs=needs_teeth,
-    inputs=set_inputs,
+#: Stage of what the loaded teeth of a set's meshes are to its planets.
+_teeth_stage = partial(
+    Stage, subjects=planetary_sets, inputs=set_inputs, needs=needs_teeth, check=_check, effects=TEETH_EFFECTS,
+    effects_of=_effects, internal=True,
+)  # fmt: skip
+
+SET_CYCLE = _teeth_stage(
     compute=_cycle,
     present=_present_cycle,
-    check=_check,
-    effects=TEETH_EFFECTS,
-    effects_of=_effects,
     cites=citing(Citation("mark", "load sharing of coupled tooth pairs", "App. A")),
     forecast=lambda _scene, _name: forecasts.constant(_LAWS),
-    internal=True,
 )
 
 
@@ -156,18 +156,11 @@ def _present_meshed(data: MeshedSet, asked: SetInputs) -> Outcome:
     return Outcome(data, remarks=(said,) if any(not one.slotted for one in solved) else ())
 
 
-MESHED_SET = Stage(
-    subjects=planetary_sets,
-    needs=needs_teeth,
-    inputs=set_inputs,
+MESHED_SET = _teeth_stage(
     compute=_meshed,
     present=_present_meshed,
-    check=_check,
-    effects=TEETH_EFFECTS,
-    effects_of=_effects,
     cites=citing(Citation("mark", "tooth pairs as springs about the mean load", "section 2")),
     forecast=lambda _scene, _name: forecasts.constant(_TEETH),
-    internal=True,
 )
 
 
