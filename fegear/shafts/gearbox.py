@@ -106,13 +106,14 @@ class Gearbox:
             for number, places, ways in on:
                 at.append(places)
                 loads.append(np.einsum("nak,kn->na", ways, forces[number]))
-            torques = np.concatenate([part[:, 5] for part in loads])
-            rounded = abs(torques.sum()) <= _ROUNDED * np.abs(torques).sum()
-            taken = coupling if coupling is not None else on[-1][1][0] if on and rounded else None
-            if taken is not None:
-                at.append(np.array([taken]))
-                loads.append(np.array([[0.0] * 5 + [-torques.sum()]]))
-            found.append(replace(one, loads_at=np.concatenate(at), loads=np.vstack(loads)))
+            if coupling is not None:
+                at.append(np.array([coupling]))
+                loads.append(np.array([[0.0] * 5 + [-sum(part[:, 5].sum() for part in loads)]]))
+            whole = np.vstack(loads)
+            torques, most = whole[:, 5], np.abs(whole[:, 5])
+            if coupling is None and on and 0.0 < abs(torques.sum()) <= _ROUNDED * most.sum():
+                torques -= torques.sum() * most / most.sum()
+            found.append(replace(one, loads_at=np.concatenate(at), loads=whole))
         return tuple(found)
 
     def under(self, forces: tuple[Array, ...], scale: float = 1.0) -> tuple[Deflection, ...]:

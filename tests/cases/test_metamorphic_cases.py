@@ -88,9 +88,11 @@ def test_mechanics_knows_no_units_of_length_mass_and_time(name, how, monkeypatch
     scales, document = SCALES[how], with_steel(case(name))
     if name in OWN_SCALE:
         document["results"] = list(OWN_SCALE[name])
-        document["accuracy"] = {"tolerance": 5e-2}  # solids at the usual one take 8 GB
+        document["accuracy"] = {"tolerance": 5e-2}
         for pair in document["pair"].values():
             pair.pop("lubricant", None)  # of none of them, and a density of no oil in other units
+            if OWN_SCALE[name] == ("load-distribution",):
+                pair["width"] = "slices"  # a wheel of 103 teeth as a solid takes 14 GB; other cases have solids
 
     def other(text):
         return scaled_file(text, scales, tmp_path) if text.endswith((".csv", ".msh")) else rescaled(text, scales)

@@ -43,6 +43,18 @@ def test_bearings_take_what_the_meshes_press():
     assert on_output[:2] == pytest.approx(-second.force[:2], rel=1e-9)
 
 
+def test_meshes_share_what_rounding_leaves_of_their_torques():
+    """The first end of the last mesh's face took it: a mirror moved the gap of the second pair by 2e-5."""
+    box = gearbox_of(_scene(pair__II__torque="250.005 N*m"))
+    shaft = box.loaded(box.even)[box.names.index("mid")]
+    torques = np.split(shaft.loads[:, 5], 2)
+    assert abs(shaft.loads[:, 5].sum()) < 1e-12 * np.abs(shaft.loads[:, 5]).sum()
+    for one, mesh in zip(torques, box.meshes, strict=True):
+        share = mesh.even[0] / mesh.load
+        assert one / share == pytest.approx(one.sum(), rel=1e-12)  # as even over the face as the load itself
+        assert abs(one.sum()) == pytest.approx(250.0 * (1.0 + 1e-5), rel=1e-9)
+
+
 def test_rigid_shafts_on_rigid_bearings_leave_parallel_axes():
     case = copy.deepcopy(CASE)
     for part in case["shaft"].values():

@@ -73,8 +73,9 @@ class PairForcesData:
     asked, drawn, spectrum : PairForces
     undamped : ndarray
         Speeds at which a line meets a resonance that nothing damps [rad/s].
-    errors : PairForces or None
-        What the estimated errors of the transmission error's harmonics make; None where they are unknown or nothing.
+    errors : tuple of PairForces
+        What the estimated errors of the transmission error's harmonics make, those of each coordinate by themselves:
+        sizes without a sign would cancel for one hand and not for the other. Empty where they are unknown or nothing.
     known : bool
         Whether the excitation is given, or its errors are estimated.
     """
@@ -83,7 +84,7 @@ class PairForcesData:
     drawn: PairForces
     spectrum: PairForces
     undamped: Array
-    errors: PairForces | None
+    errors: tuple[PairForces, ...]
     known: bool
 
 
@@ -279,11 +280,12 @@ def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairFo
                 np.setdiff1d(resonant, undamped), undamped,
             )  # fmt: skip
         off = [] if doubts is None else _lines(replace(asked, excitation=_alone(part)), doubts.astype(complex), ratio)
+        each = [[replace(x, error=tuple(np.eye(5)[k] * x.error)) for x in off if x.error[k]] for k in range(5)]
         spectrum = part.speed or float(speeds[np.argmax(rms(found.normal))])
         return PairForcesData(
             found, pair_forces(model, lines, grid), pair_forces(model, lines, [spectrum]),
             undamped[(undamped > speeds[0]) & (undamped < speeds[-1])],
-            pair_forces(model, off, speeds) if off else None, doubts is not None,
+            tuple(pair_forces(model, own, speeds) for own in each if own), doubts is not None,
         )  # fmt: skip
     except InputError as error:
         raise at(f"transmissibility.{asked.name}", error) from None
@@ -304,7 +306,7 @@ def _present(data: PairForcesData, asked: PairForcesInputs) -> Outcome:
     name, found = asked.name, data.asked
     normal = rms(found.normal)
     top = int(np.argmax(normal))
-    off = None if data.errors is None else rms(data.errors.normal)
+    off = np.sum([rms(one.normal) for one in data.errors], axis=0) if data.errors else None
 
     def error(of: Array | None, place: int) -> float | None:
         return None if not data.known else 0.0 if of is None else float(of[place])
@@ -316,8 +318,8 @@ def _present(data: PairForcesData, asked: PairForcesInputs) -> Outcome:
     ]  # fmt: skip
     for key in ("driver", "driven"):
         radial, at_top = rms(getattr(found, f"bearing_{key}")[:, :, 0]), None
-        if data.errors is not None:
-            at_top = rms(getattr(data.errors, f"bearing_{key}")[:, :, 0])
+        if data.errors:
+            at_top = np.sum([rms(getattr(one, f"bearing_{key}")[:, :, 0]) for one in data.errors], axis=0)
         place = int(np.argmax(radial))
         values.append(Value(f"{name}.largest_bearing_force_{key}", float(radial[place]), "N", error(at_top, place),
                             "root mean square along the line of action"))  # fmt: skip
