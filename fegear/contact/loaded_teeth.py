@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from fegear.base.errors import InputError
     from fegear.contact.fourier import FourierSeries
     from fegear.contact.plane.pair_history import PairHistory
-    from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
     from fegear.contact.plane.tooth_stress import ToothStress
     from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
@@ -289,6 +288,17 @@ class LoadHistory:
             return self.pressure_error
         relative = self.largest_share_error
         return 0.5 * relative * self.largest_hertz_pressure if relative else None
+
+
+@dataclass(frozen=True)
+class TransmissionErrorShift:
+    """Estimated errors of a transmission error's numbers, each the sum of the changes by the shifted compliances."""
+
+    mean: float
+    peak_to_peak: float
+    effective: float
+    amplitude: Array
+    stiffness: float
 
 
 @dataclass(frozen=True)

@@ -139,8 +139,3 @@ def flank_speeds(pair: GearPair, x: ArrayLike, speed: float) -> FlankSpeeds:
     relative = one * other / (one + other) / math.cos(pair.driver.base_helix_angle)
     slow = speed * pair.driver.teeth / pair.driven.teeth
     return FlankSpeeds(place, one, other, np.asarray(relative), speed * np.abs(one), slow * np.abs(other))
-
-
-def contact_ratios(pair: GearPair) -> tuple[float, float]:
-    """epsilon_1 and epsilon_2: contact ratio from the pitch point to the tips of driver and driven gear."""
-    return pair.x_end / pair.base_pitch, -pair.x_start / pair.base_pitch

@@ -21,6 +21,11 @@ von Stirnradverzahnungen, thesis, TU München 2006 (load even along all contact 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fegear.formulas.lubricant import Oil
+
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -31,8 +36,6 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
-from fegear.formulas.flash_temperature import contact_ratios
-from fegear.formulas.lubricant import Oil
 from fegear.geometry.pair import GearPair
 
 MeanLaw = Literal["schlenk", "iso-6336-20", "iso-6336-21", "iso-6336-22"]
@@ -138,6 +141,11 @@ def _scale(pair: GearPair) -> float:
     """pi (1/z_1 + 1/z_2) / cos(beta_b), of an internal pair with the difference."""
     sum_ = abs(1.0 / pair.driver.teeth + pair.side / pair.driven.teeth)
     return math.pi * sum_ / math.cos(pair.driver.base_helix_angle)
+
+
+def contact_ratios(pair: GearPair) -> tuple[float, float]:
+    """epsilon_1 and epsilon_2: contact ratio from the pitch point to the tips of driver and driven gear."""
+    return pair.x_end / pair.base_pitch, -pair.x_start / pair.base_pitch
 
 
 def ohlendorf(pair: GearPair) -> float:

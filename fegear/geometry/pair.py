@@ -5,6 +5,11 @@ What happens along the path of contact: its points A to E, the diameters that it
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fegear.geometry.internal_interference import InternalCheck
+
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +22,6 @@ from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.base.shown import shown, shows
 from fegear.geometry.gear import Gear
-from fegear.geometry.internal_interference import InternalCheck, internal_checks
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 
@@ -167,6 +171,8 @@ class GearPair:
         planet, ring = sorted((self.driver, self.driven), key=lambda gear: gear.tooth.internal)
         if not isinstance(ring.tooth, InternalTooth):
             return ()
+        from fegear.geometry.internal_interference import internal_checks
+
         return internal_checks(planet.tooth, ring.tooth, self.centre_distance / ring.module)
 
     @property

@@ -18,7 +18,6 @@ from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.part import at
 from fegear.case.text_file import read_columns
-from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
@@ -83,7 +82,11 @@ def flank_errors(scene: Scene, name: str) -> FlankErrors:
     part, pair = scene.case.pair[name].misalignment, scene.pairs[name]
     # With the effect on, the shafts' gaps are solved together with the flanks; without it these say what it would do.
     apart = on_shafts(scene, name) and not scene.case.effects.misalignment
-    shafts = gaps_of_even_loads(gearbox_of(scene), name) if apart else RIGID
+    shafts = RIGID
+    if apart:
+        from fegear.contact.wide.on_shafts import gaps_of_even_loads
+
+        shafts = gaps_of_even_loads(gearbox_of(scene), name)
     if part is None:
         return FlankErrors(z, gap, shafts=shafts)
     prefix = f"pair.{name}.misalignment"

@@ -13,7 +13,6 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import build_relief
-from fegear.case.built.measured_flanks import measured_gear
 from fegear.case.built.pair_inputs import gear_flanks, gear_name
 from fegear.case.part import at
 from fegear.case.reading import Scene
@@ -110,6 +109,8 @@ def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> FaceModificati
     part, gear = scene.case.gear[name], scene.gears[name]
     found: list[FlankModification] = []
     if part.measured is not None and not drawn:
+        from fegear.case.built.measured_flanks import measured_gear
+
         measured = measured_gear(scene, name)
         if measured.topography is not None:
             return FaceModifications((measured.topography,), None, name)

@@ -12,12 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.built.rated_duty import bore_remarks, width_remarks
 from fegear.case.effects import PLANE_EFFECTS, EffectsPart
 from fegear.case.part import at
 from fegear.case.relief import ReliefPart, ReliefTablePart
 from fegear.case.text_file import read_columns
-from fegear.geometry.interference import interference
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible import heavy_load, refuse_spacing_errors
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
@@ -187,6 +185,9 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> Flanks:
 
 def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
+    from fegear.case.built.rated_duty import bore_remarks, width_remarks
+    from fegear.geometry.interference import interference
+
     remarks, effects = [], scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fegear.shafts.gearbox import Gearbox
+    from fegear.shafts.mesh import MeshPlace
+
 from itertools import pairwise
 
 import numpy as np
@@ -9,9 +15,6 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.part import at, nearest
 from fegear.case.reading import Scene
-from fegear.shafts.gearbox import Gearbox
-from fegear.shafts.mesh import MeshPlace
-from fegear.shafts.solution import LoadedShaft, Seat, refuse_torque
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6
@@ -104,6 +107,8 @@ def _refuse_overlap(scene: Scene, shaft: str) -> None:
 
 
 def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, float]], sense: int) -> MeshPlace:
+    from fegear.shafts.mesh import MeshPlace
+
     pair, part = scene.pairs[name], scene.case.pair[name]
     first, second = (scene.case.shaft[shaft] for shaft, _ in ends)
     across = np.subtract(second.axis, first.axis)
@@ -146,6 +151,9 @@ def gearbox_of(scene: Scene) -> Gearbox:
     InputError
         If a name is unknown, a shaft is not held, or something is off it.
     """
+    from fegear.shafts.gearbox import Gearbox
+    from fegear.shafts.solution import LoadedShaft, Seat, refuse_torque
+
     _refuse_many(scene)
     meshes = mesh_places(scene)
     shafts, seat_compliance = [], []

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.fourier import fourier_series
+from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
@@ -125,17 +126,6 @@ def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
     m = other.compliance.matrices(grid.contacts)
     shared = share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.tilt, m.power)
     return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)
-
-
-@dataclass(frozen=True)
-class TransmissionErrorShift:
-    """Estimated errors of a transmission error's numbers, each the sum of the changes by the shifted compliances."""
-
-    mean: float
-    peak_to_peak: float
-    effective: float
-    amplitude: Array
-    stiffness: float
 
 
 def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement]) -> TransmissionErrorShift | None:

@@ -24,8 +24,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.wide.lines import ContactLines, long_line
-from fegear.formulas.iso6336.part1_face_load import face_load_factor, root_exponent
-from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -124,6 +122,9 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
     RangeError
         If the pair lies outside the range of the standard's mesh stiffness.
     """
+    from fegear.formulas.iso6336.part1_face_load import face_load_factor
+    from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
+
     tangential = load * pair.driver.base_radius / pair.driver.pitch_radius / pair.face_width
     stiffness = pair_stiffness(pair, tangential).mesh_beta
     return face_load_factor(straight_gap(pair, gaps.under(load)), stiffness, tangential)
@@ -131,6 +132,8 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
 
 def iso_root_exponent(pair: GearPair) -> float:
     """N_F of ISO 6336-1 for both gears of a pair."""
+    from fegear.formulas.iso6336.part1_face_load import root_exponent
+
     gears = pair.driver, pair.driven
     depths = [gear.module * abs(gear.tooth.tip_radius - gear.tooth.root_radius) for gear in gears]
     return root_exponent((gears[0].face_width, gears[1].face_width), (depths[0], depths[1]))

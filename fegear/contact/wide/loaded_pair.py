@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from fegear.contact.loaded_teeth import ErrorOverPitch, FlankLoad, LoadHistory, Neglected, RootStressInMesh
-from fegear.contact.plane.tooth_stress import ToothStress
-from fegear.contact.wide.pair_history import flank_pair_history, history_error
-from fegear.contact.wide.root_stress import RootedLines, StressOverFace, rooted_lines
+from fegear.contact.loaded_teeth import (
+    ErrorOverPitch,
+    FlankLoad,
+    LoadHistory,
+    Neglected,
+    RootStressInMesh,
+    TransmissionErrorShift,
+)
 from fegear.contact.wide.transmission_error import (
     FlankTransmissionError,
     flank_transmission_error_shift,
@@ -28,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
-    from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
+    from fegear.contact.plane.tooth_stress import ToothStress
     from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
     from fegear.contact.wide.compliance import FlankCompliance
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
     from fegear.contact.wide.over_pitch import OverPitch, Stated
+    from fegear.contact.wide.root_stress import RootedLines, StressOverFace
     from fegear.fem.plane.influence import Side
 
 #: Places along the face per module, at which root stress is looked for, and how many at least.
@@ -137,6 +142,8 @@ class LoadedWidePair:
 
     def history(self) -> LoadHistory:
         """See `LoadedTeeth`; errors are the change by the coarser solution, and what slices miss."""
+        from fegear.contact.wide.pair_history import flank_pair_history, history_error
+
         coarse, i, missed = self.error.coarse, self.at, self._missed
         found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines, self.found.load))
         again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines, coarse.load))
@@ -211,6 +218,8 @@ class LoadedWidePair:
         estimates: bool = True,  # noqa: ARG002  (as in the plane; here errors cost next to nothing)
     ) -> RootStressInMesh:
         """See `LoadedTeeth`; one source for each gear, its solid or its slices, looked at all along the face."""
+        from fegear.contact.wide.root_stress import rooted_lines
+
         stress: dict[Member, dict[str, ToothStress]] = {}
         over_face: dict[Member, dict[Side, StressOverFace]] = {}
         across: dict[Member, tuple[float, float]] = {}
@@ -227,6 +236,9 @@ class LoadedWidePair:
         self, rooted: RootedLines, influence: SolidInfluence, over_face: dict[Member, dict[Side, StressOverFace]]
     ) -> ToothStress:
         """Largest over the face under every load; what it is all over the face at the nominal one goes to the map."""
+        from fegear.contact.plane.tooth_stress import ToothStress
+        from fegear.contact.wide.root_stress import rooted_lines
+
         coarse, z, member = self.error.coarse, self.places_along, rooted.member
         again = None
         if self.estimated and influence.coarse:

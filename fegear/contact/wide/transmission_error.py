@@ -10,7 +10,7 @@ from scipy.interpolate import BarycentricInterpolator
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
-from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
+from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.wide.complementarity import secant_compliance
 from fegear.contact.wide.mesh_matrix import stiffness_of
 from fegear.contact.wide.over_pitch import every_second

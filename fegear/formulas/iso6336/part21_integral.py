@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass
 
 from fegear.base.errors import RangeError
-from fegear.formulas.flash_temperature import STEEL_HEAT, contact_ratios
-from fegear.formulas.friction import FASTEST, helical_load_factor, mean_friction
+from fegear.formulas.flash_temperature import STEEL_HEAT
+from fegear.formulas.friction import FASTEST, contact_ratios, helical_load_factor, mean_friction
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.geometry.pair import GearPair
 

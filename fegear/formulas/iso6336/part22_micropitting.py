@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
-from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds, contact_ratios
-from fegear.formulas.friction import Surface, helical_load_factor, mean_friction
+from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds
+from fegear.formulas.friction import Surface, contact_ratios, helical_load_factor, mean_friction
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.formulas.lubricant import Oil

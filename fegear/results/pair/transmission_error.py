@@ -27,7 +27,6 @@ from fegear.results.pair.loaded_teeth import (
     teeth_stage,
     under_load,
 )
-from fegear.results.pair.mark_transmission_error import MarkData, mark_data, present_mark
 from fegear.results.pair.mesh_table import mesh_table
 
 if TYPE_CHECKING:
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.fourier import FourierSeries
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.results.pair.mark_transmission_error import MarkData
 
 #: One engagement solved over a base pitch [s], what corners off the path add to it, and a pair with a width.
 _ERROR, _ERROR_CORNERS, _WIDE = 0.015, 0.1, 0.1
@@ -71,6 +71,8 @@ def _compute(asked: TransmissionErrorInputs, upstream: Upstream, work: Work) -> 
     teeth = loaded_teeth(upstream, asked.name)
     found, by_mark = teeth.transmission_error(work.progress), None
     if asked.part.method == "mark-series":
+        from fegear.results.pair.mark_transmission_error import mark_data
+
         by_mark = mark_data(cast("LoadedPair", teeth), asked.part.terms)
     return TransmissionErrorData(found, by_mark)
 
@@ -94,6 +96,8 @@ def _present(data: TransmissionErrorData, inputs: TransmissionErrorInputs) -> Ou
         tables.append(table)
         remarks += said
     if data.by_mark is not None:
+        from fegear.results.pair.mark_transmission_error import present_mark
+
         more = present_mark(name, data.by_mark, e.rotational)
         tables += more.tables
         values += more.values
