@@ -52,6 +52,10 @@ _HOMES = {
     "transmission_error": "workbench.questions",
 }
 
+#: Old names of the top: the name of now, and the release since which it is that. An old name works, and warns, for at
+#: least one minor release (docs/stability.md).
+_RENAMED: dict[str, tuple[str, str]] = {}
+
 
 if not TYPE_CHECKING:  # type checkers know the names from their imports, and find a wrong one
 
@@ -59,6 +63,12 @@ if not TYPE_CHECKING:  # type checkers know the names from their imports, and fi
         """Load a name of the top at its first use."""
         import importlib
 
+        if name in _RENAMED:
+            import warnings
+
+            new, since = _RENAMED[name]
+            warnings.warn(f"fegear.{name} is called fegear.{new} since {since}", DeprecationWarning, stacklevel=2)
+            return __getattr__(new)
         if name not in _HOMES:
             raise AttributeError(f"module 'fegear' has no attribute {name!r}; it has {', '.join(sorted(_HOMES))}")
         found = getattr(importlib.import_module(f"fegear.{_HOMES[name]}"), name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple, Protocol
 
@@ -20,6 +20,11 @@ from fegear.engine.outcome import Named, Outcome, Value
 from fegear.engine.plan import ON_REQUEST, Plan, Step
 from fegear.engine.stage import Task, Work
 from fegear.engine.table import Table
+
+NOTHING_FOR_A_CLUSTER = (
+    "--scheduler is of no use here: no result of this run consists of points that a cluster could compute, and this "
+    "machine computed all; sweeps, design-chart and robustness with [robustness] do."
+)
 
 
 class Watcher(Protocol):
@@ -192,6 +197,8 @@ def run_plan(
         watcher.end(done[step.task].timing.seconds)
         if found is not None:
             found(step.task, done[step.task].outcome)
+    if work.executor.scheduler is not None and not any(step.stage.in_points for step in plan.steps):
+        plan = replace(plan, remarks=(*plan.remarks, NOTHING_FOR_A_CLUSTER))
     return Results(scene, plan, {t: one.outcome for t, one in done.items()}, {t: one.timing for t, one in done.items()})
 
 

@@ -181,6 +181,8 @@ class Stage:
         ``cites(scene, subject)`` -> what the result rests on.
     internal : bool
         Whether it takes internal gears and pairs; a plan refuses those of other stages.
+    in_points : bool
+        Whether it consists of points that other processes, or a cluster, can compute.
     name, title, results, about, extra : str, str, tuple of str, str, str
         What it is called: given by the catalogue, see `Entry`.
     """
@@ -197,6 +199,7 @@ class Stage:
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
     internal: bool = False
+    in_points: bool = False
     name: str = ""
     title: str = ""
     results: tuple[str, ...] = ()

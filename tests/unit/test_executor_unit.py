@@ -14,15 +14,19 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 from distributed.comm import CommClosedError
 
+import fegear
 from fegear.base.errors import FegearError, InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.point_job import Failure
+from fegear.engine.run import NOTHING_FOR_A_CLUSTER
+from fegear.results.catalogue import STAGES
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
 
@@ -107,6 +111,18 @@ def test_an_empty_address_is_no_wish_to_compute_here():
     for address in ("", " "):
         with pytest.raises(InputError, match="--scheduler"):
             Executor(address)
+
+
+def test_an_address_that_no_result_of_a_run_can_use_is_no_use_said_aloud():
+    case = {"gear": {"a": {"teeth": 20, "module": "2 mm"}}, "results": ["geometry"]}
+    assert NOTHING_FOR_A_CLUSTER in fegear.run(case, scheduler="tcp://127.0.0.1:9").remarks
+    assert NOTHING_FOR_A_CLUSTER not in fegear.run(case).remarks
+
+
+def test_results_that_have_points_for_a_cluster_are_marked_as_such():
+    folder = Path(fegear.__file__).parent / "results"
+    spreading = {path.stem for path in folder.rglob("*.py") if "map_points(" in path.read_text("utf-8")}
+    assert {stage.compute.__module__.rpartition(".")[2] for stage in STAGES if stage.in_points} == spreading
 
 
 def test_a_listener_that_says_nothing_is_no_scheduler(monkeypatch):

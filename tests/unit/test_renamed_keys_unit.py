@@ -1,10 +1,13 @@
-"""Old names of a case are read as those of now, with a remark, and `fegear migrate` writes them anew."""
+"""Old names of a case are read as those of now, with a remark, and `fegear migrate` writes them anew; Python's warn."""
 
+import importlib
 import tomllib
+import warnings
 
 import pytest
 from in_process import fegear
 
+import fegear as top
 from fegear.base.errors import InputError
 from fegear.case import renamed
 from fegear.case.reading import apply_override, build_scene, read_scene
@@ -104,3 +107,24 @@ def test_a_case_of_a_later_form_is_refused(tmp_path):
 def test_a_key_that_was_taken_out_is_not_set_anew():
     with pytest.raises(InputError, match="unknown key"):
         apply_override({"effects": {}}, "effects.off_line_of_action=true")
+
+
+def test_an_old_name_of_python_is_that_of_now_and_warns_where_it_is_used(monkeypatch):
+    monkeypatch.setitem(top._RENAMED, "loads_of_teeth", ("load_sharing", "0.9"))
+    sentence = r"fegear\.loads_of_teeth is called fegear\.load_sharing since 0\.9"
+    with pytest.warns(DeprecationWarning, match=sentence) as said:
+        assert top.loads_of_teeth is top.load_sharing
+    assert [one.filename for one in said] == [__file__]
+    with pytest.warns(DeprecationWarning, match=sentence):
+        from fegear import loads_of_teeth  # noqa: F401
+    assert "loads_of_teeth" not in dir(top)  # neither offered nor kept: every use warns
+
+
+def test_names_of_python_that_are_listed_as_old_lead_to_one_that_there_is():
+    """One step, no chains: what a name was called three releases ago leads to that of now."""
+    assert not set(top._RENAMED) & set(top._HOMES)
+    assert {new for new, _ in top._RENAMED.values()} <= set(top._HOMES)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for name, home in top._HOMES.items():
+            assert getattr(top, name) is getattr(importlib.import_module(f"fegear.{home}"), name)

@@ -358,4 +358,5 @@ TOLERANCE_ROBUSTNESS = teeth_stage(
         Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ,
     ),
     forecast=forecast_draws,
+    in_points=True,
 )  # fmt: skip

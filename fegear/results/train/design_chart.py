@@ -349,4 +349,5 @@ DESIGN_CHART = Stage(
     ),
     cites=citing(Citation("lin-townsend-oswald", "design charts of tip relief by dynamic factor")),
     forecast=_forecast,
+    in_points=True,
 )
