@@ -22,6 +22,7 @@ from fegear.output.draw_png import draw_pictures
 from fegear.output.figures import _write_field
 from fegear.results.catalogue import STAGES
 from fegear.results.gear.load_positions import stiffness_inputs
+from fegear.studies.cost import knobs
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.knobs import solid_knobs
 
@@ -208,25 +209,35 @@ def test_a_contact_as_wide_as_a_load_makes_it_is_not_called_the_usual_one():
         assert np.allclose(found.half_widths, 0.02 * 3e-3) is said
 
 
-def test_the_cost_study_varies_what_the_solid_depends_on():
+@pytest.mark.parametrize(
+    ("factors", "waves"),
+    [((2.5, 1.25), (0.75, 2.0)), pytest.param(knobs._FACTORS, knobs._WAVES, marks=pytest.mark.long)],
+    ids=["two of each", "as it is"],
+)
+def test_the_cost_study_varies_what_the_solid_depends_on(monkeypatch, factors, waves):
     """Errors fall as edges shorten and functions are added, and neither is free."""
+    finest = {"_FACTORS": (*factors, 1.0), "_WAVES": (*waves, 2.5)} if len(factors) == 2 else {}
+    for name, values in finest.items():
+        monkeypatch.setattr(knobs, name, values)
+        monkeypatch.setattr(knobs, "_OF_SLICES", np.array([*factors, 1.0]))
+    face = ["gear.a.face_width=5 mm"] if finest else []
     with one_thread():
-        knobs = solid_knobs(asked(read_scene(CASE, ["stiffness.face_positions=3", "stiffness.positions=3"])))
-    assert {(knob.quantity, knob.name) for knob in knobs} == {
+        found = solid_knobs(asked(read_scene(CASE, ["stiffness.face_positions=3", "stiffness.positions=3", *face])))
+    assert {(knob.quantity, knob.name) for knob in found} == {
         (quantity, name)
         for quantity in ("c_0 over the face", "c_1 over the face", "root tension over the face")
         for name in ("edges of the section", "functions per module of face", "edges of the section, slices")
     }
-    slices = [knob for knob in knobs if knob.name == "edges of the section, slices"]
+    slices = [knob for knob in found if knob.name == "edges of the section, slices"]
     assert len(slices) == 3
     # Root tension of slices is up to .37 of its largest off along the face, though largest values are .21 apart.
     most = {"root tension over the face": 0.4}
     assert all(knob.error.max() < most.get(knob.quantity, 0.1) for knob in slices)
-    for knob in (one for one in knobs if one not in slices):
+    for knob in (one for one in found if one not in slices):
         assert knob.error[-1] < 0.7 * knob.error[0], (knob.quantity, knob.name)
         assert knob.seconds[-1] > knob.seconds[0]
-    by_name = {(knob.quantity, knob.name): knob.error for knob in knobs}
-    assert by_name["c_0 over the face", "functions per module of face"][2] < 0.01
+    by_name = {(knob.quantity, knob.name): knob.error for knob in found}
+    assert by_name["c_0 over the face", "functions per module of face"][-1] < 0.01
 
 
 def test_python_asks_for_it_in_a_line(results, cache):

@@ -24,7 +24,7 @@ TOOTH = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.1)
 WIDTH, BORE, NU = 4.0, 3.0, 0.3
 RIM, HUB = 6.6, 4.2
 FACE = (-0.5 * WIDTH, 0.5 * WIDTH)
-COARSE = replace(SolidSettings().scaled(2.0), least_degree=6)
+COARSE = replace(SolidSettings().scaled(2.5), least_degree=6)
 PLACES = (-2.0, -1.0, 0.0, 1.0, 2.0)
 
 

@@ -83,7 +83,7 @@ def test_every_key_can_be_changed_and_removed_where_it_stands(text):
     document = tomllib.loads(text)
     paths = list(places(document))
     assert paths
-    for path in paths if len(paths) < 5 or text == HARD else random.Random(1).sample(paths, 4):  # noqa: S311
+    for path in paths if len(paths) < 5 or text == HARD else random.Random(1).sample(paths, 2):  # noqa: S311
         held = value_at(document, path)
         assert with_value(text, path, literal(held)) == text
         new = with_value(text, path, '"new # [x]"')

@@ -412,7 +412,7 @@ def test_the_command_writes_a_case_that_runs_and_replaces_nobody_s(tmp_path, mon
     code, words = say("import", "box.rexs")
     assert (code, Path("box.toml").is_file()) == (0, True)
     assert "Wrote box.toml" in words
-    assert say("run", "box.toml", "--no-plots", "--results", "misalignment,geometry")[0] == 0
+    assert say("run", "box.toml", "--no-plots", "--results", "geometry")[0] == 0
     code, words = say("import", "box.rexs")
     assert code == 2
     assert "is there already" in words
