@@ -2,11 +2,13 @@
 
 Browsers draw MathML by themselves, so the pages need neither a script nor a network; only the font, without which
 brackets and roots do not grow, comes with the site (STIX Two Math, SIL Open Font License, as packaged by ziamath).
-``$$`` alone on a line opens and closes a displayed equation; ``$...$`` stands in a line of text.
+``$$`` alone on a line opens and closes a displayed equation, which gets a number on its page; ``$...$`` stands in a
+line of text.
 """
 
 from __future__ import annotations
 
+import itertools
 import re
 import xml.etree.ElementTree as ET
 from importlib.metadata import distribution
@@ -51,8 +53,14 @@ def mathml(tex: str, *, display: bool) -> str:
 
 class _Displayed(Preprocessor):
     def run(self, lines: list[str]) -> list[str]:
+        count = itertools.count(1)
+
         def stash(found: re.Match[str]) -> str:
-            html = f'<div class="equation">{mathml(found[1], display=True)}</div>'
+            number = next(count)
+            html = (
+                f'<div class="equation" id="equation-{number}">{mathml(found[1], display=True)}'
+                f'<a class="number" href="#equation-{number}">({number})</a></div>'
+            )
             return f"\n{self.md.htmlStash.store(html)}\n"
 
         return _DISPLAY.sub(stash, "\n".join(lines)).split("\n")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import importlib.util
+import inspect
 import os
 import re
 import subprocess
@@ -20,7 +22,7 @@ DOCS = ROOT / "docs"
 
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
-    "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export",
+    "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export", "fem",
     "gear-with-its-width", "helical", "helical-misalignment", "load-over-the-face", "proofs", "python",
     "python-mechanics", "several-meshes",
     "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table", "sweep-on-a-cluster",
@@ -404,3 +406,51 @@ def test_a_case_of_the_gallery_that_does_not_run_says_why_and_others_have_run_be
     assert [bool(words) for words in said] == [False, True, False, True], said
     assert "nonsense" in said[1]
     assert all((folder / "report.html").is_file() for folder in out[::2])
+
+
+def _called(page):
+    """Dotted names that the programs of a page use, as far as they come from an import."""
+    home, used = {}, set()
+    for block in snippets.blocks(page):
+        tree = ast.parse(block.text) if block.kind == "python" and not block.file else ast.Module([], [])
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                home |= {one.asname or one.name: f"{node.module}.{one.name}" for one in node.names}
+            elif isinstance(node, ast.Import):
+                home |= {one.name: one.name for one in node.names}
+        for node in ast.walk(tree):
+            if isinstance(node, (ast.Attribute, ast.Name)):
+                first, _, rest = ast.unparse(node).partition(".")
+                used.add(f"{home.get(first, '')}.{rest}".rstrip("."))
+    return used
+
+
+def _functions(name):
+    """A documented function, or the public functions of a documented module, by dotted names."""
+    parent, _, last = name.rpartition(".")
+    found = getattr(importlib.import_module(parent), last)
+    if not inspect.ismodule(found):
+        return {name} if inspect.isfunction(found) else set()
+    return {
+        f"{name}.{key}" for key, one in vars(found).items()
+        if inspect.isfunction(one) and one.__module__ == name and not key.startswith("_")
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["top", "geometry", "fem", "formulas"])
+def test_every_function_of_the_reference_stands_in_a_program_that_is_run(name):
+    importlib.import_module("fegear.formulas.agma.agma908")
+    documented = re.findall(r"^::: (\S+)", (DOCS / "reference" / f"{name}.md").read_text("utf-8"), re.MULTILINE)
+    asked = set().union(*map(_functions, documented))
+    assert len(asked) > 5
+    assert asked - set().union(*map(_called, PAGES)) == set()
+
+
+def test_equations_are_numbered_page_by_page_and_can_be_linked_to():
+    pytest.importorskip("mkdocs")
+    markdown = pytest.importorskip("markdown")
+    made = markdown.Markdown(extensions=[_hook("equations").Equations()])
+    for _ in range(2):
+        html = made.reset().convert("$$\na = b\n$$\n\ntext\n\n$$\nc = d\n$$\n")
+        assert re.findall(r'id="equation-(\d+)"', html) == ["1", "2"]
+        assert re.findall(r'href="#equation-(\d+)">\((\d+)\)<', html) == [("1", "1"), ("2", "2")]
