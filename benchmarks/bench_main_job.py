@@ -18,8 +18,8 @@ import pytest
 
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.sector import mesh_sector
-from fegear.fem.plane.settings import settings_at
-from fegear.fem.plane.solution import level_for, solve_gear
+from fegear.fem.plane.settings import level_for, settings_at
+from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
 from fegear.fem.plane.whole_gear import whole_gear
 from fegear.geometry.gear import Gear

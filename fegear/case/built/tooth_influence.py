@@ -7,6 +7,12 @@ From ``[accuracy]`` to the settings of the finite-element part.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.mesh import SectorMesh
+
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
@@ -17,9 +23,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.case.accuracy import AccuracyPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
-from fegear.fem.plane.gear import GearInfluence
-from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.settings import MeshSettings, level_for, settings_at
 from fegear.geometry.gear import Gear
 
 
@@ -203,16 +207,11 @@ def settings_for(tolerance: float) -> MeshSettings:
     -------
     MeshSettings
     """
-    from fegear.fem.plane.settings import settings_at
-    from fegear.fem.plane.solution import level_for
-
     return settings_at(level_for(tolerance))
 
 
 def given_settings(accuracy: AccuracyPart) -> dict[str, Any]:
     """Settings that the case gives itself; with any of them nothing is refined."""
-    from fegear.fem.plane.settings import MeshSettings
-
     found = {field.name: getattr(accuracy, field.name) for field in fields(MeshSettings)}
     return {name: value for name, value in found.items() if value is not None}
 
@@ -226,8 +225,6 @@ def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
 
 def seconds_of_gear(settings: MeshSettings) -> float:
     """About how many seconds the influence functions of one gear take, with their error estimate, from nothing."""
-    from fegear.fem.plane.settings import MeshSettings
-
     usual = MeshSettings()
     finer = usual.root_edge_length / settings.root_edge_length * usual.flank_edge_length / settings.flank_edge_length
     return float(_SECONDS * finer ** (0.5 * _GROWTH) * (settings.order / usual.order) ** _ORDER_GROWTH)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields, replace
 
+import numpy as np
+
 from fegear.base.errors import InputError
 
 #: Unknowns of a sector beyond which neither time nor memory suffices: some 20 GB.
@@ -134,8 +136,17 @@ class MeshSettings:
 LEVEL_RATIO = math.sqrt(2.0)
 #: Levels that can be asked for: edge lengths 4.8 to 0.25 times the default.
 COARSEST_LEVEL, FINEST_LEVEL = -4.5, 4.0
+#: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md).
+_LEVELS = ((1e-2, -4.5), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))
 
 
 def settings_at(level: float) -> MeshSettings:
     """Settings of a level: 0 the default, every further one with edges shorter by the square root of two."""
     return MeshSettings().refined(LEVEL_RATIO**-level)
+
+
+def level_for(tolerance: float) -> float:
+    """Level of `settings_at` that usually meets a relative tolerance, a multiple of a half: -2 for 1e-3, 0 for 1e-4."""
+    decades, levels = zip(*((-math.log10(known), level) for known, level in _LEVELS), strict=True)
+    between = float(np.interp(-math.log10(tolerance), decades, levels))
+    return min(max(0.5 * math.ceil(2.0 * between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)

@@ -9,13 +9,10 @@ package and of the geometry among it, so that a changed program never reads what
 from __future__ import annotations
 
 import dataclasses
-import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
-
-import numpy as np
 
 from fegear.base.plain import code_version, content_key, pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
@@ -26,16 +23,12 @@ from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.root_stress import FilletStrain
 from fegear.fem.plane.sector import mesh_sector
-from fegear.fem.plane.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
+from fegear.fem.plane.settings import FINEST_LEVEL, LEVEL_RATIO, MeshSettings, level_for, settings_at
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane
 from fegear.geometry.involute_tooth import InvoluteTooth
 
 Progress = Callable[[str], None]
-
-#: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md).
-_LEVELS = ((1e-2, -4.5), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))
-
 
 #: How many solutions are tried at most.
 _MOST_ROUNDS = 4
@@ -222,13 +215,6 @@ def _with_errors(known: GearInfluence, key: str, cache: SolutionCache) -> GearIn
 
 def _shape(gear: Gear) -> tuple[InvoluteTooth, float, float, Plane]:
     return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
-
-
-def level_for(tolerance: float) -> float:
-    """Level of `settings_at` that usually meets a relative tolerance, a multiple of a half: -2 for 1e-3, 0 for 1e-4."""
-    decades, levels = zip(*((-math.log10(known), level) for known, level in _LEVELS), strict=True)
-    between = float(np.interp(-math.log10(tolerance), decades, levels))
-    return min(max(0.5 * math.ceil(2.0 * between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)
 
 
 Shape = TypeVar("Shape")
