@@ -192,6 +192,25 @@ def planetary_set_18_36_93() -> Iterator[Compared]:
     yield printed(2.0 * ring.tip_radius * module * 1e3, "1906.081", 5e-4)  # the shift is printed to 5e-5
 
 
+@ROWS.add("root of two ring gears by ISO 6336", "printed", "KISSsoft 03/2017 reports on the NREL 5 MW gearbox")
+def rings_of_5_mw() -> Iterator[Compared]:
+    """Y_F, Y_S, chord, lever, fillet radius and angle of the load; c_gamma_alpha over c' of planet and ring."""
+    from fegear.formulas.iso6336.part1_stiffness import stiffness
+    from fegear.formulas.iso6336.part3_internal import RingTooth, ring_root_form
+
+    for teeth, shift, cutter, tip, path, texts in (
+        (56, -0.5013, 36, 2475.118 / 45.0, 169.815 / 45.0, ("1.27", "2.13", "2.875", "1.742", "0.494", "19.59")),
+        (93, 0.1171, 30, 1906.081 / 21.0, 100.284 / 21.0, ("1.20", "2.34", "2.703", "1.444", "0.418", "18.63")),
+    ):
+        ring = RingTooth(teeth, shift, 1.25, cutter, 0.0, 0.3)
+        form = ring_root_form(ring, ring.load_diameter(tip, path / (math.pi * math.cos(math.radians(20.0)))))
+        angle = math.degrees(form.load_angle)
+        found = form.Y_F, form.Y_S, form.root_chord, form.moment_arm, form.fillet_radius, angle
+        yield from map(printed, found, texts)
+    mesh = stiffness((36, -93), 1.6176, profile_shift=(0.5039, 0.1171), dedendum=(1.25, 1.25))
+    yield printed(mesh.mesh_alpha / mesh.single, f"{20.563 / 14.053:.4f}", 1e-4)
+
+
 @ROWS.add(
     "natural frequencies and modes of a planetary set", "printed", "Lin and Parker (1999), example, three planets"
 )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import FegearError, RangeError
-from fegear.formulas.iso6336.part3_internal import outline_root_form
+from fegear.formulas.iso6336.part3_internal import outline_root_form, ring_root_form, ring_tooth
 from fegear.formulas.iso6336.part3_root_stress import rack_tooth, root_form
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.outline import tooth_outline
@@ -77,3 +77,38 @@ def test_loads_beside_the_root_section_are_refused():
     assert outline_root_form(tooth, 2.0 * 30.45).moment_arm < 0.35
     with pytest.raises(RangeError, match="there is no lever"):
         outline_root_form(tooth, 2.0 * 30.9)
+
+
+def test_the_standards_ring_has_the_section_of_its_outline():
+    """Random rings: the rack that stands for the cutter leaves chord and lever to 3 %, and a blunter fillet."""
+    rng, seen = np.random.default_rng(65), 0
+    while seen < 25:
+        try:
+            cutter = PinionCutter(int(rng.integers(25, 40)), 0.0, 1.25, tip_radius=rng.uniform(0.2, 0.35))
+            tooth = InternalTooth(int(rng.integers(60, 160)), cutter, profile_shift=rng.uniform(-0.3, 0.3))
+            low, high = tooth.involute_radii
+            at = 2.0 * (low + rng.uniform(0.05, 0.3) * (high - low))
+            outline, found = outline_root_form(tooth, at), ring_root_form(ring_tooth(tooth), at)
+        except FegearError:
+            continue
+        assert found.root_chord == pytest.approx(outline.root_chord, rel=0.03)
+        assert found.moment_arm == pytest.approx(outline.moment_arm, rel=0.03)
+        assert found.load_angle == pytest.approx(outline.load_angle, abs=1e-9)
+        assert 1.0 < found.fillet_radius / outline.fillet_radius < 1.6
+        seen += 1
+
+
+@pytest.mark.parametrize("degrees", [1e-4, 12.0, 25.0])
+def test_helical_rings_go_through_their_virtual_tooth(degrees):
+    """z_n of ISO 21771, cut as deep and shifted as the ring is; with the helix it goes to the spur ring."""
+    beta, cutter = math.radians(degrees), PinionCutter(30, 0.05, 1.25, tip_radius=0.25)
+    helical = ring_tooth(InternalTooth(75, cutter, profile_shift=0.1, helix_angle=beta, thickness_allowance=0.02))
+    spur = ring_tooth(InternalTooth(75, cutter, profile_shift=0.1, thickness_allowance=0.02))
+    base = math.asin(math.sin(beta) * math.cos(math.radians(20.0)))
+    assert helical.teeth == pytest.approx(75.0 / (math.cos(base) ** 2 * math.cos(beta)), rel=1e-12)
+    assert helical.profile_shift == pytest.approx(0.1 - 0.01 / math.tan(math.radians(20.0)), rel=1e-12)
+    assert helical.dedendum == pytest.approx(spur.dedendum, abs=0.02)
+    if degrees < 1.0:
+        forms = [ring_root_form(one, one.load_diameter(one.teeth - 2.0, 1.6)) for one in (helical, spur)]
+        assert pytest.approx(forms[1].Y_F, rel=1e-6) == forms[0].Y_F
+        assert pytest.approx(forms[1].Y_S, rel=1e-6) == forms[0].Y_S

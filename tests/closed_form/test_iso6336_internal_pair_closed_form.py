@@ -10,7 +10,7 @@ from fegear.formulas.iso6336 import part2_pitting as flanks
 from fegear.formulas.iso6336.pair_geometry import Body, of_pair
 from fegear.formulas.iso6336.part1_dynamic import reduced_mass
 from fegear.formulas.iso6336.part1_stiffness import stiffness
-from fegear.formulas.iso6336.part3_internal import ring_load_diameter
+from fegear.formulas.iso6336.part3_internal import ring_root_form, ring_tooth
 from fegear.formulas.iso6336.part3_root_stress import ring_rim_factor
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
@@ -18,16 +18,19 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.tooth import Tooth
 
 
-def random_pairs(count, seed):
+def random_pairs(count, seed, helix=0.0):
     rng, found = np.random.default_rng(seed), []
+    cut, hand = {"helix_angle": helix}, "left" if helix else "spur"
     while len(found) < count:
         try:
-            planet = Gear(Tooth(int(rng.integers(18, 36)), profile_shift=rng.uniform(0.0, 0.4)), 4e-3, 15e-3, 30e-3)
+            tooth = Tooth(int(rng.integers(18, 36)), profile_shift=rng.uniform(0.0, 0.4), **cut)
+            planet = Gear(tooth, 4e-3, 15e-3, 30e-3, hand=hand)
             teeth = planet.teeth + int(rng.integers(20, 60))
             ring = InternalTooth(
-                teeth, PinionCutter(18), profile_shift=rng.uniform(-0.4, 0.2), tip_radius=teeth / 2 - 0.8
-            )
-            wheel = Gear(ring, 4e-3, 4e-3 * (ring.root_radius + 3.0), 40e-3)
+                teeth, PinionCutter(18), profile_shift=rng.uniform(-0.4, 0.2),
+                tip_radius=teeth / 2 / math.cos(helix) - 0.8, **cut,
+            )  # fmt: skip
+            wheel = Gear(ring, 4e-3, 4e-3 * (ring.root_radius + 3.0), 40e-3, hand=hand)
             pair = GearPair(planet, wheel) if rng.random() < 0.5 else GearPair(wheel, planet)
             if 1.05 < pair.contact_ratio < 1.95 and pair.internal:
                 found.append(pair)
@@ -68,6 +71,35 @@ def test_contact_stress_is_that_of_hertz_at_the_curvatures_of_the_path(pairs):
         assert z_d == 1.0
 
 
+def test_helical_flanks_are_pressed_as_hertz_says_in_their_normal_section():
+    """Z_H Z_E at the pitch point: F_bt / b on cylinders of rho_t / cos(beta_b); Z_B between spur and overlap 1."""
+    for pair in random_pairs(10, 29, helix := math.radians(14.0)):
+        geometry, load = of_pair(pair), 5e3
+        tangential = load * pair.driver.base_radius / pair.driver.pitch_radius
+        material = pair.driver.material
+        modulus = material.young_modulus / (1.0 - material.poisson_ratio**2)
+        bent = curvature(pair, 0.0) * math.cos(pair.driver.base_helix_angle)
+        hertz = math.sqrt(load / geometry.face_width * bent * modulus / (2.0 * math.pi))
+        factors = (flanks.zone_factor(geometry), flanks.elasticity_factor(geometry))
+        assert flanks.nominal_contact_stress(geometry, tangential, factors) == pytest.approx(hertz, rel=1e-9)
+        (m_1, _), (z_b, z_d) = flanks.single_pair_factors(geometry)
+        part = min(geometry.overlap_ratio, 1.0)
+        assert part == pytest.approx(min(30e-3 * math.sin(helix) / (math.pi * 4e-3), 1.0), rel=1e-9)
+        assert (z_b, z_d) == (pytest.approx(max(m_1 - part * (m_1 - 1.0), 1.0), rel=1e-12), 1.0)
+        assert geometry._contact_ratio() == pytest.approx(pair.contact_ratio, rel=1e-9)
+
+
+def test_a_helix_that_vanishes_leaves_the_rating_of_the_spur_pair():
+    (spur,), (small,) = (random_pairs(1, 30, helix) for helix in (0.0, 1e-6))
+    one, two = of_pair(spur), of_pair(small)
+    assert small.contact_ratio == pytest.approx(spur.contact_ratio, rel=1e-6)
+    for question in (flanks.zone_factor, lambda g: flanks.single_pair_factors(g)[1][0], reduced_mass):
+        assert question(two) == pytest.approx(question(one), rel=1e-5)
+    forms = [ring_root_form(g, g.load_diameter(g.teeth - 1.6, 1.5)) for g in
+             (ring_tooth(one.gears[1].outline), ring_tooth(two.gears[1].outline))]  # fmt: skip
+    assert pytest.approx(forms[0].Y_F, rel=1e-6) == forms[1].Y_F
+
+
 def test_angles_contact_ratio_and_reduced_curvature_are_those_of_the_pair(pairs):
     for pair in pairs:
         geometry = of_pair(pair)
@@ -84,7 +116,7 @@ def test_the_rings_load_stands_at_its_outer_point_of_single_pair_contact(pairs):
         ring = geometry.members[1]
         at = pair.x_hpstc if ring == "driver" else pair.x_lpstc
         shape = geometry.gears[1]
-        found = ring_load_diameter(shape.outline, shape.active_tip_diameter / geometry.module, pair.contact_ratio)
+        found = ring_tooth(shape.outline).load_diameter(shape.active_tip_diameter / geometry.module, pair.contact_ratio)
         assert found * geometry.module == pytest.approx(2.0 * float(pair.radius(at, ring)), rel=1e-9)
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.formulas.iso6336 import part1_stiffness as stiff
+from fegear.formulas.iso6336 import part3_internal as internal
 from fegear.formulas.iso6336 import part3_root_stress as root
 from fegear.formulas.root_section import section_at_tangent
 from fegear.geometry.gear import Gear
@@ -84,6 +85,40 @@ def test_published_spur_pair_with_the_smaller_shift_on_the_pinion():
             strict=True,
         ):
             assert value == pytest.approx(known, abs=half_a_digit(digits))
+
+
+#: Rings of stages 1 and 2: z, x, z_0 of a cutter with x_0 = 0, tip, m, g_a, printed; h_fP 1.25 and rho_fP .30.
+RINGS = [
+    (56, -0.5013, 36, 2475.118, 45.0, 169.815, (1.27, 2.13, 2.875, 1.742, 0.494, 19.59)),
+    (93, 0.1171, 30, 1906.081, 21.0, 100.284, (1.20, 2.34, 2.703, 1.444, 0.418, 18.63)),
+]
+
+
+@pytest.mark.parametrize(("z", "x", "z_0", "tip", "m", "path", "printed"), RINGS)
+def test_published_rings_have_the_root_of_the_standards_equations(z, x, z_0, tip, m, path, printed):
+    """Y_F, Y_S, s_Fn*, h_F*, rho_F* and alpha_Fen of both rings, every printed digit."""
+    ring = internal.RingTooth(z, x, 1.25, z_0, 0.0, 0.3)
+    ratio = path / (math.pi * m * math.cos(math.radians(20.0)))
+    f = internal.ring_root_form(ring, ring.load_diameter(tip / m, ratio))
+    found = f.Y_F, f.Y_S, f.root_chord, f.moment_arm, f.fillet_radius, math.degrees(f.load_angle)
+    for value, known, digits in zip(found, printed, (2, 2, 3, 3, 3, 2), strict=True):
+        assert value == pytest.approx(known, abs=half_a_digit(digits))
+
+
+def test_published_ring_has_the_stiffness_and_stress_of_the_standard():
+    """Stage 2, planet and ring: c', c_gamma_alpha, c_gamma_beta and sigma_F0; C_R is printed with three digits."""
+    found = [
+        stiff.stiffness((36, -93), 1.6176, profile_shift=(0.5039, 0.1171), dedendum=(1.25, 1.25), blank=c)
+        for c in (0.8615, 0.8625)
+    ]
+    assert found[0].single / 1e9 < 14.053 < found[1].single / 1e9
+    exact = stiff.stiffness((36, -93), 1.6176, profile_shift=(0.5039, 0.1171), dedendum=(1.25, 1.25),
+                            blank=stiff.pair_blank_factor([(0.25, 5.0)] * 2))  # fmt: skip
+    assert exact.mesh_alpha / exact.single == pytest.approx(20.563 / 14.053, abs=1e-4)
+    assert exact.mesh_beta / exact.mesh_alpha == pytest.approx(17.479 / 20.563, abs=1e-4)
+    ring = internal.RingTooth(93, 0.1171, 1.25, 30, 0.0, 0.3)
+    f = internal.ring_root_form(ring, ring.load_diameter(1906.081 / 21.0, 1.6176))
+    assert root.nominal_root_stress(f, 285900.438, 0.55, 0.021) / 1e6 == pytest.approx(69.12, abs=half_a_digit(2))
 
 
 @pytest.mark.parametrize(

@@ -57,9 +57,9 @@ _BENT = -1.2
 
 #: What ISO 6336 says of internal teeth alone.
 _RECALLED_OF_RINGS = (
-    "what ISO 6336 has for internal teeth alone (q' with 1/z_n2 = 0, Z_D = 1, the root section at the 60 degree "
-    "tangent, Y_B, a held ring as an infinite mass in K_v) is recalled: no printed example was at hand. Y_F and Y_S "
-    "are those of the teeth's own outline"
+    "what ISO 6336 has for internal teeth alone is recalled; q' with 1/z_n2 = 0, Y_F and Y_S at the 60 degree tangent "
+    "(6.2 and 7.2 of part 3) give the printed digits of two published spur rings; Z_D = 1, Y_B of thin rims and a held "
+    "ring as an infinite mass in K_v had no printed example at hand"
 )
 
 

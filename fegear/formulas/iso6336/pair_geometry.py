@@ -122,7 +122,7 @@ class PairGeometry:
     Raises
     ------
     RangeError
-        If the first gear has more teeth or is internal, an internal pair is helical, or the gears do not meet.
+        If the first gear has more teeth or is internal, or the gears do not meet.
     """
 
     gears: tuple[GearShape, GearShape]
@@ -145,9 +145,6 @@ class PairGeometry:
             raise RangeError("module", self.module, "must be positive")
         if not 0.0 <= self.helix_angle < math.pi / 2:
             raise RangeError("helix angle", self.helix_angle, "must lie between 0 and 90 deg, without the hand's sign")
-        if self.internal and self.helix_angle:
-            given = f"{math.degrees(self.helix_angle):.6g} deg"
-            raise RangeError("helix angle", given, "must be 0: of internal pairs only spur ones are rated")
         if math.isnan(self.face_width):
             object.__setattr__(self, "face_width", min(g.face_width for g in self.gears))
         if not self.centre_distance > 0.5 * abs(sum(self.base_diameters)):

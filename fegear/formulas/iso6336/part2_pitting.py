@@ -100,13 +100,9 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
             )
         factors.append(math.tan(pair.working_pressure_angle) / math.sqrt(product))
     m = (factors[0], factors[1])
-    if pair.internal:  # Z_D of an internal wheel is 1 always (6.2)
-        return m, (max(m[0], 1.0), 1.0)
-    if pair.helix_angle == 0.0:
-        return m, (max(m[0], 1.0), max(m[1], 1.0))
     part, helical = min(pair.overlap_ratio, 1.0), math.sqrt(tip_relief)
-    z_b, z_d = (max(v - part * (v - helical), 1.0) for v in m)
-    return m, (z_b, z_d)
+    z_b, z_d = (max(v - part * (v - helical), 1.0) if pair.helix_angle else max(v, 1.0) for v in m)
+    return m, (z_b, 1.0 if pair.internal else z_d)  # Z_D of an internal wheel is 1 always (6.2)
 
 
 def elasticity_factor(pair: PairGeometry) -> float:

@@ -96,8 +96,8 @@ class RootForm:
     height: float
 
 
-def _auxiliary_angle(g: float, z: float, h: float) -> float:
-    """Solve theta = (2 G / z_n) tan(theta) - H; Newton from the standard's pi/6."""
+def auxiliary_angle(g: float, z: float, h: float) -> float:
+    """Solve theta = (2 G / z_n) tan(theta) - H, z_n negative of internal gears; Newton from the standard's pi/6."""
     theta = math.pi / 6
     for _ in range(50):
         t = math.tan(theta)
@@ -107,7 +107,7 @@ def _auxiliary_angle(g: float, z: float, h: float) -> float:
             break
         if abs(step) < 1e-14:
             return theta
-    raise ConvergenceError("ISO 6336-3's auxiliary angle theta does not settle: the tooth has no 30 degree tangent")
+    raise ConvergenceError("ISO 6336-3's auxiliary angle theta does not settle: the fillet has no such tangent")
 
 
 def root_form(gear: RackTooth, load_diameter: float) -> RootForm:
@@ -130,7 +130,7 @@ def root_form(gear: RackTooth, load_diameter: float) -> RootForm:
     if e < -1e-12:
         raise RangeError("rack.tip_radius", gear.tip_radius, "is wider than the rack's tip: the fillets overlap")
     g = gear.tip_radius - gear.dedendum + x
-    theta = _auxiliary_angle(g, z, 2.0 / z * (math.pi / 2 - e) - math.pi / 3)
+    theta = auxiliary_angle(g, z, 2.0 / z * (math.pi / 2 - e) - math.pi / 3)
     c = math.cos(theta)
     if not 0.0 <= theta <= math.pi / 2 - a + 1e-9:
         raise RangeError(

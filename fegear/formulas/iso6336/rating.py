@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import RangeError
 from fegear.formulas.iso6336 import part1_dynamic as dynamic
 from fegear.formulas.iso6336 import part1_face_load as misalignment
 from fegear.formulas.iso6336 import part1_transverse as running_in
@@ -20,7 +21,7 @@ from fegear.formulas.iso6336.conditions import COMPUTED, Conditions, FactorTable
 from fegear.formulas.iso6336.part1_face_load import root_exponent
 from fegear.formulas.iso6336.part1_stiffness import Stiffness, blank_factor, pair_blank_factor, stiffness
 from fegear.formulas.iso6336.part2_pitting import FlankStrength, contact_ratio_factor, flank_strength
-from fegear.formulas.iso6336.part3_internal import outline_root_form, ring_load_diameter
+from fegear.formulas.iso6336.part3_internal import outline_root_form, ring_root_form, ring_tooth
 from fegear.formulas.iso6336.part3_pair import RatingChoice, RootRating, ToothLoad, rate, rate_form
 from fegear.formulas.iso6336.part3_root_stress import (
     RackTooth,
@@ -276,8 +277,10 @@ def _root_rating(conditions: Conditions, i: int) -> RootRating:
     choice = RatingChoice(conditions.edition, max(q.grade for q in conditions.quality))
     if gear.outline is not None:
         rim = 1.0 if gear.rim_thickness is None else ring_rim_factor(gear.rim_thickness / pair.module)
-        at = ring_load_diameter(gear.outline, gear.active_tip_diameter / pair.module, load.contact_ratio)
-        return rate_form(gear.teeth, outline_root_form(gear.outline, at), at, pair.module, load, choice, rim)
+        ring = ring_tooth(gear.outline)
+        depth = (gear.active_tip_diameter + pair.diameters[i]) / pair.module
+        at = ring.load_diameter(ring.teeth + depth, load.contact_ratio)
+        return rate_form(-ring.teeth, ring_root_form(ring, at), at, pair.module, load, choice, rim)
     z_n = virtual_teeth(gear.teeth, pair.helix_angle, pair.pressure_angle)
     tooth = RackTooth(
         z_n, gear.generating_shift, gear.dedendum, gear.tip_radius, pair.pressure_angle, gear.residual_undercut
@@ -317,7 +320,7 @@ def root_stress(
         deep = "Y_F: the virtual contact ratio is 2 or more; the load stands where the formula for one pair says"
     table.add("Y_F", (y_f[0], y_f[1]), f"{part}, clause 6, method B", deep)
     table.add("q_s", (_notch(found[0]), _notch(found[1])), f"{part}, 7.2")
-    table.add("Y_S", of_form("Y_S"), f"{part}, clause 7, method B")
+    table.add("Y_S", of_form("Y_S"), f"{part}, clause 7, method B", _by_outline(conditions, found[1]))
     table.add("Y_beta", both("helix"), f"{part}, clause 8")
     table.add("Y_B", both("rim"), f"{part}, clause 9")
     table.add("Y_DT", both("deep_tooth"), f"{part}, clause 10")
@@ -334,6 +337,19 @@ def root_stress(
     table.add("sigma_F0", nominal, f"{part}, 5.2", remark)
     table.add("sigma_F", stress, f"{part}, 5.2")
     return stress, found
+
+
+def _by_outline(conditions: Conditions, found: RootRating) -> str:
+    """What the exact outline of a spur ring makes of Y_F Y_S, where it has such a section."""
+    tooth = conditions.geometry.gears[1].outline
+    if tooth is None or conditions.geometry.helix_angle:
+        return ""
+    try:
+        form = outline_root_form(tooth, found.load_diameter)
+    except RangeError:
+        return ""
+    product, own = found.form.Y_F * found.form.Y_S, form.Y_F * form.Y_S
+    return f"Y_F Y_S: the outline that the ring's cutter leaves has {own:.4g}, {own / product - 1.0:+.1%}"
 
 
 def _notch(found: RootRating) -> float:
