@@ -68,7 +68,7 @@ def test_drawn_flanks_touch_and_every_layer_is_painted(program, tmp_path):
     e = ran.outcomes[Task("loaded-pair", "I")].data.engagement
     with chromium.Browser(program("chromium"), 900, 600) as browser:
         browser.open(page)
-        # True to scale the flanks of loaded pairs touch, as far as points of the outline show the dents.
+        # True to scale the flanks of loaded pairs touch; what is missing is the dents between points of the outline.
         looked = 0
         for place in np.linspace(0.03, 0.97, 12):
             state = e.solve(e.grid([e.pair.x_start + place * e.pair.base_pitch]), [3000.0])
@@ -76,7 +76,7 @@ def test_drawn_flanks_touch_and_every_layer_is_painted(program, tmp_path):
                 x = float(state.grid.contacts.x[row, 0])
                 if state.loads[row, 0, 0] > 0.0 and min(x - e.pair.x_start, e.pair.x_end - x) > 0.9e-3:
                     gap = browser.run(f"apart({j}, {place}, {x * 1e3})") * 1e-3
-                    assert abs(gap) < 0.1 * state.transmission_error[0, 0]
+                    assert abs(gap) < 0.03 * state.transmission_error[0, 0]
                     looked += 1
         assert looked > 10
         # Each layer is painted, the colours reach both ends of the scale where the largest stress is.

@@ -16,8 +16,10 @@ from fegear.fem.plane.ring import close_ring
 
 #: Boundaries of a sector that are no outline of a tooth.
 _INNER = ("side_a", "side_b", "bore")
-#: Points of the outline stand so far apart at least, corners excepted [modules].
+#: Vertices of the outline stand so far apart at least, corners excepted [modules].
 _APART = 0.04
+#: Points between them, at most so far apart: on the loaded flank, where dents are narrow, and elsewhere [modules].
+_DENTS, _ELSEWHERE = 0.04, 0.15
 #: The pressure that loads the mesh takes this share of the room to the nearest end of the flank.
 _ROOM_SHARE = 0.7
 
@@ -32,14 +34,17 @@ class OutlineMotion:
         Of the same gear, on the same mesh.
     points : ndarray, shape (2, N)
         The outline of a tooth in its own frame (centre line along +y), from the middle of its left space to the right.
-    response : ndarray, shape (2 n, 2 K + 1, 2 N)
-        Under forces on the unknowns of tooth 0's flank: x of all points, then y, in the frame of their own tooth.
+    place : ndarray, shape (N,)
+        Of the points in the row of the V vertices: 3.25 is a quarter of the way from vertex 3 to vertex 4.
+    response : ndarray, shape (2 n, 2 K + 1, 2 V)
+        Under forces on the unknowns of tooth 0's flank: x of all vertices, then y, in the frame of their own tooth.
     reach : int
         K.
     """
 
     influence: Influence
     points: Array
+    place: Array
     response: NDArray[np.float32]
     reach: int
 
@@ -64,7 +69,8 @@ class OutlineMotion:
         -----
         The mesh resolves a pressure of half-width a; the dent of the true one, of half-width b, differs from that by
         `log_slope` times the difference of the half-planes' own (`half_plane_dent`), which dies out with the square of
-        the distance: so the surfaces of two gears under their Hertzian pressure fit each other.
+        the distance: so the surfaces of two gears under their Hertzian pressure fit each other. Few vertices stand on a
+        flank: between them runs what they move by apart from the dent, which is known in every point.
         """
         from scipy.sparse import csr_array
 
@@ -77,11 +83,20 @@ class OutlineMotion:
         forces = csr_array(flank.patches(arc, wide).T.astype(np.float32))  # a contact presses on few of the nodes
         found = (forces @ self.response.reshape(forces.shape[1], -1)).reshape(arc.size, 2 * self.reach + 1, 2, -1)
         moved = {k: found[:, k + self.reach].transpose(1, 2, 0) for k in range(-self.reach, self.reach + 1)}
-        place, inward = self._contact(arc)
-        distance = np.hypot(*(self.points[:, :, None] - place[:, None]))
-        dent = half_plane_dent(distance, width) - half_plane_dent(distance, wide)
-        moved[0] = moved[0] + self.influence.log_slope * dent * inward[:, None]
+        at, inward = self._contact(arc)
+        distance = np.hypot(*(self.points[:, :, None] - at[:, None]))
+        into = self.influence.log_slope * inward[:, None]
+        vertices = distance[np.searchsorted(self.place, np.arange(found.shape[-1]))]
+        moved[0] = moved[0] - half_plane_dent(vertices, wide) * into
+        moved = {k: self._between(one) for k, one in moved.items()}
+        moved[0] = moved[0] + half_plane_dent(distance, width) * into
         return moved
+
+    def _between(self, moved: Array) -> Array:
+        """Displacements of the points from those of the vertices, shape (2, V, P)."""
+        low = np.minimum(self.place.astype(int), moved.shape[1] - 2)
+        share = (self.place - low)[:, None]
+        return moved[:, low] * (1.0 - share) + moved[:, low + 1] * share
 
     def _contact(self, arc: Array) -> tuple[Array, Array]:
         """Places of contacts and the directions into the tooth there, shape (2, P) each."""
@@ -125,7 +140,24 @@ def outline_motion(influence: Influence, reach: int) -> OutlineMotion:
         ring = close_ring(mesh, elasticity, np.union1d(influence.flank.dofs, watch), reach)
         response = ring.respond(influence.flank.dofs, watch)
     stacked = np.stack([response[k].T for k in range(-reach, reach + 1)], axis=1).astype(np.float32)
-    return OutlineMotion(influence, mesh.points[:, chain], stacked, reach)
+    return OutlineMotion(influence, *_between(mesh, chain), stacked, reach)
+
+
+def _between(mesh: SectorMesh, chain: Index) -> tuple[Array, Array]:
+    """Points of the outline, shape (2, N), and their places in the row of its vertices: along the mesh's edges."""
+    middles = {frozenset(edge): middle for part in mesh.edges.values() for *edge, middle in part.T.tolist()}
+    flank = set(mesh.edges["flank"][:2].ravel().tolist())
+    points, places = [], []
+    for i, edge in enumerate(zip(chain.tolist(), chain[1:].tolist(), strict=False)):
+        a, b = mesh.points[:, edge].T
+        middle = middles.get(frozenset(edge))
+        bend = 0.0 * a if middle is None else 2.0 * mesh.points[:, middle] - a - b
+        count = int(np.ceil(np.hypot(*(b - a)) / (_DENTS if flank.issuperset(edge) else _ELSEWHERE)))
+        share = np.arange(count) / count
+        points.append(np.outer(a, 1.0 - share) + np.outer(b, share) + np.outer(bend, 2.0 * share * (1.0 - share)))
+        places.append(i + share)
+    points.append(mesh.points[:, chain[-1:]])
+    return np.hstack(points), np.append(np.hstack(places), chain.size - 1.0)
 
 
 def _outline(mesh: SectorMesh) -> Index:
