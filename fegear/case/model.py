@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from fegear.case.accuracy import AccuracyPart
+from fegear.case.accuracy import AccuracyPart, StiffnessPart
 from fegear.case.design import DesignPart, FlankDesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
@@ -19,7 +19,6 @@ from fegear.case.part import Part, Table
 from fegear.case.planetary import PlanetaryPart
 from fegear.case.renamed import SCHEMA_VERSION
 from fegear.case.shaft import BearingPart, ShaftInSpacePart
-from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
 from fegear.case.train import TrainPart
 from fegear.case.transmissibility import TransmissibilityPart

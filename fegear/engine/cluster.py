@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, MissingLibraryError
-from fegear.engine.point_job import Job, Reply, failed
+from fegear.engine.processes import Job, Reply, failed
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator, Mapping

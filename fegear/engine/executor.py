@@ -17,8 +17,7 @@ from fegear.base.plain import code_version, content_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
-from fegear.engine.point_job import Job, Reply, here, opened
-from fegear.engine.processes import cores, on_cores
+from fegear.engine.processes import Job, Reply, cores, here, on_cores, opened
 from fegear.engine.stage import Progress
 
 Todo = Mapping[int, object]

@@ -178,8 +178,7 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
 
 def _export_meshes_in_motion(scene: Scene, folder: Path) -> tuple[list[Path], list[str]]:
     """Write the FMU of every loaded pair."""
-    from fegear.output.fmu import c_compiler, write_fmu
-    from fegear.output.mesh_model import mesh_models
+    from fegear.output.fmu import c_compiler, mesh_models, write_fmu
 
     c_compiler()  # before anything is solved
     models = mesh_models(scene)

@@ -15,9 +15,19 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import NO_ROOM, PATH, InputError, shown
 from fegear.base.streams import complain
 from fegear.case.text_file import named_path
-from fegear.output.claim import HeldError, claimed, clear_abandoned, folder_for, undisturbed
 from fegear.output.dataset import write_dataset
-from fegear.output.exchange import JOURNAL, RECORD, check_room, exchange, put_back
+from fegear.output.exchange import (
+    JOURNAL,
+    RECORD,
+    HeldError,
+    check_room,
+    claimed,
+    clear_abandoned,
+    exchange,
+    folder_for,
+    put_back,
+    undisturbed,
+)
 from fegear.output.figures import Drawing, described
 from fegear.output.file_names import file_name
 from fegear.output.report.run import write_report

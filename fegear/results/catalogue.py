@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from fegear.engine.catalogue import Catalogue, Entry
+from fegear.engine.plan import Catalogue, Entry
 from fegear.engine.stage import Stage
 
 # fmt: off

@@ -25,7 +25,7 @@ from fegear.case.reading import build_scene, read_document, set_key
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
-from fegear.engine.point_job import Failure
+from fegear.engine.processes import Failure
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Progress
 from fegear.engine.table import Column, Table

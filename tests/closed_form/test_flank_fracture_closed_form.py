@@ -10,7 +10,7 @@ from fegear.base.errors import RangeError
 from fegear.formulas.hardened_case import HardenedCase, depth_of, lang_hardness, lang_residual_stress
 from fegear.formulas.hertz import stresses_below
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, exposure, half_width, mean_shear
-from fegear.formulas.iso6336.part5_case_depth import crushing_depth, recommended
+from fegear.formulas.iso6336.part5_materials import crushing_depth, recommended
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack

@@ -9,8 +9,14 @@ from scipy.integrate import solve_ivp
 from fegear.base.errors import InputError, RangeError
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel, RigidGear
-from fegear.dynamics.helical_pair.pair_forces import Line, joined_lines, pair_forces, resonant_speeds
-from fegear.dynamics.helical_pair.transmissibility import compliance, reduced_transmissibility
+from fegear.dynamics.helical_pair.transmissibility import (
+    Line,
+    compliance,
+    joined_lines,
+    pair_forces,
+    reduced_transmissibility,
+    resonant_speeds,
+)
 
 
 def gear(mass, a, b, torsion=0.0):

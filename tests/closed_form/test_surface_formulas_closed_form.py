@@ -19,7 +19,7 @@ from fegear.formulas.friction import (
     wimmer,
 )
 from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
-from fegear.formulas.iso6336.fzg_test_gears import fzg_type_a, fzg_type_c
+from fegear.formulas.iso6336.part22_micropitting import fzg_type_a, fzg_type_c
 from fegear.formulas.iso6336.rated import LoadFactors, RatedSurface
 from fegear.formulas.lubricant import Oil
 from fegear.geometry.gear import Gear

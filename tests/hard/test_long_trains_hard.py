@@ -23,8 +23,7 @@ from fegear.dynamics.train.increments import dynamic_increments
 from fegear.dynamics.train.matrices import damping_matrix, elements, projected, stiffness_matrix
 from fegear.dynamics.train.network import Network
 from fegear.dynamics.train.periodic import Periodic
-from fegear.dynamics.train.rounded import in_series
-from fegear.dynamics.train.segments import segment_shapes
+from fegear.dynamics.train.segments import in_series, segment_shapes
 from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train
 
 

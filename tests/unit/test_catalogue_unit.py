@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fegear.engine.catalogue import Catalogue
+from fegear.engine.plan import Catalogue
 from fegear.engine.stage import Stage
 from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
 

@@ -5,8 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from fegear.engine.outcome import Named, Value
-from fegear.output.effects import effects_table, sentence
-from fegear.output.report.effects import effects_page
+from fegear.output.effects import effects_page, effects_table, sentence
 from fegear.studies.effects import Measured, Switched
 
 

@@ -24,7 +24,7 @@ from fegear.base.errors import FegearError, InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.executor import Executor, count_kept, map_points
-from fegear.engine.point_job import Failure
+from fegear.engine.processes import Failure
 from fegear.engine.run import NOTHING_FOR_A_CLUSTER
 from fegear.results.catalogue import STAGES
 

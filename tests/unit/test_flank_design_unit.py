@@ -14,9 +14,8 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages, solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.loaded import FlankPair
-from fegear.design.flanks.descent import descend
 from fegear.design.flanks.forms import FAMILIES, LENGTHS, NUMBERS, FormsAt, GroundRelief, ReliefGrid, held_by
-from fegear.design.flanks.search import best_of_family, quick_values
+from fegear.design.flanks.search import best_of_family, descend, quick_values
 from fegear.design.flanks.topography import (
     FlankLoading,
     design_lines,

@@ -11,9 +11,8 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.reading import build_scene
-from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.plan import make_plan
+from fegear.engine.plan import Catalogue, Entry, make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Need, Stage, Task
 from fegear.engine.table import Column, Table

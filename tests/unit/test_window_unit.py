@@ -36,8 +36,8 @@ from fegear.output.report.blocks import Values
 from fegear.output.report.page import fragment
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.loaded_teeth import loaded_pair
-from fegear.results.relief.harris_map import NOW, load_now, slider_map
 from fegear.results.relief.relief_handles import handled_relief
+from fegear.results.relief.relief_tables import NOW, load_now, slider_map
 from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper
 from fegear.window.bench import Bench

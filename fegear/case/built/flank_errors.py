@@ -18,7 +18,7 @@ from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.part import at
 from fegear.case.text_file import read_columns
-from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
+from fegear.contact.wide.gaps import RIGID, ShaftGaps
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
 

@@ -20,8 +20,7 @@ from fegear.geometry.plausible import refuse_load
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.shaft_gaps import ShaftGaps
+    from fegear.contact.wide.gaps import FlankGaps, ShaftGaps
     from fegear.geometry.flank_modification import FlankModification
 
 #: Panels per module of face.

@@ -186,7 +186,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> Flanks:
 def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
     from fegear.case.built.rated_duty import bore_remarks, width_remarks
-    from fegear.geometry.interference import interference
+    from fegear.geometry.checks import interference
 
     remarks, effects = [], scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):

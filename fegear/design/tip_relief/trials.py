@@ -12,8 +12,7 @@ import numpy as np
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
 from fegear.design.tip_relief.extremes import Bends, Between, removed
-from fegear.design.tip_relief.kink_quadrature import KinkQuadrature
-from fegear.design.tip_relief.kinks import Positions
+from fegear.design.tip_relief.kinks import KinkQuadrature, Positions
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import numpy as np
 
 from fegear.base.arrays import Floats
 from fegear.dynamics.train.network import Network
-from fegear.dynamics.train.rounded import Rounded, in_series, share
+from fegear.dynamics.train.segments import Rounded, in_series, share
 from fegear.dynamics.train.star_mesh import Response, close_pair
 
 

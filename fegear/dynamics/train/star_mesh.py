@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Floats
 from fegear.dynamics.train.network import Network
-from fegear.dynamics.train.rounded import Rounded, beside_zero, in_series, share
+from fegear.dynamics.train.segments import Rounded, beside_zero, in_series, share
 
 #: Relative change of inertias and stiffnesses that is enough to bring an undamped resonance to a frequency that counts
 #: as one.

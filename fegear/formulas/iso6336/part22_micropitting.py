@@ -4,6 +4,11 @@ Source: ISO/TR 15144-1:2014, Calculation of micropitting load capacity of cylind
 from which ISO/TS 6336-22:2018 was made; formulas are numbered as there, and known here from secondary sources, of which
 printed reports (fegear/verify/data/kisssoft_stage_*.toml) hold X_Y, p_dyn,Y, lambda_GF,Y, lambda_GFT and W_W.
 lambda_GF,Y = h_Y / Ra with the film of Dowson and Higginson, thinned by the heat of the contact.
+
+The FZG test gears of scuffing and micropitting tests.
+
+Source: ISO 14635-1 (type A) and FVA information sheet 54/7 (type C); the dimensions as published reports of tests give
+them. Centre distance 91.5 mm, 16 and 24 teeth, module 4.5 mm, 20 deg.
 """
 
 from __future__ import annotations
@@ -23,7 +28,10 @@ from fegear.formulas.friction import Surface, contact_ratios, helical_load_facto
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.formulas.lubricant import Oil
+from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 #: B_M of the test gears: density, specific heat, conductivity of the steel of Table 2 (Formula 82) [N/(m s^0.5 K)].
 _TEST_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)
@@ -215,7 +223,6 @@ def film_of_test(oil: Oil, load_stage: int, temperature: float = 90.0) -> float:
     RangeError
         If the load stage is none of 5 to 10.
     """
-    from fegear.formulas.iso6336.fzg_test_gears import fzg_type_c
     from fegear.formulas.iso6336.rated import SUPPLY_FACTOR, LoadFactors, RatedSurface
 
     if load_stage not in _TEST_TORQUES:
@@ -261,3 +268,29 @@ def least_ratio(rated: RatedSurface) -> tuple[float, str]:
 def permissible_ratio(oil: Oil, load_stage: int, temperature: float = 90.0, material: float = 1.0) -> float:
     """lambda_GFP = 1.4 W_W lambda_GFT: from a test in another gear pair; `material` is W_W of both gears."""
     return _OF_TEST * material * film_of_test(oil, load_stage, temperature)
+
+
+_MODULE, _DISTANCE = 4.5e-3, 91.5e-3
+
+
+def _pair(shifts: tuple[float, float], tips: tuple[float, float], widths: tuple[float, float]) -> GearPair:
+    steel, gears = Material(206e9, 0.3), []
+    for teeth, shift, tip, width in zip((16, 24), shifts, tips, widths, strict=True):
+        rack = BasicRack.named("A", math.radians(20.0))
+        tooth = Tooth(teeth, rack, profile_shift=shift, tip_radius=0.5 * tip / _MODULE)
+        gears.append(Gear(tooth, _MODULE, 0.5 * tooth.root_radius * _MODULE, width, steel))
+    return GearPair(gears[0], gears[1], _DISTANCE)
+
+
+def fzg_type_c() -> GearPair:
+    """FZG gears type C: x = 0.1817 and 0.1715, addendum of one module uncut, face 14 mm.
+
+    Tips of 82.64 and 118.54 mm, as a public program has them (C. Fernandes, GEARpie: no addendum reduction). With those
+    of 82.46 and 118.36 mm, cut for the full clearance, the test's bulk temperature and film are further from print.
+    """
+    return _pair((0.1817, 0.1715), (82.635e-3, 118.544e-3), (14e-3, 14e-3))
+
+
+def fzg_type_a() -> GearPair:
+    """FZG gears type A: x = 0.8532 and -0.5, tips 88.77 and 112.5 mm, face 20 mm: much sliding at the pinion's tip."""
+    return _pair((0.8532, -0.5), (88.77e-3, 112.5e-3), (20e-3, 20e-3))

@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
-    from fegear.contact.compared.iso_check import RatedPair
+    from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RatedPair, RootStressAnswers
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
@@ -123,10 +122,11 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         contact_zone,
         pair_compliance_answers,
         pair_reference,
+        rated_helical_pair,
+        rated_spur_pair,
         root_stress_answers,
         tooth_compliance_answers,
     )
-    from fegear.contact.compared.iso_check import rated_helical_pair, rated_spur_pair
     from fegear.formulas.cornell import radial_section_lengths
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt

@@ -21,7 +21,7 @@ from fegear.geometry.outline import tooth_outline
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.compared.iso_check import HelicalCheck, RatedPair
+    from fegear.contact.compared.crosscheck import HelicalCheck, RatedPair
     from fegear.fem.plane.settings import MeshSettings
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
@@ -50,7 +50,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     """Take from a scene what ISO 6336 needs of one pair."""
     part = scene.case.pair[name]
     names = (part.driver, part.driven)
-    from fegear.contact.compared.iso_check import HelicalCheck
+    from fegear.contact.compared.crosscheck import HelicalCheck
     from fegear.formulas.iso6336.part3_pair import RatingChoice
 
     choice = RatingChoice(part.iso_6336.edition or 2006, part.iso_6336.accuracy_grade)

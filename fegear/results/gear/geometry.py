@@ -20,10 +20,9 @@ from fegear.engine.declared import column_over, value_of
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
-from fegear.geometry.checks import tip_thickness
+from fegear.geometry.checks import interference, tip_thickness
 from fegear.geometry.gear import Gear
 from fegear.geometry.inspection import OverBalls, over_balls, touching_ball, usual_ball, usual_span
-from fegear.geometry.interference import interference
 from fegear.geometry.pair import MEMBERS, GearPair, active_profile, specific_sliding
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.drawing import pair_figure

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.dynamics.helical_pair.pair_forces import Line, PairForces, rms
+from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Stems, ramp

@@ -16,7 +16,7 @@ from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.case.text_file import read_columns
 from fegear.contact.loaded_teeth import ErrorOverPitch
-from fegear.dynamics.helical_pair.pair_forces import Line, PairForces, rms
+from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
@@ -231,7 +231,7 @@ def _harmonics(values: Array, step: int, count: int) -> Complex:
 def _lines(asked: PairForcesInputs, harmonics: Complex, ratio: float) -> list[Line]:
     """Lines of harmonics (N,) along the case's coordinate, or (N, 5) over q; `ratio` driven speed over driver's."""
     from fegear.dynamics.helical_pair.model import COORDINATES
-    from fegear.dynamics.helical_pair.pair_forces import Line
+    from fegear.dynamics.helical_pair.transmissibility import Line
 
     part, lines = asked.excitation, []
     if part.transmission_error is not None:
@@ -255,7 +255,7 @@ def _lines(asked: PairForcesInputs, harmonics: Complex, ratio: float) -> list[Li
 
 
 def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairForcesData:
-    from fegear.dynamics.helical_pair.pair_forces import pair_forces, resonant_speeds
+    from fegear.dynamics.helical_pair.transmissibility import pair_forces, resonant_speeds
     from fegear.dynamics.train.resolved_response import resolved_grid
 
     part, error = asked.excitation, asked.excitation.transmission_error

@@ -24,7 +24,7 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE, Exposure
-from fegear.formulas.iso6336.part5_case_depth import recommended
+from fegear.formulas.iso6336.part5_materials import recommended
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results.rating.rating import given, rated
 from fegear.results.rating.shared_load import NotRated, external_rated_pairs, needs_shares, with_shares
@@ -224,7 +224,7 @@ def _below(
 ) -> GearExposure:
     """Exposure of one gear, and the case depths below which its case is crushed."""
     from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, exposure
-    from fegear.formulas.iso6336.part5_case_depth import AGMA_CRUSHING, ISO_CRUSHING, crushing_depth
+    from fegear.formulas.iso6336.part5_materials import AGMA_CRUSHING, ISO_CRUSHING, crushing_depth
 
     i, pair = MEMBERS.index(member), inputs.asked.pair
     gear, case = pair.gear(member), inputs.cases[i]

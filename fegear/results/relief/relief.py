@@ -31,9 +31,9 @@ from fegear.results import forecasts
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, needs_teeth, pitch_marks
 from fegear.results.pair.root_stress_history import table_names
-from fegear.results.relief.harris_map import harris_panel
 from fegear.results.relief.relief_tables import (
     grindable_table,
+    harris_panel,
     harris_table,
     least_stress_table,
     points_table,

@@ -165,7 +165,7 @@ def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData
 def _drawn(chunks: Sequence[Chunk], name: str, work: Work) -> list[dict[str, Any]]:
     """Outcomes of every chunk of draws of a pair, on all cores where there are many."""
     from fegear.engine.executor import map_points
-    from fegear.engine.point_job import Failure
+    from fegear.engine.processes import Failure
 
     executor = work.executor
     if executor.scheduler is None and len(chunks) <= _FEW:

@@ -248,7 +248,7 @@ def _inputs(scene: Scene, _subject: str) -> ChartInputs:
 def _compute(asked: ChartInputs, upstream: Upstream, work: Work) -> DesignChartData:
     from fegear.design.charts import welbourn_amount
     from fegear.engine.executor import map_points
-    from fegear.engine.point_job import Failure
+    from fegear.engine.processes import Failure
 
     data = gear_train(upstream)
     i = data.train.mesh_index(asked.mesh)
