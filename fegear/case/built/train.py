@@ -129,8 +129,9 @@ def _shaft(name: str, part: ShaftPart, inertias: Mapping[str, float]) -> Shaft:
 def build_train(asked: TrainInputs, stiffness: Mapping[str, float] | None = None) -> Train:
     """Make the train for mean mesh stiffnesses [N/m]; without them only ratios and static forces mean anything.
 
-    All angles count in one sense of rotation, so both base radii of a mesh have one sign; it is the one for which the
-    torques press the teeth together. Bodies joined by rigid shafts count together in damping ratios.
+    All angles count in one sense of rotation, so both base radii of an external mesh have one sign, and those of an
+    internal one have two; they are those for which the torques press the teeth together. Bodies joined by rigid shafts
+    count together in damping ratios.
     """
     part = asked.part
     bodies = tuple(Body(name, inertia) for name, inertia in asked.inertias.items())
@@ -140,7 +141,7 @@ def build_train(asked: TrainInputs, stiffness: Mapping[str, float] | None = None
     meshes = []
     for name, mesh in part.mesh.items():
         pair = asked.pairs[name]
-        r1, r2 = pair.driver.base_radius, pair.driven.base_radius
+        r1, r2 = pair.driver.base_radius, pair.side * pair.driven.base_radius
         k = mesh.stiffness or (stiffness or {}).get(name, _ANY_STIFFNESS)
         damping = mesh.damping or 0.0
         if mesh.damping_ratio is not None:

@@ -205,4 +205,5 @@ DYNAMIC_FACTOR = Stage(
     effects=("contact_loss", "friction", "parametric"),
     cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
     forecast=_forecast,
+    internal=True,
 )

@@ -206,4 +206,5 @@ DYNAMIC_ROOT_STRESS = Stage(
     effects=("neighbour_coupling",),
     cites=_cites,
     forecast=_forecast,
+    internal=True,
 )

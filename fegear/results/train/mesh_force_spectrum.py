@@ -216,4 +216,5 @@ MESH_FORCE_SPECTRUM = Stage(
     check=needs_one_speed,
     cites=citing(Citation("mark", "spectra of the mesh force", "Eqs. 3.1 to 3.11")),
     forecast=_forecast,
+    internal=True,
 )

@@ -176,4 +176,5 @@ MOTION = Stage(
     effects=("contact_loss", "friction", "parametric"),
     cites=_sources,
     forecast=_forecast,
+    internal=True,
 )
