@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from fegear.base.errors import InputError
-from fegear.verify import calculix, measured, own, printed, programs
+from fegear.verify import calculix, handed_on, measured, own, printed, programs
 from fegear.verify.row import AGAINST, Outcome, Row
 
 #: In the order of the page: printed numbers first.
-ALL: tuple[Row, ...] = (*printed.ROWS.all, *calculix.ROWS.all, *programs.ROWS.all, *own.ROWS.all, *measured.ROWS.all)
+ALL: tuple[Row, ...] = tuple(
+    row for one in (printed, calculix, programs, handed_on, own, measured) for row in one.ROWS.all
+)
 
 
 def chosen(names: Sequence[str], against: str = "") -> tuple[Row, ...]:
