@@ -37,6 +37,31 @@ log = logging.getLogger("mkdocs.plugins.gallery")
 _ROWS = 8
 #: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
 _ABOUT = 200
+#: Ten pictures, each from one command: case, picture, and what it shows.
+TEN = (
+    ("thin_rim", "deformed_rim", "A tooth on a thin rim under load, displacements magnified, with the stress inside."),
+    ("calculix_pair", "load_sharing_I", "What one tooth pair carries on its way through the mesh, at four loads."),
+    (
+        "pinion_and_wheel",
+        "root_stress_history_I",
+        "Root stress of both gears as a tooth passes: own load and neighbours'.",
+    ),
+    (
+        "mark_minimum_excitation",
+        "harris_map_I",
+        "Transmission error at five loads: designed relief, ground reliefs, none.",
+    ),
+    ("helical_load", "flank_pressure_I", "Pressure on both flanks of a helical pair, solved as solids."),
+    (
+        "planetary_set",
+        "planet_load_sharing_P",
+        "Four planets, one of them late: who carries what, and the set's transmission error.",
+    ),
+    ("two_stage_shafts", "shaft_deflection_mid", "How the middle shaft of a gearbox bends on its bearings."),
+    ("lin_dynamic_factor", "dynamic_factor_I", "Tooth force over speed, and how long the teeth are apart."),
+    ("four_square_dynamics", "mesh_force_waterfall_I", "Harmonics of the mesh force over speed."),
+    ("rating_spur", "rating_I", "Safeties by ISO 6336, AGMA 2101 and with computed stresses."),
+)
 #: Pages outside docs/ that belong to the site, and where links to them are found.
 _OUTSIDE = {
     "readme.md": ROOT / "README.md",
@@ -118,6 +143,24 @@ def _card(path: Path) -> str:
     return f"## [{_title(path)}]({path.stem}.md)\n\n{shown}\n\n{about}"
 
 
+def ten() -> list[str]:
+    """The ten pictures with their commands, as far as their cases are run for this site."""
+    names = {path.stem for path in cases()}
+    made = []
+    for case, picture, words in TEN:
+        if case in names:
+            shown = f"{case}/plots/{picture}.png"
+            if not (MADE / shown).is_file():
+                raise PluginError(f"the gallery shows {shown}, which the case does not draw")
+            made.append(f"-   [![{words}]({shown})]({case}.md)\n\n    {words}\n\n    `./run.sh cases/{case}.toml`")
+    listed = "\n\n".join(made)
+    return (
+        ["## Ten pictures, each by one command", f'<div class="cards ten" markdown>\n\n{listed}\n\n</div>']
+        if made
+        else []
+    )
+
+
 def page(path: Path) -> str:
     """Text of a case's page."""
     out, text = MADE / case_name(path), path.read_text("utf-8")
@@ -176,7 +219,7 @@ def on_files(files, config):
     for name, source in _OUTSIDE.items():
         files.append(File.generated(config, name, content=source.read_text("utf-8")))
     files.append(File.generated(config, "CITATION.cff", content=(ROOT / "CITATION.cff").read_text("utf-8")))
-    index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]
+    index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", "", *ten(), ""]
     of_papers = [path for path in cases() if path.parent != CASES]
     for path in cases():
         if path not in of_papers:
