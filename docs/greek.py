@@ -1,5 +1,6 @@
-"""Hook of mkdocs: symbols of the prose have Greek letters where case files and tables spell them, K_Hβ for K_Hbeta.
+"""Hook of mkdocs: the prose writes symbols and numbers as the standards do, where case files and tables spell them.
 
+K_Hβ for K_Hbeta, µm for um, N·m for N m, 0.5 for .5.
 Code, equations, links, comments and headings (whose anchors are linked to) stay as they are.
 """
 
@@ -22,15 +23,27 @@ _SYMBOL = re.compile(
     rf"(?<![\w/.-])(?:(?P<base>{_NAME})_(?P<below>[A-Za-z0-9]+)"
     rf"|(?P<latin>[A-Za-z]'?)_(?P<first>[A-Z]{{0,2}}|f)(?P<letter>{_NAME})(?P<rest>[A-Z][A-Za-z]*|[a-z]|_[a-z]+)?)(?![\w/]|-\w)"
 )
+#: Decimals without the zero before the point, and units without their own signs.
+_PRINTED = (
+    (re.compile(r"(?<![\w.)\]])\.(?=\d)"), "0."),
+    (re.compile(r"\bum\b"), "µm"),
+    (re.compile(r"(?<=\d )N (?=mm?\b)"), "N·"),
+)
 
 
 def with_letters(markdown: str) -> str:
-    """A page whose spelled symbols have Greek letters."""
+    """A page whose spelled symbols have Greek letters, and whose numbers and units are written in one way."""
     made, end = [], 0
     for other in _OTHER.finditer(markdown):
-        made += [_SYMBOL.sub(_lettered, markdown[end : other.start()]), other[0]]
+        made += [_as_printed(markdown[end : other.start()]), other[0]]
         end = other.end()
-    return "".join([*made, _SYMBOL.sub(_lettered, markdown[end:])])
+    return "".join([*made, _as_printed(markdown[end:])])
+
+
+def _as_printed(prose: str) -> str:
+    for spelled, sign in _PRINTED:
+        prose = spelled.sub(sign, prose)
+    return _SYMBOL.sub(_lettered, prose)
 
 
 def _lettered(symbol: re.Match[str]) -> str:

@@ -138,10 +138,21 @@ def test_the_menu_refuses_a_lost_page_and_a_long_group(tmp_path):
         ("[x](rating.md#k_gamma_x) cases/khbeta_spur.toml tables/K_Hbeta.csv", None),
         ("### K_Hbeta\n```text\nI.K_Hbeta = 1.3\n```", None),
         ("beta, a Greek letter; mode_alphabet", None),
+        ("by .5 um (-.2 %), +.25 of 3 N m", "by 0.5 µm (-0.2 %), +0.25 of 3 N·m"),
+        ("`.5 um` file.7z 1.5, 0.2.0, [1](a.md)", None),
     ],
 )
 def test_symbols_of_the_prose_have_greek_letters_and_nothing_else_has(spelled, letters):
     assert _hook("greek").with_letters(spelled) == (letters or spelled)
+
+
+def test_prose_has_one_way_of_decimals_and_of_micrometres():
+    """On the site, whatever the files have; a decimal comma is nowhere in them."""
+    greek = _hook("greek")
+    for page in (*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CHANGELOG.md"):
+        prose = greek._OTHER.sub(" ", greek.with_letters(page.read_text("utf-8")))
+        found = re.findall(r"(?:^|[\s(|~+-])\.\d.*|.*\bum\b.*|.*\d%.*|.*\d(?:µm|mm|MPa)\b.*", prose, re.MULTILINE)
+        assert found == [], page
 
 
 def test_every_section_of_the_case_file_s_page_is_on_one_page_of_the_site_and_links_find_it():
