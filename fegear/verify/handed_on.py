@@ -48,12 +48,11 @@ def mat_file() -> Iterator[Compared]:
     from scipy.io import loadmat
 
     import fegear
-    from fegear.output.tables import write_table
 
     results = fegear.run(_CASE, progress=False)
     with tempfile.TemporaryDirectory() as folder:
-        write_table(Path(folder), results.tables["mesh_table_I"])
-        read = loadmat(Path(folder) / "mesh_table_I.mat", simplify_cells=True)
+        results.save(Path(folder) / "run", plots=False)
+        read = loadmat(Path(folder) / "run" / "tables" / "mesh_table_I.mat", simplify_cells=True)
     te, slope = read["te"], read["local_stiffness"]
     first = 2.0 * abs(np.fft.rfft(te)[1]) / te.size
     for name, wanted in (
