@@ -47,6 +47,22 @@ class GearPlacePart(Part):
 
     gear: str = Field(description="Name of a gear of the case.")
     at: LengthOrZero = Field(description="Middle of its face from the shaft's left end.")
+    stiffens: bool = Field(
+        default=True,
+        description="Whether its body sits fast on the shaft, or is one with it, and carries torque and bending over "
+        "its `seat`; without, the gear moves with the section of the bare shaft at each height of its face.",
+    )
+    seat: PositiveLength | None = Field(
+        default=None,
+        description="Length over which it sits fast, about the middle of its face; without it all of the face, or of "
+        "the hub of its body.",
+    )
+
+    @model_validator(mode="after")
+    def _fast(self) -> Self:
+        if self.seat is not None and not self.stiffens:
+            raise refuse("contradicts stiffens = false", "leave one of them out", key="seat")
+        return self
 
 
 class BearingPlacePart(Part):

@@ -69,6 +69,34 @@ def turned_elasticity(u: Any, v: Any, w: Any) -> Any:
     return (stress * turned_strains(v, v.grad, w["tau"])).sum(axis=0)
 
 
+def revolved_strains(value: Any, slope: Any, radius: Any, waves: int) -> Array:
+    """Strains of a body of revolution in its n-th wave round the axis; its displacements are U, V and W.
+
+    u_r = U cos(n theta), u_theta = V sin(n theta), u_z = W cos(n theta); with n = 0 the torsion V stands alone.
+    Strains carry the cosine (the first four) or the sine (the last two).
+
+    Parameters
+    ----------
+    value : array, shape (3, ...)
+        U, V, W.
+    slope : array, shape (3, 2, ...)
+        Of each along r and z.
+    radius : array
+        r.
+    waves : int
+        n.
+
+    Returns
+    -------
+    ndarray, shape (6, ...)
+        e_rr, e_tt, e_zz, g_rz, g_rt, g_tz.
+    """
+    u, v, w = slope
+    across, round_it, along = value[0] / radius, value[1] / radius, value[2] / radius
+    shear = u[1] + w[0], v[0] - round_it - waves * across, v[1] - waves * along
+    return np.stack(np.broadcast_arrays(u[0], across + waves * round_it, w[1], *shear))
+
+
 def coefficients(form: BilinearForm, components: int, slopes: int, **constants: float) -> Array:
     """By what a form multiplies the values and slopes of the components of u and v.
 

@@ -8,6 +8,9 @@ B(l) carrying a force to a section l before it, C(s) = diag(1/kappa G A (twice),
 integrals are taken by Gauss's rule between all places and steps, which is exact for prisms and converges geometrically
 for cones. No stiffness of short pieces is ever formed, so places may be as close to one another as they like.
 
+Bodies of gears that sit fast on the shaft hold its sections there by S = B B^T. With A the compliance of the shaft
+alone, and s their seats, that of both is A - A_s B (I + B^T A_ss B)^-1 B^T A_s^T: symmetric, rigid shafts stay rigid.
+
 Sources: S. P. Timoshenko, On the correction for shear of the differential equation for transverse vibrations of
 prismatic bars, Philosophical Magazine 41 (1921); shear coefficient kappa of hollow circles: G. R. Cowper, The shear
 coefficient in Timoshenko's beam theory, Journal of Applied Mechanics 33 (1966), 335-340.
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
+    from fegear.shafts.gear_on_shaft import GearOnShaft
 
 #: Gauss points between two places in a prism, whose integrands are of the second degree.
 _PRISM = 2
@@ -101,6 +105,8 @@ class Shaft:
     young_modulus : float
         [Pa]; infinite for a rigid shaft.
     poisson_ratio : float
+    gears : tuple of GearOnShaft
+        Bodies that sit fast on it.
 
     Raises
     ------
@@ -111,6 +117,7 @@ class Shaft:
     sections: tuple[Section, ...]
     young_modulus: float = 206e9
     poisson_ratio: float = 0.3
+    gears: tuple[GearOnShaft, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse shafts without sections and impossible materials."""
@@ -206,6 +213,15 @@ class Shaft:
             F_x, F_y, F_z, M_x, M_y, M_z [N, N m].
         """
         z = np.atleast_1d(np.asarray(places, dtype=float))
+        if not self.gears:
+            return self._alone(z, loads_at, loads)
+        seats, root, held = self._stiffened
+        found = self._alone(np.concatenate([z, seats]), loads_at, loads)
+        forces = root @ np.linalg.solve(held, np.einsum("sam,sa->m", root, found[z.size :]))
+        return found[: z.size] - self._alone(z, seats, forces)
+
+    def _alone(self, z: Array, loads_at: Array, loads: Array) -> Array:
+        """What the shaft without its gears answers, see `bent`."""
         s, weight = self.quadrature(np.concatenate([z, loads_at]))
         strain = self.strains(loads_at, loads, s) * weight[:, None]
         arm = np.maximum(z[:, None] - s[None, :], 0.0)
@@ -214,13 +230,38 @@ class Shaft:
         found[:, 1] -= arm @ strain[:, 3]
         return found
 
-    def compliance(self, places: ArrayLike) -> Array:
-        """Compliance between places with the left end clamped, shape (n, 6, n, 6) [m/N, 1/N, 1/(N m)]."""
-        z = np.atleast_1d(np.asarray(places, dtype=float))
+    @cached_property
+    def _stiffened(self) -> tuple[Array, Array, Array]:
+        """Seats of the gears, shape (s,), B of all their stiffness (s, 6, m), and I + B^T A_ss B."""
+        places = np.concatenate([one.places for one in self.gears])
+        roots = [one.root(self.length) for one in self.gears]
+        widths = np.cumsum([0, *(one.shape[2] for one in roots)])
+        root = np.zeros((places.size, 6, widths[-1]))
+        first = 0
+        for one, start in zip(roots, widths, strict=False):
+            root[first : first + len(one), :, start : start + one.shape[2]] = one
+            first += len(one)
+        seats = np.clip(places, 0.0, self.length)
+        flat = root.reshape(-1, widths[-1])
+        held = self._alone_compliance(seats).reshape(len(flat), -1)
+        return seats, root, np.eye(widths[-1]) + flat.T @ held @ flat
+
+    def _alone_compliance(self, z: Array) -> Array:
+        """That of the shaft without its gears, see `compliance`."""
         s, weight = self.quadrature(z)
         carried = carry(z[:, None] - s[None, :]) * (z[:, None] > s[None, :])[:, :, None, None]
         return np.einsum("igka,gk,jgkb->iajb", carried, self.section_compliance(s) * weight[:, None], carried,
                          optimize=True)  # fmt: skip
+
+    def compliance(self, places: ArrayLike) -> Array:
+        """Compliance between places with the left end clamped, shape (n, 6, n, 6) [m/N, 1/N, 1/(N m)]."""
+        z = np.atleast_1d(np.asarray(places, dtype=float))
+        if not self.gears:
+            return self._alone_compliance(z)
+        seats, root, held = self._stiffened
+        both = self._alone_compliance(np.concatenate([z, seats]))
+        at = np.tensordot(both[: z.size, :, z.size :], root, 2).reshape(6 * z.size, -1)
+        return both[: z.size, :, : z.size] - (at @ np.linalg.solve(held, at.T)).reshape(z.size, 6, z.size, 6)
 
 
 def carry(lever: ArrayLike) -> Array:

@@ -53,6 +53,27 @@ class MeshGap:
 
 
 @dataclass(frozen=True)
+class _Acting:
+    """Where a mesh acts on a shaft: its number, places there, and per unit force W and W x at its heights.
+
+    Parameters
+    ----------
+    mesh : int
+    places : ndarray, shape (p,)
+        [m].
+    ways : ndarray, shape (p, 6, 2, n)
+        Forces and moments at the places.
+    motion : ndarray, shape (n, 6, p, 6)
+        How the gear moves at the heights with the places.
+    """
+
+    mesh: int
+    places: Array
+    ways: Array
+    motion: Array
+
+
+@dataclass(frozen=True)
 class Gearbox:
     """Shafts of one housing with the meshes between them.
 
@@ -77,14 +98,14 @@ class Gearbox:
     names: tuple[str, ...]
 
     @cached_property
-    def _on_shafts(self) -> list[list[tuple[int, Array, Array]]]:
-        """Of every shaft, what meshes act on it: number, places and `MeshPlace.ways`."""
-        found: list[list[tuple[int, Array, Array]]] = [[] for _ in self.shafts]
+    def _on_shafts(self) -> list[list[_Acting]]:
+        """Of every shaft, what meshes act on it."""
+        found: list[list[_Acting]] = [[] for _ in self.shafts]
         for number, mesh in enumerate(self.meshes):
             where = [self.names.index(name) for name in mesh.shafts]
             lengths = (self.shafts[where[0]].shaft.length, self.shafts[where[1]].shaft.length)
-            for shaft, (places, ways) in zip(where, mesh.ways(lengths), strict=True):
-                found[shaft].append((number, places, ways))
+            for shaft, acting in zip(where, mesh.ways(lengths), strict=True):
+                found[shaft].append(_Acting(number, *acting))
         return found
 
     @property
@@ -103,9 +124,9 @@ class Gearbox:
         found = []
         for one, coupling, on in zip(self.shafts, self.couplings, self._on_shafts, strict=True):
             at, loads = [one.loads_at], [scale * one.loads]
-            for number, places, ways in on:
-                at.append(places)
-                loads.append(np.einsum("nak,kn->na", ways, forces[number]))
+            for acting in on:
+                at.append(acting.places)
+                loads.append(np.einsum("pakn,kn->pa", acting.ways, forces[acting.mesh]))
             if coupling is not None:
                 at.append(np.array([coupling]))
                 loads.append(np.array([[0.0] * 5 + [-sum(part[:, 5].sum() for part in loads)]]))
@@ -133,10 +154,10 @@ class Gearbox:
         found: list[Array] = [np.zeros(())] * len(self.meshes)
         for one, on in zip(moved, self._on_shafts, strict=True):
             first = 0
-            for number, places, ways in on:
-                here = one[..., first : first + places.size, :]
-                found[number] = found[number] + np.einsum("nak,...na->...kn", ways, here)
-                first += places.size
+            for acting in on:
+                here = one[..., first : first + acting.places.size, :]
+                found[acting.mesh] = found[acting.mesh] + np.einsum("pakn,...pa->...kn", acting.ways, here)
+                first += acting.places.size
         for gap in found:
             gap[..., 0, :] -= gap[..., 0, gap.shape[-1] // 2][..., None]
         return tuple(found)
@@ -144,7 +165,7 @@ class Gearbox:
     @property
     def places(self) -> tuple[Array, ...]:
         """Where the meshes act on each shaft, one mesh after the other [m]."""
-        return tuple(np.concatenate([np.empty(0), *(places for _, places, _ in on)]) for on in self._on_shafts)
+        return tuple(np.concatenate([np.empty(0), *(acting.places for acting in on)]) for on in self._on_shafts)
 
     def compliance(self, bent: tuple[Deflection, ...]) -> Array:
         """How gaps of all meshes grow with their forces, W and W x at the heights of one mesh after the other.
@@ -159,11 +180,10 @@ class Gearbox:
         ways = np.zeros((moved.shape[0], starts[-1]))
         row = 0
         for on in self._on_shafts:
-            for number, at, these in on:
-                for n in range(at.size):
-                    columns = starts[number] + np.array([n, at.size + n])
-                    ways[row : row + 6, columns] = these[n]
-                    row += 6
+            for acting in on:
+                rows, columns = 6 * acting.places.size, slice(starts[acting.mesh], starts[acting.mesh + 1])
+                ways[row : row + rows, columns] = acting.ways.reshape(rows, -1)
+                row += rows
         found = ways.T @ moved @ ways
         for first, mesh in zip(starts, self.meshes, strict=False):
             n = mesh.heights.size
@@ -197,9 +217,10 @@ class Gearbox:
         ends: dict[tuple[int, str], Array] = {}
         for name, one, on in zip(self.names, moved, self._on_shafts, strict=True):
             first = 0
-            for number, places, _ in on:
-                ends[number, name] = one[..., first : first + places.size, :]
-                first += places.size
+            for acting in on:
+                here = one[..., first : first + acting.places.size, :]
+                ends[acting.mesh, name] = np.einsum("napb,...pb->...na", acting.motion, here)
+                first += acting.places.size
         found = []
         for number, (mesh, both) in enumerate(zip(self.meshes, self.gaps(moved), strict=True)):
             gap, z = both[:, 0], mesh.heights

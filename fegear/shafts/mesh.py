@@ -23,6 +23,7 @@ from fegear.shafts.beam import carry
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.geometry.pair import GearPair
+    from fegear.shafts.gear_on_shaft import GearOnShaft
 
 #: Heights at which forces of a mesh act on its shafts, evenly over the common face: an odd number, the middle is one.
 _HEIGHTS = 17
@@ -47,6 +48,8 @@ class MeshPlace:
     found : GearPair
     load : float
         Along the transverse line of action [N].
+    bodies : tuple of GearOnShaft or None
+        Bodies of the gears that sit fast on their shafts; gears without move with the shaft's section at each height.
     """
 
     pair: str
@@ -56,6 +59,7 @@ class MeshPlace:
     sense: int
     found: GearPair
     load: float
+    bodies: tuple[GearOnShaft | None, GearOnShaft | None] = (None, None)
 
     @property
     def axes(self) -> Array:
@@ -93,7 +97,7 @@ class MeshPlace:
         share[[0, -1]] *= 0.5
         return self.load * np.stack([share, np.zeros_like(share)])
 
-    def ways(self, lengths: tuple[float, float]) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    def ways(self, lengths: tuple[float, float]) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
         """Where a mesh acts on its shafts, and what forces and moments unit forces W and W x are there.
 
         A face that ends beyond its shaft is carried by the shaft's end.
@@ -106,22 +110,28 @@ class MeshPlace:
         Returns
         -------
         of_driver, of_driven : tuple of ndarray
-            Places from the left end, shape (n,) [m], and forces with moments about the axis, shape (n, 6, 2).
+            Places from the left end, shape (p,) [m]; forces with moments about the axis there per unit force at each
+            height, shape (p, 6, 2, n); how the gear moves at the heights with the places, shape (n, 6, p, 6).
         """
         u, normal, pair = self.line_of_action, self.normal, self.found
         found = []
-        for member, side, to_pitch, at, length in zip(
-            MEMBERS, (-1.0, 1.0), (1.0, -pair.side), self.at, lengths, strict=True
+        for member, body, side, to_pitch, at, length in zip(
+            MEMBERS, self.bodies, (-1.0, 1.0), (1.0, -pair.side), self.at, lengths, strict=True
         ):
             radius = pair.gear(member).base_radius / math.cos(pair.working_pressure_angle)
             arm = to_pitch * radius * self.axes[1]
             own = at - self.sense * (self.heights + pair.face_height(member))
-            place = np.clip(own, 0.0, length)
             unit = side * np.stack(
                 [np.concatenate([normal, np.cross(arm, normal)]), np.concatenate([np.zeros(3), np.cross(u, normal)])],
                 axis=1,
             )
-            found.append((place, carry(own - place) @ unit))
+            if body is None:
+                place, each = np.clip(own, 0.0, length), np.eye(own.size)
+                motion = np.einsum("kp,pba->kapb", each, carry(own - place))
+            else:
+                place = np.clip(body.places, 0.0, length)
+                motion = body.carried(own, length)
+            found.append((place, np.einsum("kapb,aw->pbwk", motion, unit), motion))
         return found[0], found[1]
 
     def tilt(self, moved: Array, driver: Array) -> Array:

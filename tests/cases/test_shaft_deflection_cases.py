@@ -45,7 +45,8 @@ def test_bearings_take_what_the_meshes_press():
 
 def test_meshes_share_what_rounding_leaves_of_their_torques():
     """The first end of the last mesh's face took it: a mirror moved the gap of the second pair by 2e-5."""
-    box = gearbox_of(_scene(pair__II__torque="250.005 N*m"))
+    bare = [{**place, "stiffens": False} for place in CASE["shaft"]["mid"]["gears"]]  # bodies spread the load
+    box = gearbox_of(_scene(pair__II__torque="250.005 N*m", shaft__mid__gears=bare))
     shaft = box.loaded(box.even)[box.names.index("mid")]
     torques = np.split(shaft.loads[:, 5], 2)
     assert abs(shaft.loads[:, 5].sum()) < 1e-12 * np.abs(shaft.loads[:, 5]).sum()
@@ -161,7 +162,7 @@ def _wide_clearance(case):
             lambda case: [place.update(bearing="plain") for place in case["shaft"]["in"]["bearings"]],
             "leave the shaft loose along its axis",
         ),
-        (_wide_clearance, r"shaft.in = tilted by 2.4.* deg under its gears: is no small error; keep it within 0.5 deg"),
+        (_wide_clearance, r"shaft.in = tilted by 2.3.* deg under its gears: is no small error; keep it within 0.5 deg"),
     ],
 )
 def test_bad_models_are_refused_in_one_sentence(change, word):

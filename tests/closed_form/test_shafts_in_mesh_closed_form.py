@@ -93,9 +93,9 @@ def test_the_gap_is_that_of_two_helicoids_in_space(sense, hand):
     exact = _gap_of_helicoids(mesh, x, z, motions)
     for both, wanted in zip(motions, exact, strict=True):
         gap = np.zeros((2, mesh.heights.size))
-        for (shift, turn), (place, ways), at in zip(both, mesh.ways((1.0, 1.0)), mesh.at, strict=True):
+        for (shift, turn), (place, ways, _), at in zip(both, mesh.ways((1.0, 1.0)), mesh.at, strict=True):
             moved = shift + np.cross(turn, (place - at)[:, None] * E_Z)
-            gap += np.einsum("nak,na->kn", ways, np.column_stack([moved, np.tile(turn, (place.size, 1))]))
+            gap += np.einsum("pakn,pa->kn", ways, np.column_stack([moved, np.tile(turn, (place.size, 1))]))
         found = np.interp(z, mesh.heights, gap[0]) + x * np.interp(z, mesh.heights, gap[1])
         assert found == pytest.approx(wanted, abs=1e-5 * np.abs(wanted).max())
 
@@ -106,9 +106,9 @@ def test_tilted_axes_open_the_gap_of_shaft_tilt(sense):
     pair, box = mesh.found, None
     turns = np.array([2e-5, -3e-5, 0.0]), np.array([-1e-5, 4e-5, 0.0])
     gap, lines = np.zeros((2, mesh.heights.size)), []
-    for turn, (place, ways), at in zip(turns, mesh.ways((1.0, 1.0)), mesh.at, strict=True):
+    for turn, (place, ways, _), at in zip(turns, mesh.ways((1.0, 1.0)), mesh.at, strict=True):
         moved = np.column_stack([np.cross(turn, (place - at)[:, None] * E_Z), np.tile(turn, (place.size, 1))])
-        gap += np.einsum("nak,na->kn", ways, moved)
+        gap += np.einsum("pakn,pa->kn", ways, moved)
         lines.append(moved)
     in_plane, out_of_plane = mesh.tilt(lines[1], lines[0])
     x = np.array([[-2e-3], [0.0], [3e-3]])
@@ -228,8 +228,8 @@ def test_forces_turn_both_gears_at_their_base_circles(ring, sense):
     pair = {"": GearPair(small, small), "driven": GearPair(small, hollow), "driver": GearPair(hollow, small)}[ring]
     towards = np.array([0.6, -0.8])
     mesh = MeshPlace("I", ("a", "b"), (0.05, 0.05), towards, sense, pair, 1000.0)
-    (_, on_driver), (_, on_driven) = mesh.ways((0.1, 0.1))
-    driver, driven = (1000.0 * ways[8, :, 0] for ways in (on_driver, on_driven))
+    (_, on_driver, _), (_, on_driven, _) = mesh.ways((0.1, 0.1))
+    driver, driven = (1000.0 * ways[8, :, 0, 8] for ways in (on_driver, on_driven))
     assert driver[:3] == pytest.approx(-driven[:3])
     assert driver[5] == pytest.approx(-sense * 1000.0 * pair.driver.base_radius)
     assert driven[5] == pytest.approx((sense if ring else -sense) * 1000.0 * pair.driven.base_radius)

@@ -42,7 +42,10 @@ def with_all_of_a_flank():
         "rack": {"dedendum": 1.4, "tip_radius": 0.3, "protuberance": 0.05, "grinding_allowance": 0.03},
         "relief": {"tip": [{"amount": "8 um", "start_radius": "20.7 mm"}, {"amount": "2 um", "length": "0.8 mm",
                    "shape": "parabolic"}], "crowning": [{"amount": "3 um"}]},
-        "lead": {"crowning": "4 um", "slope": "-6 um"}, "tip_diameter": "44.4 mm", "tip_chamfer": "0.1 mm",
+        "lead": {"crowning": "4 um", "slope": "-6 um", "end_relief": [
+            {"amount": "9 um", "length": "4 mm", "end": "I"},
+            {"amount": "7 um", "length": "3 mm", "end": "II", "shape": "parabolic"}]},
+        "tip_diameter": "44.4 mm", "tip_chamfer": "0.1 mm",
         "strength": {"material": "nitrided-nitriding-steel", "hardness": "700 HV", "contact": "1250 MPa"},
         "roughness": {"flank": "0.4 um", "root_rz": "9 um"}, "tolerance_class": 4, "bore_radius": "12 mm",
     }  # fmt: skip
@@ -62,6 +65,7 @@ def with_all_of_a_flank():
         "loads": [{"at": "118 mm", "force": ["100 N", "-800 N", "25 N"], "moment": ["3 N*m", "0 N*m", "0 N*m"]}],
         "material": {"young_modulus": "190 GPa"},
     }  # fmt: skip
+    document["gear"]["gear_12"]["lead"] = {"slope": "5 um"}
     document["shaft"]["shaft_4"]["rigid"] = True
     return build_scene(document, "case", Path())
 

@@ -97,6 +97,33 @@ def test_power_from_the_other_end_turns_the_pairs_round():
     assert case(turned)["pair"]["II"]["torque"] == "900 N*m"
 
 
+@pytest.mark.parametrize("speed", [1500.0, -1500.0])
+@pytest.mark.parametrize("datum", ["negative", "positive", None])
+def test_slopes_and_end_reliefs_count_from_the_datum_face(speed, datum):
+    """The gear's own u is that of the gearbox; end II lies toward -u where the driver turns about +u."""
+    tree = two_stages()
+    torque = 100.0 if speed > 0.0 else -100.0
+    tree = values_of(values_of(tree, 3, rotational_speed=(speed, "1/min")), 31, torque_around_u_axis=(torque, "N m"))
+    tree["components"] += [
+        part(61, "cylindrical_gear_flank", normal_pressure_angle=(20.0, "deg")),
+        part(62, "helix_slope", helix_slope=(8.0, "mum")),
+        part(63, "end_relief_datum_face", end_relief_depth_datum_face=(12.0, "mum"),
+             end_relief_length_datum_face=(5.0, "mm")),
+    ]  # fmt: skip
+    tree["relations"] += [
+        link(201, "flank", gear=11, left=61, right=61), link(202, "reference", origin=61, referenced=62),
+        link(203, "reference", origin=61, referenced=63),
+    ]  # fmt: skip
+    if datum:
+        tree = values_of(tree, 11, datum_face_orientation=datum)
+    text = case_of(model_of(in_json(tree), HERE))
+    far = "I" if datum and (datum == "negative") == (speed > 0.0) else "II"
+    lead = tomllib.loads(text)["gear"]["gear_11"]["lead"]
+    assert lead["slope"] == ("8 um" if far == "II" else "-8 um")
+    assert lead["end_relief"] == [{"amount": "12 um", "length": "5 mm", "end": "I" if far == "II" else "II"}]
+    assert ("which end of its face is the datum face is not known" in text) == (datum is None)
+
+
 def test_what_was_used_assumed_and_not_read_is_named():
     said = case_of(model_of(in_json(two_stages()), HERE))
     assert "# number_of_teeth" in said

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from fegear.shafts.gearbox import Gearbox
-    from fegear.shafts.mesh import MeshPlace
-
+from dataclasses import replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.part import at, nearest
 from fegear.case.reading import Scene
+
+if TYPE_CHECKING:
+    from fegear.case.built.gears_on_shafts import StiffenedShaft
+    from fegear.shafts.gearbox import Gearbox
+    from fegear.shafts.mesh import MeshPlace
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
 _APART = 1e-6
@@ -143,6 +144,32 @@ def _refuse_many(scene: Scene) -> None:
             )
 
 
+def said_of_bodies(scene: Scene) -> tuple[str, ...]:
+    """What is assumed of gears on their shafts."""
+    return tuple(part for one in _stiffened(scene, mesh_places(scene)) for part in one.said)
+
+
+def _stiffened(scene: Scene, meshes: tuple[MeshPlace, ...]) -> list[StiffenedShaft]:
+    from fegear.case.built.gears_on_shafts import stiffened
+
+    senses = {
+        gear: mesh.sense
+        for mesh in reversed(meshes)
+        for gear in (scene.case.pair[mesh.pair].driver, scene.case.pair[mesh.pair].driven)
+    }
+    found = []
+    for name, part in scene.case.shaft.items():
+        try:
+            bare = part.build()
+        except InputError as error:
+            raise at(f"shaft.{name}", error) from None
+        for where, key in ((part.coupling, "coupling"), *((one.at, "gears") for one in part.gears)):
+            if where is not None:
+                bare.place(where, f"shaft.{name}.{key}")
+        found.append(stiffened(scene, name, bare, senses))
+    return found
+
+
 def gearbox_of(scene: Scene) -> Gearbox:
     """Collect the shafts of a case with all that acts on them from outside, and its meshes.
 
@@ -156,8 +183,10 @@ def gearbox_of(scene: Scene) -> Gearbox:
 
     _refuse_many(scene)
     meshes = mesh_places(scene)
+    bodies = _stiffened(scene, meshes)
+    fast = {gear: body for one in bodies for gear, body in one.bodies.items()}
     shafts, seat_compliance = [], []
-    for name, part in scene.case.shaft.items():
+    for (name, part), stiff in zip(scene.case.shaft.items(), bodies, strict=True):
         seats = []
         for n, place in enumerate(part.bearings):
             known = scene.case.bearing
@@ -173,14 +202,11 @@ def gearbox_of(scene: Scene) -> Gearbox:
             seat_compliance += [across, across, along, 0.0, 0.0]
         places = np.array([one.at for one in part.loads])
         loads = np.array([[*(one.force or (0.0,) * 3), *(one.moment or (0.0,) * 3)] for one in part.loads])
-        try:
-            body = part.build()
-        except InputError as error:
-            raise at(f"shaft.{name}", error) from None
-        for where, key in ((part.coupling, "coupling"), *((one.at, "gears") for one in part.gears)):
-            if where is not None:
-                body.place(where, f"shaft.{name}.{key}")
-        shafts.append(LoadedShaft(body, tuple(seats), places, loads.reshape(-1, 6), f"shaft.{name}"))
+        shafts.append(LoadedShaft(stiff.shaft, tuple(seats), places, loads.reshape(-1, 6), f"shaft.{name}"))
+    meshes = tuple(
+        replace(mesh, bodies=(fast.get(scene.case.pair[mesh.pair].driver), fast.get(scene.case.pair[mesh.pair].driven)))
+        for mesh in meshes
+    )
     box = Gearbox(
         tuple(shafts), tuple(part.coupling for part in scene.case.shaft.values()), meshes, np.diag(seat_compliance),
         tuple(scene.case.shaft),

@@ -15,6 +15,7 @@ from fegear.exchange.rexs.places import (
     BEARINGS,
     BEVEL,
     bevels_of,
+    direction,
     distance_of,
     joints_of,
     middle_on_shaft,
@@ -32,6 +33,7 @@ from fegear.geometry.involute import inv
 if TYPE_CHECKING:
     from fegear.exchange.rexs.loads import Flow
     from fegear.exchange.rexs.model import Component, Model
+    from fegear.exchange.rexs.modifications import End
     from fegear.exchange.rexs.places import Place, Stage
     from fegear.exchange.rexs.sets import Planetary
 
@@ -105,7 +107,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     tables = [_head(stages, told, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
     for n, gear in (gears | of_sets).items():
         bore = _bore(said, gear, on[n], middles) if n in gears else None
-        keys = gear_keys(said, gear, rest[n], bore)
+        keys = gear_keys(said, gear, rest[n], bore, _far_end(said, gear, stages, flow))
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
     places = places_of(said, stages, middles)
@@ -139,6 +141,22 @@ def _loaded(said: Said, stages: list[Stage], flow: Flow, spectrum: Spectrum) -> 
     if idle:
         said.notes.append(f"No torque passes {', '.join(idle)} under this load: {_are(idle)} not in the case.")
     return loaded
+
+
+def _far_end(said: Said, gear: Component, stages: list[Stage], flow: Flow) -> End | None:
+    """End of a gear's face that is not its datum face; None where nothing says which way the gear or its mate turns.
+
+    End II is that from which the driver turns clockwise: toward -u where it turns about +u.
+    """
+    number = next((n for n, stage in enumerate(stages) if any(one.id == gear.id for one in stage.gears)), None)
+    orientation = said.word(gear, "datum_face_orientation")
+    if number is None or orientation is None:
+        return None
+    speed = flow.into(number)[2]
+    if not speed or not math.isfinite(speed):
+        return None
+    far_up = (orientation == "negative") != direction(said, gear)
+    return "I" if far_up == (speed > 0.0) else "II"
 
 
 def _are(several: list[str]) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, inline, number, quantity, text
-from fegear.exchange.rexs.modifications import modification_keys
+from fegear.exchange.rexs.modifications import End, modification_keys
 
 if TYPE_CHECKING:
     from fegear.exchange.rexs.model import Component
@@ -54,7 +54,9 @@ _ONE_ANGLE = 1e-6
 _CASE = 550.0
 
 
-def gear_keys(said: Said, gear: Component, shift: float | None, bore: float | None) -> tuple[Key, ...]:
+def gear_keys(
+    said: Said, gear: Component, shift: float | None, bore: float | None, far: End | None = None
+) -> tuple[Key, ...]:
     """The keys of a gear.
 
     Parameters
@@ -65,6 +67,8 @@ def gear_keys(said: Said, gear: Component, shift: float | None, bore: float | No
         Profile shift coefficient where the model leaves it to the centre distance.
     bore : float or None
         Radius of the shaft below the gear [m].
+    far : {"I", "II"}, optional
+        End of its face that is not the datum face; without it not known.
 
     Raises
     ------
@@ -96,7 +100,7 @@ def gear_keys(said: Said, gear: Component, shift: float | None, bore: float | No
         keys.append(Key("profile_shift", number(shift), "assumed: that of the centre distance without backlash"))
     keys += _cut(said, gear, flank, module, teeth, given if given is not None else shift or 0.0, helix)
     keys += _sizes(said, gear, flank, bore, ring)
-    keys += modification_keys(said, gear, flank)
+    keys += modification_keys(said, gear, flank, far)
     return (*keys, *_quality(said, gear), *material_keys(said, gear))
 
 

@@ -202,9 +202,13 @@ def _stage(
         for key, (quantity, attribute) in _OF_GEAR.items():
             if (value := found.get(f"{name}.{role}.{key}")) is not None:
                 data.say(quantity, **{attribute.format(year): value})
+    # Faces are counted from end I, that of +u where the driver turns about it: it is the datum face.
+    along = -bodies.sense[bodies.shaft[part.driver].id]
+    for gear in (part.driver, _mate(part)):
+        lead = scene.case.gear[gear.removesuffix(_LIKE)].lead
+        if lead is not None and (lead.slope or lead.end_relief):
+            gears[gear].word(datum_face_orientation="positive" if along < 0.0 else "negative")
     if (over := results.tables.get(f"load_over_face_{name}")) is not None:
-        # Faces are counted from end I, that of +u where the driver turns about it.
-        along = -bodies.sense[bodies.shaft[part.driver].id]
         rows = sorted((along * float(z), float(q)) for z, q in zip(over["z"], over["mean_line_load"], strict=True))
         width = min(pair.driver.face_width, pair.driven.face_width)
         stage.say("length", load_distribution_node_positions=[z + 0.5 * width for z, _ in rows])

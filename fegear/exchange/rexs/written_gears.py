@@ -29,7 +29,7 @@ _GEAR = frozenset(
 )  # fmt: skip
 _STRENGTH = frozenset({"material", "hardness", "core_hardness", "contact", "bending"})
 _RELIEF = frozenset({"tip", "root", "crowning"})
-_LEAD = frozenset({"crowning", "slope"})
+_LEAD = frozenset({"crowning", "slope", "end_relief"})
 #: What a rim is where nothing is said of it [modules]; so much of a module is round-off.
 _ROUNDED = 1e-9
 
@@ -145,6 +145,14 @@ def _modifications(written: Written, name: str, part: GearPart, flanks: list[Par
             )  # fmt: skip
         if lead.slope:
             made.append(written.part("helix_slope").say("length", helix_slope=lead.slope))
+        for relieved in lead.end_relief:
+            for end, face in (("I", "datum_face"), ("II", "non_datum_face")):
+                if relieved.end in (end, "both"):
+                    relief_there = {
+                        f"end_relief_depth_{face}": relieved.amount, f"end_relief_length_{face}": relieved.length,
+                    }  # fmt: skip
+                    found = written.part(f"end_relief_{face}").say("length", **relief_there)
+                    made.append(found.word(shape_of_relief=relieved.shape))
     for one in made:
         for flank in flanks:
             written.relate("reference", origin=flank, referenced=one)

@@ -63,6 +63,7 @@ def write_shaft(written: Written, scene: Scene, name: str, casing: Part, gears: 
     else:
         written.parts.remove(material)
     for there in part.gears:
+        left_out(written, f"Gear {there.gear} on shaft {name}", there, {"gear", "at"})
         gears[there.gear].say("length", u_coordinate_on_shaft=there.at)
         written.relate("assembly", assembly=made, part=gears[there.gear])
     for seat in part.bearings:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
 from fegear.case.built.pair_inputs import gear_name
-from fegear.case.built.shafts import gearbox_of
+from fegear.case.built.shafts import gearbox_of, said_of_bodies
 from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.wide.gaps import RIGID
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
@@ -41,11 +41,14 @@ class LoadedShaftsInputs:
         Of every mesh whose flanks are loaded with it; None where the load stays even over the face.
     scales : tuple of float
         Loads over the nominal ones, ascending.
+    said : tuple of str
+        What is assumed of gears on their shafts.
     """
 
     gearbox: Gearbox
     flanks: tuple[FlanksToLoad | None, ...]
     scales: tuple[float, ...]
+    said: tuple[str, ...]
 
 
 def loaded_shafts(upstream: Upstream) -> LoadedShafts:
@@ -82,7 +85,7 @@ def _inputs(scene: Scene, _name: str) -> LoadedShaftsInputs:
     box = gearbox_of(scene)
     flanks = tuple(flanks_to_load(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
     scales = {1.0}.union(*(_scales(scene, mesh.pair) for mesh in box.meshes))
-    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)))
+    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), said_of_bodies(scene))
 
 
 def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> LoadedShafts:
@@ -104,12 +107,17 @@ def _present(data: LoadedShafts, inputs: LoadedShaftsInputs) -> Outcome:
         "scales": list(inputs.scales), "newton_steps": [state.steps for state in data.states],
         "tolerance": TOLERANCE, "flanks_loaded": list(data.feeding),
     }  # fmt: skip
-    return Outcome(data, settings=settings, remarks=tuple(_remarks(data)))
+    return Outcome(data, settings=settings, remarks=tuple(_remarks(data, inputs.said)))
 
 
-def _remarks(data: LoadedShafts) -> list[str]:
-    """What the model neglects, and what is not from a print at hand."""
-    said = ["Shafts: gear bodies do not stiffen their shafts; sections below a gear may be given as stiff as it is."]
+def _remarks(data: LoadedShafts, bodies: tuple[str, ...]) -> list[str]:
+    """What the model assumes and neglects, and what is not from a print at hand."""
+    said = [f"Shafts: {one}." for one in bodies]
+    if any(one.shaft.gears for one in data.gearbox.shafts):
+        said.append(
+            "Shafts: bodies of gears sit fast on them and carry torque and bending over their seats; of keys and usual "
+            "shrink fits ISO 6336-1 expects scarcely any of it, which stiffens = false of a gear computes."
+        )
     meshes = data.gearbox.meshes
     even = [mesh.pair for mesh, feeding in zip(meshes, data.feeding, strict=True) if not feeding]
     if even:

@@ -1,0 +1,118 @@
+"""Bodies of gears that sit fast on their shafts, or are cut into them: what stiffens a shaft below its gears."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.revolved_body import RevolvedBody
+from fegear.shafts.beam import Section
+from fegear.shafts.gear_on_shaft import GearOnShaft
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.case.shaft import GearPlacePart
+    from fegear.geometry.gear import Gear
+    from fegear.shafts.beam import Shaft
+
+#: Diameters that differ by less than this share are one.
+_SAME = 1e-3
+#: Least length of a piece of a section, over the shaft's.
+_PIECE = 1e-9
+
+
+@dataclass(frozen=True)
+class StiffenedShaft:
+    """A shaft with the bodies of its gears.
+
+    Parameters
+    ----------
+    shaft : Shaft
+    bodies : dict of str to GearOnShaft
+        By gear; of those that stiffen it.
+    said : tuple of str
+        What was assumed.
+    """
+
+    shaft: Shaft
+    bodies: dict[str, GearOnShaft]
+    said: tuple[str, ...]
+
+
+def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> StiffenedShaft:
+    """Give a shaft the bodies of its gears.
+
+    Below a body the shaft reaches to the radius at which the gear is held, where the body begins: of a gear that is
+    pressed on that is its surface, of teeth that are cut into it a circle inside.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the shaft.
+    bare : Shaft
+        As its sections say.
+    senses : dict of str to int
+        `MeshPlace.sense` by gear, which says where its end II lies; of bodies alike to both sides of no effect.
+    """
+    shaft, bodies, said = bare, {}, []
+    for place in scene.case.shaft[name].gears:
+        gear = scene.gears[place.gear]
+        if not place.stiffens or gear.tooth.internal:
+            continue
+        found = _body(gear, place, senses.get(place.gear, 1))
+        low, high = (min(max(place.at + end, 0.0), bare.length) for end in found.held)
+        if not high - low > _PIECE * bare.length:
+            said.append(f"{place.gear} sits on no part of its shaft and does not stiffen it")
+            continue
+        outer, inner = bare.diameters(np.linspace(low, high, 17)[1:-1])
+        if inner.max() > 2.0 * found.seat * (1.0 - _SAME):
+            said.append(
+                f"{place.gear} is held at a radius of {found.seat * 1e3:.4g} mm, within the hole of its shaft, and "
+                "does not stiffen it"
+            )
+            continue
+        if outer.max() > 2.0 * found.seat * (1.0 + _SAME):
+            said.append(f"{place.gear} is taken as cut into its shaft, solid up to its root circle")
+        elif outer.min() < 2.0 * found.seat * (1.0 - _SAME):
+            said.append(f"{place.gear} is taken as solid between its shaft and the radius at which it is held")
+        shaft = _filled(shaft, low, high, 2.0 * found.seat)
+        bodies[place.gear] = GearOnShaft(found, place.at, gear.material.young_modulus)
+    return StiffenedShaft(replace(shaft, gears=tuple(bodies.values())), bodies, tuple(said))
+
+
+def _body(gear: Gear, place: GearPlacePart, sense: int) -> RevolvedBody:
+    """What lies between the held radius of a gear and its root circle, along its shaft."""
+    half = 0.5 * gear.face_width
+    rings = [(gear.bore_radius, -half, half)]
+    if gear.body is not None:
+        rings = [(gear.body.rim_radius, -half, half), (gear.body.hub_radius, *gear.body.web)]
+        if gear.body.hub_radius > gear.bore_radius * (1.0 + _PIECE):
+            rings.append((gear.bore_radius, *gear.body.hub))
+    if sense > 0:  # toward end II is toward the left end of the shaft
+        rings = [(inner, -high, -low) for inner, low, high in rings]
+    low, high = rings[-1][1:]
+    reach = half if place.seat is None else 0.5 * place.seat
+    return RevolvedBody(
+        gear.root_radius, gear.face_width, tuple(rings), (max(low, -reach), min(high, reach)),
+        gear.material.poisson_ratio,
+    )  # fmt: skip
+
+
+def _filled(shaft: Shaft, low: float, high: float, outer: float) -> Shaft:
+    """The shaft with another outer diameter between two places."""
+    found = []
+    for section, start in zip(shaft.sections, shaft.steps, strict=False):
+        end = start + section.length
+        cuts = [start, *(one for one in (low, high) if start + _PIECE < one < end - _PIECE), end]
+        (d0, d1), (h0, h1) = section.ends
+        for a, b in pairwise(cuts):
+            s, t = (a - start) / section.length, (b - start) / section.length
+            hole = h0 + (h1 - h0) * s, h0 + (h1 - h0) * t
+            inside = low - _PIECE < a and b < high + _PIECE
+            ends = (outer, outer) if inside else (d0 + (d1 - d0) * s, d0 + (d1 - d0) * t)
+            found.append(Section(b - a, ends[0], hole[0], ends[1], hole[1]))
+    return replace(shaft, sections=tuple(found))
