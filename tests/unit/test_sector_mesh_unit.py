@@ -138,3 +138,27 @@ def test_a_flat_mesh_is_refused():
         chains.append(Chain(name, ends, ends.mean(axis=1, keepdims=True), np.hstack([along, along])))
     with pytest.raises(InputError, match="triangle of quality"):
         mesh_inside(chains, 20)
+
+
+def test_a_request_to_stop_that_arrives_below_gmsh_is_not_lost(monkeypatch, capfd):
+    asked = iter(range(1000))
+
+    class Interrupted:
+        """numpy, but for the third square root that the size of the elements takes."""
+
+        def __getattr__(self, name):
+            return getattr(np, name)
+
+        def sqrt(self, values):
+            if np.shape(values) == () or next(asked) != 2:
+                return np.sqrt(values)
+            raise KeyboardInterrupt
+
+    wanted = drawn("z 8")
+    monkeypatch.setattr("fegear.fem.plane.sector.np", Interrupted())
+    with pytest.raises(KeyboardInterrupt):
+        drawn("z 8")
+    monkeypatch.undo()
+    assert next(asked) > 2  # it was in the callback
+    assert "ctypes" not in capfd.readouterr().err
+    assert_same(drawn("z 8"), wanted)

@@ -55,6 +55,8 @@ _OPTIONS = {
 _ONE_AT_A_TIME = threading.RLock()
 #: Gmsh's frontal algorithm, whose triangles are the most even where they are few.
 _FRONTAL = 6
+#: Size of what is still drawn after a request to stop [modules]: large, so that little is.
+_UNWANTED = 1.0
 #: Flatter triangles (1 is equilateral, 0 flat) spoil what lies near them. Those of the usual settings are above .3.
 _FLATTEST = 0.12
 #: Boundary edges next to one so many times shorter (a tip rounding of a micrometre, say) make flat triangles.
@@ -259,8 +261,16 @@ def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[n
     drawn, length = _on_a_grid(polygon)
     x_middle, y_middle = 0.5 * (drawn + np.roll(drawn, -1, axis=1))
 
+    stopped: list[BaseException] = []
+
     def size(_dim: int, _tag: int, x: float, y: float, _z: float, _lc: float) -> float:
-        return float((length + (growth or 0.0) * np.sqrt((x_middle - x) ** 2 + (y_middle - y) ** 2)).min())
+        # What is raised here, a request to stop, would be printed below gmsh and be lost, and the size would be zero.
+        try:
+            if not stopped:
+                return float((length + (growth or 0.0) * np.sqrt((x_middle - x) ** 2 + (y_middle - y) ** 2)).min())
+        except BaseException as stop:  # noqa: BLE001 - raised again as soon as gmsh has returned
+            stopped.append(stop)
+        return _UNWANTED
 
     with gmsh_session("fegear sector") as gmsh:
         try:
@@ -282,9 +292,12 @@ def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[n
             tags, coordinates, _ = gmsh.model.mesh.getNodes()
             _, _, connectivity = gmsh.model.mesh.getElements(2)
         except Exception as problem:
-            raise FegearError(f"gmsh could not mesh the sector: {problem}") from problem
+            if not stopped:
+                raise FegearError(f"gmsh could not mesh the sector: {problem}") from problem
         finally:
             gmsh.model.mesh.removeSizeCallback()
+    if stopped:
+        raise stopped[0]
     position = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     order = np.argsort(tags)  # boundary corners carry the lowest tags, in the polygon's order
     position[tags[order].astype(np.int64)] = np.arange(tags.size)
