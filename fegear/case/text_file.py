@@ -261,7 +261,7 @@ def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
     """Heads and rows with the numbers of their lines, the last entry of each without the empty one behind a comma."""
     every = read_text(path, key).splitlines()
     if len(every) > _MOST_LINES:
-        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "leave out every second")
+        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "drop every second")
     lines = [(number, line) for number, line in enumerate(every, start=1) if line.strip()]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if len(lines) < 2:

@@ -53,7 +53,7 @@ class Results(Found):
     values, tables, figures : Named
         In order and by name: ``values["I.te_mean"]``, ``tables["transmission_error_I"]``.
     remarks : tuple of str
-        What the user should know: assumptions, effects left out.
+        What the user should know: assumptions, neglected effects.
     scene : Scene
         The case with its gears and pairs.
     timings : mapping of Task to Timing

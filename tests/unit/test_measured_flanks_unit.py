@@ -232,5 +232,5 @@ def test_what_no_tooth_can_be_measured_to_be_is_refused(tmp_path, change, said):
 def test_a_file_of_a_million_lines_is_refused_before_it_is_read_line_by_line(tmp_path):
     """Three million places took a minute and 1.4 GB until they were refused."""
     (tmp_path / "p.csv").write_text("roll_angle [deg],deviation [um]\n" + "x\n" * 1_000_000, "utf-8")
-    with pytest.raises(InputError, match="has more than 400,000 lines; leave out every second"):
+    with pytest.raises(InputError, match="has more than 400,000 lines; drop every second"):
         measured_gear(scene_of(tmp_path, {"profile": "p.csv"}), "a")

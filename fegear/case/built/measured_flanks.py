@@ -168,7 +168,7 @@ def _columns(scene: Scene, file: str, key: str, gear: Gear, *, over_face: bool =
         what = "z [mm]" if over_face else "one of radius [mm], roll_angle [deg] and roll_length [mm]"
         raise InputError(key, f'"{file}"', f"needs the columns {what}, and deviation [um]")
     if found["deviation"].size > _MOST:
-        raise InputError(key, f'"{file}"', f"has more than {_MOST:,} places", "leave out every second")
+        raise InputError(key, f'"{file}"', f"has more than {_MOST:,} places", "drop every second")
     _check(found, key, gear)
     x = found[place[0]]
     if place[0] == "radius":

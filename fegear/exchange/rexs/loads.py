@@ -165,7 +165,7 @@ def spectrum_of(
                 ratio = abs(flow.meshes[n].teeth[0] / flow.meshes[n].teeth[1])
                 torque, speed = (torque * ratio, speed / ratio) if not drives else (torque / ratio, speed * ratio)
                 said.notes.append(
-                    f"{stage.component.said}: power turns round in its spectrum; flanks are not told apart."
+                    f"{stage.component.said}: power turns round in its spectrum; its flanks are not distinguished."
                 )
             bins.append((torque, abs(speed), (time or 0.0) / whole))
         found.append(tuple(bins))

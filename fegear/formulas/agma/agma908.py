@@ -186,7 +186,7 @@ def bending_factor(pair: GearPair, member: Member, contact: ContactGeometry | No
     tooth, phi, psi = gear.external_tooth, gear.normal_pressure_angle, gear.helix_angle
     if tooth.rack.residual_undercut > 0.0:
         raise RangeError(
-            "rack.protuberance", "(given)", "is left out of AGMA 908 for helical gears", "rate by ISO 6336"
+            "rack.protuberance", "(given)", "is not covered by AGMA 908 for helical gears", "rate by ISO 6336"
         )
     teeth = gear.teeth / math.cos(psi) ** 3
     load_angle = _load_roll(pair, member, at, teeth) - (math.tan(phi) - phi)

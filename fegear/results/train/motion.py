@@ -139,7 +139,7 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     ]  # fmt: skip
     if beside:
         said.append(
-            f"Beside a motion that does not repeat a stable one exists, to which another start leads: "
+            f"In addition to a motion that does not repeat a stable one exists, to which another start leads: "
             f"{'; '.join(beside)}."
         )
     return said
