@@ -70,6 +70,8 @@ class ReliefChart:
         """
         values = self.effective_error if metric == "effective_error" else self.peak_to_peak
         i = values.argmin(axis=1)
+        if self.lengths.size < 3:
+            return self.lengths[i]
         inner = np.clip(i, 1, self.lengths.size - 2)
         f = [np.take_along_axis(values, (inner + s)[:, None], axis=1)[:, 0] for s in (-1, 0, 1)]
         h = [self.lengths[inner + s] for s in (-1, 0, 1)]

@@ -115,7 +115,7 @@ def _pressure(data: LoadedWidePair) -> dict[str, Any]:
     found, i = data.found, data.at
     lines, pair = found.lines, found.pair
     pressure = found.pressure[:, :, i] * 1e-6
-    inner = np.where(found.smooth, pressure, 0.0)
+    inner = found.smooth_pressure[:, :, i] * 1e-6
     places = lines.z, lines.radius(pair, "driver"), lines.radius(pair, "driven")
     positions = [
         [

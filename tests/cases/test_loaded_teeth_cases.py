@@ -144,6 +144,31 @@ def test_nasa_gears_relief_with_coupling():
     assert history["x"][0] <= values_of(results, "I").x_start * 1e3 + 1e-5
 
 
+def test_a_search_without_tip_corners_says_what_they_would_make_of_it():
+    """Another valley is the deepest with them: 12.4 um on the driven gear where the search without takes 18.9."""
+    quick = ('results=["relief"]', "accuracy.tolerance=1e-2", 'design.grind=["linear"]')
+    _, with_them, results = run("nasa_relief_design", *quick)
+    assert not any("instead of" in remark for remark in results.remarks)
+    _, without, results = run("nasa_relief_design", *quick, "effects.corner_contact=false")
+    (remark,) = (one for one in results.remarks if "the best linear tip relief to grind" in one)
+    assert "corner_contact is off" in remark
+    said, now = remark.split("instead of")
+    for values, words in ((with_them, said), (without, now)):
+        left = values["I.te_peak_to_peak.linear_tip_relief"].value
+        assert f"leave {left:.3g} um" in words
+        for member in ("driver", "driven"):
+            assert f"{values[f'I.{member}.linear_tip_amount'].value:.3g} um" in words
+            assert f"{values[f'I.{member}.linear_tip_start'].value:.4g} deg" in words
+
+
+def test_chart_and_curves_of_one_case_state_delta_once():
+    """Both named it, and a run with both was refused."""
+    few = ("design.chart.lengths=[0.5, 1.0]", "design.chart.amounts_over_delta=[1.0]")
+    _, values, results = run("lin_tip_relief", 'results=["relief-chart", "relief-curves"]', *few)
+    assert [one.name for one in results.values].count("I.delta") == 1
+    assert values["I.best_length"].value in (0.5, 1.0)
+
+
 def test_lins_gears_with_tip_relief():
     tables, values, _ = run("lin_tip_relief")
     chart, optimum = tables["relief_chart_I"], tables["relief_optimum_I"]

@@ -28,7 +28,7 @@ SCENES = (
     (100, False, False, (900,), 16), (200, False, True, (1200, 7200), 64), (1000, False, False, (1200,), 24),
     (1000, True, False, (7200,), 16),
 )  # fmt: skip
-QUANTITIES = ("mean", "peak_to_peak", "face_load_factor")
+QUANTITIES = ("mean", "peak_to_peak", "face_load_factor", "largest_line_load", "largest_pressure")
 
 
 def loaded(case, tolerance, scene, panels, positions):

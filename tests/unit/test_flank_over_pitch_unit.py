@@ -87,7 +87,25 @@ def test_short_contact_lines_decide_no_largest_pressure(bodies):
         finer = replace(flanks, positions=48, panel=share * flanks.panel)
         largest.append(finer.solve([LOAD], gaps, finer.compliance(LOAD)).largest_pressure[0])
     assert largest[0] == pytest.approx(largest[1], rel=0.02)
-    assert abs(largest[1] - values.largest_pressure[0]) < off < 0.3 * values.largest_pressure[0]
+    assert abs(largest[1] - values.largest_pressure[0]) < off < 0.15 * values.largest_pressure[0]
+
+
+def test_panels_shorter_than_a_contact_leave_no_zigzag(bodies):
+    """Station by station forces of 150 panels alternate by a third, and made 2045 of 1800 MPa of `helical_load`."""
+    flanks = flanks_of(bodies, 15.0, panel=0.018)
+    found = flanks.solve([LOAD], MISALIGNED, flanks.compliance(LOAD, flanks.roll[:1]))
+    lines, rough = found.lines, found.contact.force[:, :, 0] / np.where(found.lines.present, found.lines.support, 1.0)
+    long = max(lines.at(0), key=lambda one: np.ptp(lines.z[0, one]))
+    smooth = found.line_load[0, long, 0]
+
+    def bends(values):
+        return np.abs(np.diff(values, 2)).sum()
+
+    assert bends(smooth) < 0.2 * bends(rough[0, long])
+    assert np.trapezoid(smooth, lines.z[0, long]) == pytest.approx(found.contact.force[0, long, 0].sum(), rel=1e-3)
+    usual = flanks_of(bodies, 15.0).solve([LOAD], MISALIGNED)  # panels longer than that: what stands at a station
+    on = usual.lines.support > 0.0
+    np.testing.assert_array_equal(usual.line_load[on][:, 0], usual.contact.force[on][:, 0] / usual.lines.support[on])
 
 
 @pytest.mark.parametrize(("beta", "edges"), [pytest.param(0.0, True, marks=pytest.mark.long), (15.0, True)])

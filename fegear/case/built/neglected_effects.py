@@ -24,9 +24,12 @@ if TYPE_CHECKING:
     from fegear.case.built.train import MotionInputs
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.design.relief_design import DesignTask
+    from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.geometry.relief import Shape
 
 
 #: Unit of an answer, its factor, and what a share is of.
@@ -39,6 +42,8 @@ _SAID: dict[Answer, tuple[str, float, str]] = {
 }
 
 
+#: Tip reliefs that leave so little more than the best are as good.
+_EQUALLY_GOOD = 0.01
 #: Contact ratios nearer to a whole number than this leave transmission error a spike of almost no width.
 _NEAR_WHOLE = 1e-3
 
@@ -172,9 +177,16 @@ def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart)
 
 
 def neglected_in_design(
-    asked: PairInputs, designed: Engagement, load: float, tolerance: float
+    asked: PairInputs,
+    designed: Engagement,
+    ground: tuple[Shape, TipReliefPair] | None,
+    task: DesignTask,
+    tolerance: float,
 ) -> dict[str, tuple[str, ...]]:
     """What an effect that is off does to a designed relief, and to what it leaves, where that exceeds the tolerance.
+
+    Where tip corners may touch, other tip reliefs may be the best to grind, in another valley of the search: `ground`,
+    the best shape and what was found of it, is searched for again.
 
     Returns
     -------
@@ -183,7 +195,9 @@ def neglected_in_design(
     """
     from fegear.contact.plane.neglected_effects import changes
     from fegear.design.minimum_excitation import MinimumExcitationRelief
+    from fegear.design.tip_relief.grindable import grindable
 
+    load = task.load
     found: dict[str, tuple[str, ...]] = {}
     with tallying():
         for effect in _off(asked.effects, AT_REST):
@@ -205,9 +219,24 @@ def neglected_in_design(
                         share = percent(abs(size) / largest)
                         where = f"{share} of its largest value, at x = {x[at] * 1e3:.4g} mm"
                         sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
+            if effect == "corner_contact" and ground is not None:
+                shape, best = ground
+                other_best = grindable(other, load, shape, task.metric)
+                if abs(other_best.objective - best.objective) > max(tolerance, _EQUALLY_GOOD) * best.objective:
+                    to_grind = f"{_to_grind(other_best)}, instead of {_to_grind(best)}"
+                    sizes.append(f"the best {shape} tip relief to grind: {to_grind}")
             if sizes:
                 found[effect] = tuple(sizes)
     return found
+
+
+def _to_grind(found: TipReliefPair) -> str:
+    """Amounts, starts and what is left, in words."""
+    each = [
+        f"{relief.amount * 1e6:.3g} um from {np.degrees(relief.start):.4g} deg on the {member}"
+        for member, relief in (("driver", found.driver), ("driven gear", found.driven))
+    ]
+    return f"{' and '.join(each)}, which leave {found.objective * 1e6:.3g} um"
 
 
 def design_remarks(

@@ -83,13 +83,17 @@ class FlankCompliance(ReadOnlyArrays):
     line_half_width: Array | None = None
     spot: Array | None = None
 
+    @property
+    def window(self) -> Array | None:
+        """Distance to either side over which the load is averaged that a contact's width follows, (P, M) [m]."""
+        if self.line_half_width is None or self.fixed_half_width is not None:
+            return None
+        return _WINDOW * (self.line_half_width if self.spot is None else np.maximum(self.line_half_width, self.spot))
+
     @cached_property
     def averages(self) -> Averages:
         """How the load that a contact's width follows is averaged along its line."""
-        if self.line_half_width is None or self.fixed_half_width is not None:
-            return averages(self.lines, None)
-        width = self.line_half_width if self.spot is None else np.maximum(self.line_half_width, self.spot)
-        return averages(self.lines, _WINDOW * width)
+        return averages(self.lines, self.window)
 
     def half_width(self, line_load: Array) -> Array:
         """Hertzian half-width b under line loads of shape (P, M, L) [m]."""

@@ -24,9 +24,11 @@ if TYPE_CHECKING:
 
 #: By how much panels are longer.
 _LONGER = 1.5
-#: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that of
+#: What is taken for an error of the change of shares, of that of the largest load at a roll position, and of that of
 #: the shape of the transmission error: compared with solutions of a fourth of the panel's length on finer meshes.
-_SHARES, _LOCAL, _SHAPE = 1.2, 2.5, 0.5
+_SHARES, _LOCAL, _SHAPE = 1.2, 1.8, 0.5
+#: What is taken for an error of the pressure read between stations: of what it is above the largest at a station.
+_BETWEEN = 0.6
 #: What longer panels change of the mean transmission error of spots, as an error of its peak to peak.
 _OF_SPOT = 0.6
 
@@ -90,18 +92,17 @@ def flank_error(
     softer = replace(longer, gears=coarse)
     other = softer.solve(found.load, gaps, softer.compliance(about))
     steps = (found, fewer, other)
-    changes = [_changes(one, two) for one, two in pairwise(steps)]
+    changes = [_changes(one, two, over) for one, two in pairwise(steps)]
     # Where panels are long beside a spot it comes and goes with them: at other roll positions by other amounts.
     by_panels = changes[0]
     changes[0] = by_panels._replace(peak_to_peak=np.maximum(by_panels.peak_to_peak, _OF_SPOT * by_panels.mean))
     left = over.left_by_positions
-    # Largest loads that these roll positions miss change elsewhere: by no more than they are larger.
-    above = over.found.largest_line_load - found.largest_line_load
-    higher = over.found.largest_pressure - found.largest_pressure
+    at_stations = np.where(over.found.smooth[:, :, None], over.found.pressure, 0.0).max(axis=(0, 1))
+    between = over.found.largest_pressure - at_stations
     missed = missed_of_spots(found.known, found.contact, long_line(found.pair))
     left = left._replace(
-        largest_line_load=left.largest_line_load + np.maximum(above, 0.0) + missed * found.largest_line_load,
-        largest_pressure=left.largest_pressure + np.maximum(higher, 0.0) + missed * found.largest_pressure,
+        largest_line_load=left.largest_line_load + missed * found.largest_line_load,
+        largest_pressure=left.largest_pressure + missed * found.largest_pressure + _BETWEEN * between,
     )
     sums = Stated(*(sum(parts) + more for *parts, more in zip(*changes, left, strict=True)))
     te = sum(np.abs(two.transmission_error - one.transmission_error) for one, two in pairwise(steps))
@@ -116,8 +117,8 @@ def no_estimate(found: LoadedFlanks) -> FlankError:
     return FlankError(te, share, found, *[unknown] * len(Stated._fields))
 
 
-def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:
-    """Changes from one solution to another of it at the same roll positions."""
+def _changes(found: LoadedFlanks, other: LoadedFlanks, over: OverPitch) -> Stated:
+    """Changes from one solution to another of it at the same roll positions, and what they make of what is stated."""
     te, again = found.transmission_error, other.transmission_error
     shift = np.abs(other.mean_transmission_error - found.mean_transmission_error)
     mean = found.load / (found.lines.high - found.lines.low)
@@ -129,8 +130,8 @@ def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:
         # The largest change anywhere on the face, for that of the largest value may be small by chance; no less than
         # the compliances change together.
         np.maximum(over_face, shift / found.mean_transmission_error * found.face_load_factor),
-        _largest(found.largest_line_loads, other.largest_line_loads),
-        _largest(found.largest_pressures, other.largest_pressures),
+        _of_largest(found, found.largest_line_loads, other.largest_line_loads, over, over.found.largest_line_loads),
+        _of_largest(found, found.largest_pressures, other.largest_pressures, over, over.found.largest_pressures),
     )
 
 
@@ -160,6 +161,14 @@ def with_misses(error: FlankError, found: LoadedFlanks, missed: float) -> FlankE
     )
 
 
-def _largest(first: Array, second: Array) -> Array:
-    """Of a largest value: its change at any roll position, for where it is largest that may be small by chance."""
-    return np.asarray(_LOCAL * np.abs(second - first).max(axis=0))
+def _of_largest(found: LoadedFlanks, first: Array, second: Array, over: OverPitch, values: Array) -> Array:
+    """Change of a largest value of the base pitch, shape (L,), from changes at some of its roll positions, (P, L).
+
+    Each of `values`, at the roll positions of `over`, may change by as large a share as those next to it do. Where one
+    that is far below the largest does so, the largest stays what it is: counted is what the largest of all may become.
+    """
+    share = np.divide(np.abs(second - first), first, out=np.zeros_like(first), where=first > 0.0)
+    pitch, roll, at = found.pair.base_pitch, over.points.x, found.lines.roll
+    share = np.stack([np.interp(roll, at, one, period=pitch) for one in share.T], axis=1)
+    off, largest = _LOCAL * share * values, values.max(axis=0)
+    return np.maximum((values + off).max(axis=0) - largest, largest - (values - off).max(axis=0))

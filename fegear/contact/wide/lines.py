@@ -120,19 +120,24 @@ class ContactLines(ReadOnlyArrays):
                 found[p, s] = self.z[p, s][-1] - self.z[p, s][0] >= shortest * (1.0 - 1e-9)
         return found
 
-    def clear(self, pair: GearPair, distance: float) -> Mask:
-        """Stations farther than a distance along the face from where their line reaches a tip or form circle, (P, M).
+    def clearance(self, pair: GearPair, distance: float) -> Array:
+        """How much farther than a distance along the face stations are from where lines reach tip or form circles.
 
-        Also where it would do so beyond the end of the face: a line that comes to a corner changes steadily. All
-        stations of spur pairs are, for their lines stand along tips as a whole; so are those beside rounded tips on
-        which lines go on.
+        Counted along the line of action, negative nearer to it, shape (P, M) [m]. Also where a line would do so beyond
+        the end of the face: one that comes to a corner changes steadily. Spur pairs' lines stand along tips as a whole,
+        at no distance.
         """
         room = (1.0 - 1e-9) * distance * abs(base_twist(pair))
         if self.edges is None:
-            near = np.minimum(np.abs(self.x - pair.x_start), np.abs(self.x - pair.x_end)) < room
-        else:
-            near = self.edges.tilt > -room
-        return np.asarray(self.present & ~self.at_edge & ~near)
+            return np.minimum(np.abs(self.x - pair.x_start), np.abs(self.x - pair.x_end)) - room
+        return np.asarray(-room - self.edges.tilt)
+
+    def clear(self, pair: GearPair, distance: float) -> Mask:
+        """Stations farther than a distance along the face from where their line reaches a tip or form circle, (P, M).
+
+        All stations of spur pairs are, and so are those beside rounded tips on which lines go on.
+        """
+        return np.asarray(self.present & ~self.at_edge & ~(self.clearance(pair, distance) < 0.0))
 
     def at(self, position: int) -> list[slice]:
         """Where the lines of a roll position stand, in the order of their pairs."""

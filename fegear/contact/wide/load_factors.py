@@ -165,6 +165,36 @@ def load_below(place: Array, line_load: Array, ends: Array) -> Array:
     )
 
 
+def averaged_along(lines: ContactLines, line_load: Array, window: Array | None) -> Array:
+    """Loads averaged along their lines as far to either side as a window is longer than a panel, shape (P, M, L).
+
+    Mirrored at the ends of a line: an even load stays what it is, and so does the sum of any. Where panels are longer
+    than the window, loads are what they are.
+
+    Parameters
+    ----------
+    lines : ContactLines
+    line_load : ndarray, shape (P, M, L)
+        [N/m].
+    window : ndarray, shape (P, M), or None
+        The same all along a line [m].
+    """
+    if window is None:
+        return line_load
+    found = line_load.copy()
+    for p in np.flatnonzero(((lines.panel > 0.0) & (lines.panel < window[:, :-1])).any(axis=1)).tolist():
+        for s in lines.at(p):
+            z, load = lines.z[p, s], line_load[p, s]
+            reach = min(float(window[p, s.start] - np.diff(z).max()), float(z[-1] - z[0]))
+            if reach <= 0.0:
+                continue
+            place = np.concatenate([2.0 * z[0] - z[:0:-1], z, 2.0 * z[-1] - z[-2::-1]])
+            mirrored = np.concatenate([load[:0:-1], load, load[-2::-1]])
+            above, below = (load_below(place, mirrored, z + side * reach) for side in (1.0, -1.0))
+            found[p, s] = (above - below) / (2.0 * reach)
+    return found
+
+
 def swept_mean(lines: ContactLines, line_load: Array, ends: Array, pitch: float) -> Array:
     """Load of all lines together between heights, averaged over a base pitch, shape (n - 1, L) [N].
 

@@ -26,7 +26,7 @@ from fegear.contact.wide.lines import (
     long_line,
     roll_points,
 )
-from fegear.contact.wide.load_factors import load_below, swept_mean
+from fegear.contact.wide.load_factors import averaged_along, load_below, swept_mean
 from fegear.contact.wide.spots import solve_spots
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
@@ -87,10 +87,15 @@ class LoadedFlanks(ReadOnlyArrays):
     @cached_property
     @shows("N/mm", "transverse force per face width", label="line load")
     def line_load(self) -> Array:
-        """f at the stations [N/m], transverse force per length along the face, shape (P, M, L)."""
+        """f at the stations [N/m], transverse force per length along the face, shape (P, M, L).
+
+        Of panels that are short beside a contact's width it is averaged over that width: forces of single stations mean
+        nothing there, and alternate where a gap has a kink. Spots, no longer than they are wide, keep theirs.
+        """
         support = self.lines.support[:, :, None]
         force = self.contact.force
-        return np.divide(force, support, out=np.zeros_like(force), where=support > 0.0)
+        load = np.divide(force, support, out=np.zeros_like(force), where=support > 0.0)
+        return averaged_along(self.lines, load, None if self.known.spot is not None else self.known.window)
 
     @cached_property
     @shows("MPa", "largest pressure of smooth flanks, as of a long contact", name="hertz_pressure", label="pressure")
@@ -109,6 +114,28 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.asarray(self.long & self.lines.clear(self.pair, BESIDE_EDGE * self.pair.driver.module))
 
     @cached_property
+    def smooth_pressure(self) -> Array:
+        """Pressure at the stations of smooth flanks [Pa], zero elsewhere, shape (P, M, L).
+
+        At a station just beyond their limits stands what it is at the limit, between stations: where these happen to
+        stand decides no largest value.
+        """
+        found = np.where(self.smooth[:, :, None], self.pressure, 0.0)
+        apart = self.lines.clearance(self.pair, BESIDE_EDGE * self.pair.driver.module)
+        same = (self.lines.panel > 0.0) & self.long[:, 1:]
+        before, behind = (slice(None), slice(None, -1)), (slice(None), slice(1, None))
+        for inner, outer in ((before, behind), (behind, before)):
+            at = same & self.smooth[inner] & ~self.smooth[outer] & (apart[outer] < 0.0)
+            share = np.where(at, apart[inner] / np.where(at, apart[inner] - apart[outer], 1.0), 0.0)
+            load, factor = (
+                one[inner] + (share[..., None] if one.ndim > 2 else share) * (one[outer] - one[inner])
+                for one in (self.line_load, self.known.width_factor)
+            )
+            limit = 2.0 / np.pi * np.sqrt(load / np.where(at, factor, 1.0)[..., None])
+            found[outer] = np.where(at[..., None], np.maximum(found[outer], limit), found[outer])
+        return found
+
+    @cached_property
     def largest_line_loads(self) -> Array:
         """At each roll position [N/m], shape (P, L), on long lines; ends at tips or form circles are neglected."""
         bounded = self.smooth
@@ -119,8 +146,8 @@ class LoadedFlanks(ReadOnlyArrays):
 
     @cached_property
     def largest_pressures(self) -> Array:
-        """Hertzian at each roll position [Pa], shape (P, L), see `smooth`."""
-        return np.asarray(np.where(self.smooth[:, :, None], self.pressure, 0.0).max(axis=1))
+        """Hertzian at each roll position [Pa], shape (P, L), see `smooth_pressure`."""
+        return np.asarray(self.smooth_pressure.max(axis=1))
 
     @property
     def largest_line_load(self) -> Array:

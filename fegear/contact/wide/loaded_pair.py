@@ -147,14 +147,15 @@ class LoadedWidePair:
         coarse, i, missed = self.error.coarse, self.at, self._missed
         found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines, self.found.load))
         again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines, coarse.load))
-        largest, other = (one.hertz_pressure[:, i].max() for one in (found, again))
         error = history_error(found, again) + missed * found.load * (1.0 - found.share)
         where = (
             " in the middle of the face, before and after which the contact line crosses a part of it"
             if self.pair.driver.helix_angle
             else ""
         )
-        pressure_error = float(abs(other - largest) + 0.5 * missed * largest)
+        # The largest of these roll positions, in the place of that of the whole base pitch.
+        missed_by_positions = self.stated.largest_pressure[i] - found.hertz_pressure[:, i].max()
+        pressure_error = float(self.error.largest_pressure[i] + missed_by_positions)
         return LoadHistory(found, i, error, None, where, found.x.size, pressure_error)
 
     def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:

@@ -44,7 +44,7 @@ def flank_pair_history(found: LoadedFlanks, gap: Array) -> PairHistory:
     lines, pitch = found.lines, found.pair.base_pitch
     force, te = found.contact.force, found.transmission_error
     apart = averaged_gaps(lines, gap, found.load.size)
-    pressure = np.where(found.smooth[:, :, None], found.pressure, 0.0)
+    pressure = found.smooth_pressure
     where = [(p, s) for p in range(lines.roll.size) for s in lines.at(p)]
     x = np.array([lines.roll[p] + lines.pair[p, s.start] * pitch for p, s in where])
     order = np.argsort(x)

@@ -130,7 +130,7 @@ def _loads(name: str, data: LoadedWidePair) -> Table:
 def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
     name, found, i = inputs.name, data.found, data.at
     stated, lines = data.stated, data.over.found.lines
-    inner = np.where(data.over.found.smooth, data.over.found.pressure[:, :, i], 0.0)
+    inner = data.over.found.smooth_pressure[:, :, i]
     p, s = np.unravel_index(int(first_of_largest(inner)), inner.shape)
     cells = found.cells.size - 1
     where = f", at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.run import Results
     from fegear.engine.table import Table
+    from fegear.geometry.relief import Shape
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,8 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
-    neglected = neglected_in_design(inputs.asked, design.designed, load, inputs.tolerance)
+    best = best_ground(design) if design.ground else None
+    neglected = neglected_in_design(inputs.asked, design.designed, best, task, inputs.tolerance)
     wanted = part.roll_angles or ()
     points = {member: relief_at(design.designed, member, wanted) for member in MEMBERS if wanted}
     return ReliefData(pair, design, neglected, points)
@@ -279,7 +281,7 @@ def _table(results: Results, pair: str, gear: str) -> dict[str, list[str]]:
     }
 
 
-def best_ground(design: ReliefDesign) -> tuple[str, TipReliefPair]:
+def best_ground(design: ReliefDesign) -> tuple[Shape, TipReliefPair]:
     """The shape that leaves the least by the metric of the case, and its reliefs."""
     return min(design.ground.items(), key=lambda one: one[1].objective)
 

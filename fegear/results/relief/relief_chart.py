@@ -61,11 +61,12 @@ class ChartInputs:
     part: ChartPart
     metric: Metric
     name: str = field(compare=False)
+    delta_elsewhere: bool = field(compare=False)
 
 
 def _chart_inputs(scene: Scene, name: str) -> ChartInputs:
     part = design_part(scene)
-    return ChartInputs(part.chart, part.metric, name)
+    return ChartInputs(part.chart, part.metric, name, "relief-curves" in scene.case.results)
 
 
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
@@ -123,8 +124,9 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
         ),
     )
     amount, length = chart.best()
+    said = Value(f"{name}.delta", delta, "um", None, "largest transmission error without relief (Welbourn's Delta)")
     values = [
-        Value(f"{name}.delta", delta, "um", None, "largest transmission error without relief (Welbourn's Delta)"),
+        *(() if inputs.delta_elsewhere else (said,)),
         value_of(chart, "unit_length", name, 0.0),
         value_of(chart, "amounts", name, si=amount, name="best_amount", meaning=_BEST),
         value_of(chart, "lengths", name, si=length, name="best_length", meaning=_BEST),
