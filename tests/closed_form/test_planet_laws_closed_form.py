@@ -137,3 +137,28 @@ def test_spacing_errors_are_refused(unequal):
     engagement = replace(unequal["P_sunloaded-pair"].engagement, driver_spacing=np.array([1e-6, 0.0]))
     with pytest.raises(InputError, match="give it teeth alike"):
         LawSprings(engagement, (), 1e3, 3)
+
+
+@pytest.mark.long
+def test_the_stated_error_of_motion_covers_what_finer_settings_change():
+    """Contact loss at a speed where the integration alone states a third of what the teeth's errors change."""
+    found = {}
+    for tolerance, exactness in ((1e-2, 5e-4), (1e-3, 5e-5)):
+        case = {
+            "results": ["planet-motion"], "accuracy": {"tolerance": tolerance},
+            "dynamics": {"tolerance": exactness, "direction": "static"},
+            "effects": {"hertz": "load-dependent", "contact_loss": True, "parametric": True},
+            "gear": {"s": SIZE | {"teeth": 25}, "p": SIZE | {"teeth": 29}, "r": SIZE | RING},
+            "planetary": {"P": {
+                "sun": "s", "planet": "p", "ring": "r", "planets": 4, "torque": "160 N*m", "floating": ["sun"],
+                "stiffness": {"pin": "250 N/um"}, "pin_errors": {"tangential": ["8 um", "0 um", "-5 um", "0 um"]},
+                "body": {"carrier": {"mass": "3 kg", "inertia": "0.01 kg*m^2"}}, "speeds": ["2500 rpm", "4000 rpm"],
+            }},
+        }  # fmt: skip
+        scene = build_scene(case, "case", None)
+        results = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+        (found[tolerance],) = (o.data for task, o in results.outcomes.items() if task.stage == "planet-motion")
+    rough, fine = found[1e-2], found[1e-3]
+    assert np.all(rough.error > 5e-4)
+    for key in ("sun_factor", "ring_factor", "tooth_factor"):
+        assert np.all(np.abs(getattr(rough, key) - getattr(fine, key)) <= rough.error), key

@@ -16,6 +16,7 @@ from fegear.base.errors import RangeError
 from fegear.base.shown import shows
 from fegear.dynamics.motion.motion_model import MotionParts
 from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.planetary.set_response import forced_response
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,11 +135,15 @@ class SetSweep:
         In every mesh where all planets carry alike [N].
     tolerance : float
         Of the largest forces of motions that repeat, over the mean force.
+    by_teeth : ndarray, shape (speeds,)
+        What the estimated errors of the teeth change of the largest dynamic force while all teeth touch, over the mean
+        force.
     """
 
     states: tuple[SteadyState, ...]
     mean_force: float
     tolerance: float
+    by_teeth: Array
 
     def _of(self, values: str, mesh: int) -> Array:
         """Values of the meshes with sun (0) or ring (1), shape (speeds, planets)."""
@@ -197,8 +202,9 @@ class SetSweep:
     @property
     @shows("", "estimated error of the factors of motions that repeat; nan of others, of which they are a sample")
     def error(self) -> Array:
-        """Shape (speeds,)."""
-        return np.array([self.tolerance if state.repeats else math.nan for state in self.states])
+        """That of the integration, and what errors of the teeth do to linear vibration, shape (speeds,)."""
+        repeats = np.array([state.repeats for state in self.states])
+        return np.where(repeats, self.tolerance + self.by_teeth, math.nan)
 
 
 def set_sweep(
@@ -233,4 +239,16 @@ def set_sweep(
         if progress is not None:
             progress((number + 1) / order.size)
     found = tuple(states[::-1] if direction == "down" else states)
-    return SetSweep(found, run.linear.meshed.mean_force, tolerance)
+    return SetSweep(found, run.linear.meshed.mean_force, tolerance, _by_teeth(run.linear, mesh_frequency))
+
+
+def _by_teeth(linear: LinearSet, mesh_frequency: Array) -> Array:
+    """Changes of the largest dynamic force by the errors of the teeth, over the mean force; nan at a bare resonance."""
+    try:
+        vibration = forced_response(linear, mesh_frequency)
+    except RangeError:
+        return np.full(mesh_frequency.size, math.nan)
+    shifted = vibration.others[: len(linear.shifted)]  # the last has more harmonics, which motion has anyway
+    changes = (np.abs(one.largest_force - vibration.largest_force) for one in shifted)
+    none = np.zeros(mesh_frequency.size)
+    return np.asarray(sum(changes, start=none) / linear.meshed.mean_force)
