@@ -439,9 +439,10 @@ def _called(page):
 def _functions(name):
     """A documented function, or the public functions of a documented module, by dotted names."""
     parent, _, last = name.rpartition(".")
-    found = getattr(importlib.import_module(parent), last)
-    if not inspect.ismodule(found):
-        return {name} if inspect.isfunction(found) else set()
+    try:
+        found = importlib.import_module(name)
+    except ModuleNotFoundError:
+        return {name} if inspect.isfunction(getattr(importlib.import_module(parent), last)) else set()
     return {
         f"{name}.{key}" for key, one in vars(found).items()
         if inspect.isfunction(one) and one.__module__ == name and not key.startswith("_")
@@ -450,7 +451,6 @@ def _functions(name):
 
 @pytest.mark.parametrize("name", ["top", "geometry", "fem", "formulas"])
 def test_every_function_of_the_reference_stands_in_a_program_that_is_run(name):
-    importlib.import_module("fegear.formulas.agma.agma908")
     documented = re.findall(r"^::: (\S+)", (DOCS / "reference" / f"{name}.md").read_text("utf-8"), re.MULTILINE)
     asked = set().union(*map(_functions, documented))
     assert len(asked) > 5
