@@ -43,7 +43,7 @@ def worst(which, settings):
 
 def test_load_on_a_web_off_the_middle():
     """As many functions along the face as the disc's comparison takes: deflection .5 %, root tension .6 %."""
-    moved, stress = worst("off", replace(SolidSettings().scaled(1.6), waves_per_module=2.0))
+    moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=2.5))
     assert moved < 0.008
     assert stress < 0.01
 

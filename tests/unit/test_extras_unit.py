@@ -101,6 +101,57 @@ for call in (
         assert f"pip install 'fegear[{extra}]'" in line
 
 
+#: Libraries of each extra.
+ALONE = {
+    "motion": ("numba", "llvmlite"), "space": ("pyvista", "vtk"), "notebook": ("pandas", "xarray"),
+    "workbench": ("nicegui",), "distributed": ("dask", "distributed"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "extra", [pytest.param(one, marks=() if one == "notebook" else pytest.mark.long) for one in ALONE]
+)
+def test_without_one_extra_alone_only_what_it_is_for_is_refused(extra, tmp_path):
+    """In a new process that cannot import the libraries of this extra and has all others: the page's table by lines."""
+    program = f"""
+import math, sys
+from pathlib import Path
+for name in {ALONE[extra]}:
+    sys.modules[name] = None
+import fegear
+from fegear.base.errors import FegearError
+from fegear.case.reading import read_scene
+from fegear.engine import cluster
+from fegear.engine.executor import Executor, map_points
+from fegear.engine.extras import require
+from fegear.engine.plan import make_plan
+from fegear.output.draw_space import offscreen_pyvista
+from fegear.results.catalogue import STAGES
+from fegear.window.server import serve
+if __name__ == "__main__":
+    cluster._PATIENCE = cluster._GRACE = 0.2
+    document = {{"gear": {{"a": {{"teeth": 20, "module": "2 mm"}}}}, "results": ["geometry"]}}
+    found = fegear.run(document, progress=False)
+    for door, call in {{
+        "motion": lambda: require(make_plan(read_scene(Path({str(CASES)!r}, "lin_design_chart.toml")), STAGES)),
+        "space": offscreen_pyvista,
+        "notebook": lambda: found.to_pandas(),
+        "notebook, too": lambda: found.to_xarray(),
+        **({{"workbench": lambda: serve(None, None, browser=False, say=print)}} if {extra == "workbench"} else {{}}),
+        "distributed": lambda: map_points(math.sqrt, [4.0], Executor("tcp://127.0.0.1:9")),
+    }}.items():
+        try:
+            call()
+        except FegearError as error:
+            named = "pip install 'fegear[" + door.partition(",")[0] in str(error)
+            print("REFUSED" if named else "other", door)
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    refused = [line.split()[1].rstrip(",") for line in done.stdout.splitlines() if line.startswith("REFUSED")]
+    assert refused == [extra] * (2 if extra == "notebook" else 1)
+
+
 def test_the_page_has_a_line_for_every_extra():
     packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
     page = (ROOT / "docs" / "extras.md").read_text("utf-8")
