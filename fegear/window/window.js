@@ -165,7 +165,7 @@ const fegear = (() => {
       document.body.classList.add("computing");
       say("computing ...");
     },
-    begin({ number, count, title }) { say(`${number} of ${count}: ${title} ...`); },
+    begin({ step, count, title }) { say(`${step} of ${count}: ${title} ...`); },
     plan({ tasks }) {
       fegearGears.plan(tasks);
       fegearGlance.plan(tasks, owner);

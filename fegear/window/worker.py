@@ -151,7 +151,7 @@ class Worker:
             self._inbox.wait(_STILL)
         self._inbox.look()
         if self._asked is not None and not self._asked.moving:  # who moves a value looks at the results
-            self._say("begin", title=title, number=number, count=count)
+            self._say("begin", title=title, step=number, count=count)
 
     def advance(self, _fraction: float) -> None:
         """Look whether another case is wanted."""

@@ -6,6 +6,7 @@ import base64
 import csv
 import json
 import re
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
 from fegear.output.folder import write_results
 from fegear.results.catalogue import STAGES
+from fegear.window.bench import Bench
 from fegear.window.computing import whole
 from fegear.window.job_queue import Asked, Compute, Export
 from fegear.window.worker import Worker
@@ -213,3 +215,20 @@ def test_every_kind_of_export_writes_its_files(tmp_path, wire, worker):
     assert wire.said[-1].what == "refused"
     assert "no gear has one of known amount" in wire.said[-1].content["sentence"]
     assert not (tmp_path / "none").exists()
+
+
+def test_progress_counts_the_tasks_of_the_case_and_not_the_changes_before_it(worker, wire):
+    """The page said "9 of 7" of the ninth change: the number of the job stood in the place of the task's."""
+    bench = Bench(None)
+    told: list[tuple[str, dict]] = []
+    bench.listen(lambda what, content: told.append((what, content)))
+    worker.answer(
+        Compute(9, Asked(PAIR.replace('results = ["load-sharing", ', 'results = ["load-sharing"] #'), "c", "."))
+    )
+    for said in wire.said:
+        bench._hear(said)
+    steps = [content for what, content in told if what == "begin"]
+    assert [one["step"] for one in steps] == list(range(1, steps[0]["count"] + 1))
+    assert {one["number"] for one in steps} == {9}
+    words = (resources.files("fegear.window") / "window.js").read_text("utf-8")
+    assert "begin({ step, count, title }) { say(`${step} of ${count}" in words
