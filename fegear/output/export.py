@@ -201,7 +201,7 @@ def _export_meshes(scene: Scene, folder: Path, name: str, wanted: set[str]) -> t
     if solid and gear.tooth.internal:
         return written, [f"Gear {name} is internal: no {', '.join(sorted(solid))} is written for it."]
     if solid:
-        from fegear.output.solid_export import write_solid
+        from fegear.output.mesh_export import write_solid
 
         written += write_solid(gear, folder, file_name(name), solid, mesh=mesh)
     if scene.case.gear[name].relief is None:

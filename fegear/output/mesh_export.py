@@ -1,26 +1,40 @@
-"""The whole gear's mesh in millimetres for gmsh (``.msh``), ParaView (``.vtu``), Abaqus and CalculiX (``.inp``)."""
+"""The whole gear's mesh in millimetres for gmsh (``.msh``), ParaView (``.vtu``), Abaqus and CalculiX (``.inp``).
+
+The solid gear for Abaqus, CalculiX (``.inp``) and ParaView (``.vtu``): hexahedra, wedges, pressed bands as loads.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, Index
+from fegear.base.errors import InputError
+from fegear.fem.plane.gear_section import gear_section, uneven_section
 from fegear.fem.plane.imported_mesh import write_mesh_file, write_vtu
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.whole_gear import WholeGear, loaded_gear, nodal_fields
+from fegear.fem.solid.extruded import SolidMesh, extruded, graded_stations, pressed_band
 from fegear.geometry.gear import Gear
 from fegear.output.dxf import AS_GENERATED
 
 _MM = 1e3
-
-
-def _lines(items: list[str], per_line: int) -> Iterator[str]:
-    for first in range(0, len(items), per_line):
-        yield ", ".join(items[first : first + per_line])
+#: Abaqus' names of the elements.
+_WEDGE, _HEXAHEDRON = "C3D15", "C3D20"
+#: Half-width of a band's pressure and half the length of its hat along the face [modules]; at most this share of the
+#: room between the band's centre and the nearer end of the flank.
+_HALF_WIDTH, _HALF_LENGTH, _SHARE_OF_ROOM = 0.25, 0.5, 0.7
+#: Edges in the section as a multiple of the usual ones; layers at the ends of the face and the thickest [modules].
+_COARSENESS, _FIRST_LAYER, _LAYER = 1.4, 0.2, 0.5
+#: Layers grow by so much per length from the nearer end.
+_GROWTH = 0.5
+#: Force of a band [N].
+_FORCE = 1e3
+#: More nodes than this are a file that no program reads.
+_MOST_NODES = 3_000_000
 
 
 def write_inp(path: Path, gear: Gear, whole: WholeGear, forces: Array) -> None:
@@ -51,7 +65,7 @@ def write_inp(path: Path, gear: Gear, whole: WholeGear, forces: Array) -> None:
     out += [f"{i}, " + ", ".join(map(str, e)) for i, e in enumerate((whole.triangles + 1).T.tolist(), start=1)]
     for name in whole.boundaries:
         out.append(f"*NSET, NSET={name.upper()}")
-        out += _lines([str(node + 1) for node in whole.node_set(name)], 12)
+        out += _lines(whole.node_set(name) + 1)
     out += [
         "*MATERIAL, NAME=GEAR",
         "*ELASTIC",
@@ -109,3 +123,173 @@ def write_meshes(
         written.append(folder / f"{name}.inp")
         write_inp(written[-1], gear, whole, field.forces)
     return written
+
+
+def write_solid(
+    gear: Gear,
+    folder: Path,
+    name: str,
+    formats: set[str],
+    *,
+    radius: float | None = None,
+    face_positions: Sequence[float] = (0.0,),
+    mesh: SectorMesh | None = None,
+) -> list[Path]:
+    """Write the whole solid gear with a pressed band at each face position, as ``<name>_solid.inp`` and ``.vtu``.
+
+    Parameters
+    ----------
+    gear : Gear
+    folder : Path
+    name : str
+    formats : set of {"solid-inp", "solid-vtu"}
+    radius : float, optional
+        Of the bands' middle [m]; by default the pitch radius, or the flank's end nearest to it.
+    face_positions : sequence of float
+        Of the bands, from the middle of the face [m].
+    mesh : SectorMesh, optional
+        A user's own sector mesh, taken for all teeth; else the loaded tooth's is finer than the others'.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    InputError
+        If a band lies off the face, or the mesh would have more nodes than programs read.
+    """
+    one, half = gear.module, 0.5 * gear.face_width / gear.module
+    places = np.array([float(p) for p in face_positions]) / one
+    off = places[np.abs(places) > half * (1.0 + 1e-9)]
+    if off.size:
+        end = half * one * _MM
+        rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
+        raise InputError("face_positions", f"{off[0] * one * _MM:.6g} mm", rule)
+    hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
+    body = gear.body_in_modules
+    section = (
+        gear_section(dict.fromkeys(range(gear.teeth), mesh))
+        if mesh
+        else uneven_section(gear.tooth, gear.bore_radius / one, _COARSENESS, body=body)
+    )
+    through = [x for hat in hats for x in hat] + list(() if body is None else body.ends)
+    stations = graded_stations(2.0 * half, through, _FIRST_LAYER, _GROWTH, _LAYER)
+    nodes = int(1.3 * section.points.shape[1] * stations.size)
+    if nodes > _MOST_NODES:
+        rule = f"would make a mesh of about {nodes:.1g} nodes, and {_MOST_NODES:.0e} is the most"
+        raise InputError("--format", "solid", rule, "choose a narrower face, fewer face positions or fewer teeth")
+    solid = extruded(section, stations, gear.twist * one, body)
+    place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
+    width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))
+    bands = {
+        f"radius {place * _MM:.6g} mm, half-width {width * one * _MM:.6g} mm, "
+        f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.external_tooth, place / one, width, hat)
+        for hat in hats
+    }
+    written = []
+    if "solid-inp" in formats:
+        written.append(folder / f"{name}_solid.inp")
+        write_solid_inp(written[-1], gear, solid, bands, _FORCE, {})
+    if "solid-vtu" in formats:
+        written.append(folder / f"{name}_solid.vtu")
+        data = {f"force_{i}": _FORCE * forces.T for i, forces in enumerate(bands.values())}
+        write_vtu(written[-1], solid.points * one * _MM, (solid.wedges, solid.hexahedra), data)
+    return written
+
+
+def _room(gear: Gear, radius: float) -> float:
+    """Length of the flank from a radius to its nearer end [modules]."""
+    tooth, one = gear.tooth, gear.module
+    low, at, high = (
+        0.5 * tooth.base_radius * float(tooth.roll(r)) ** 2
+        for r in (tooth.form_radius, radius / one, tooth.involute_tip_radius)
+    )
+    return min(at - low, high - at)
+
+
+def _number(x: float) -> str:
+    """At most 20 characters: CalculiX reads no more of a number."""
+    return f"{x:.12e}"
+
+
+def _lines(numbers: Index, per_line: int = 12) -> Iterator[str]:
+    for first in range(0, len(numbers), per_line):
+        yield ", ".join(map(str, numbers[first : first + per_line]))
+
+
+def _elements(kind: str, elements: Index, first: int) -> Iterator[str]:
+    """Element cards; more than 15 nodes take a second line."""
+    if not elements.size:
+        return
+    yield f"*ELEMENT, TYPE={kind}, ELSET=GEAR"
+    for i, nodes in enumerate((elements + 1).T.tolist(), start=first):
+        yield f"{i}, " + ", ".join(map(str, nodes[:15])) + ("," if len(nodes) > 15 else "")
+        if len(nodes) > 15:
+            yield ", ".join(map(str, nodes[15:]))
+
+
+def write_solid_inp(
+    path: Path, gear: Gear, mesh: SolidMesh, loads: Mapping[str, Array], force: float, printed: Mapping[str, Index]
+) -> None:
+    """Write a deck that runs as it is: bore held, one step per load.
+
+    Parameters
+    ----------
+    path : Path
+    gear : Gear
+        Its module and material; the shape is the mesh's.
+    mesh : SolidMesh
+    loads : mapping of str to ndarray, shape (3, P)
+        Nodal forces of a unit force along the transverse line of action, by the names of the steps.
+    force : float
+        That force [N].
+    printed : mapping of str to ndarray of int
+        Further node sets, whose displacements are printed into the ``.dat`` file.
+
+    Notes
+    -----
+    Node sets are the boundaries over all teeth that the mesh has (``BORE``, ``FLANK``, ``FILLET``, ...), of tooth 0
+    (``FLANK_0``, ...), and the two ends of the face (``FRONT``, ``BACK``). Units are mm, N, MPa.
+    """
+    scale = gear.module * _MM
+    section = mesh.section
+    out = [
+        "*HEADING",
+        f"Solid gear of {gear.teeth} teeth, module {scale:.9g} mm; mm, N, MPa. Flanks {AS_GENERATED}",
+        "*NODE, NSET=ALL",
+    ]
+    out += [f"{i}, {_number(x)}, {_number(y)}, {_number(z)}" for i, (x, y, z) in enumerate((mesh.points * scale).T, 1)]
+    out += _elements(_WEDGE, mesh.wedges, 1)
+    out += _elements(_HEXAHEDRON, mesh.hexahedra, 1 + mesh.wedges.shape[1])
+    plane = np.arange(section.points.shape[1])
+    sets = {name: mesh.nodes_of(section.edges(name)) for name in section.names}
+    sets |= {
+        f"{name}_0": mesh.nodes_of(section.boundaries[name, 0])
+        for name in section.names
+        if name != "bore" and (name, 0) in section.boundaries
+    }
+    sets |= {"front": mesh.at_station(plane, mesh.layers), "back": mesh.at_station(plane, 0)}
+    for name, nodes in {**sets, **printed}.items():
+        out.append(f"*NSET, NSET={name.upper()}")
+        out += _lines(nodes + 1)
+    out += [
+        "*MATERIAL, NAME=GEAR",
+        "*ELASTIC",
+        f"{gear.material.young_modulus * 1e-6:.9g}, {gear.material.poisson_ratio:.9g}",
+        "*DENSITY",
+        f"{gear.material.density * 1e-12:.9g}",
+        "*SOLID SECTION, ELSET=GEAR, MATERIAL=GEAR",
+        "*BOUNDARY",
+        "BORE, 1, 3",
+    ]
+    for name, forces in loads.items():
+        out += ["*STEP", "*STATIC", "*CLOAD, OP=NEW", f"** {name}"]
+        for node in np.flatnonzero(np.any(forces != 0.0, axis=0)):
+            out += [f"{node + 1}, {c + 1}, {_number(forces[c, node] * force)}" for c in range(3)]
+        if not printed:
+            out += ["*NODE FILE", "U", "*EL FILE", "S"]
+        for number_set in printed or ("FLANK_0",):
+            out += [f"*NODE PRINT, NSET={number_set.upper()}", "U"]
+        out.append("*END STEP")
+    path.write_text("\n".join(out) + "\n", encoding="ascii")

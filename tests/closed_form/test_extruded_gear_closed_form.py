@@ -14,7 +14,7 @@ from fegear.fem.solid.extruded import extruded, graded_stations, pressed_band, s
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.output.solid_export import write_solid
+from fegear.output.mesh_export import write_solid
 
 TOOTH = Tooth(10, BasicRack(1.0, 1.25, 0.25), 0.55)
 FACE, RADIUS, HALF_WIDTH = 4.0, 5.5, 0.25
