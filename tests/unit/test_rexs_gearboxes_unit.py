@@ -282,10 +282,10 @@ def test_a_helical_set_passes_torque_to_the_stages_beside_it() -> None:
             link(403, "assembly", assembly=6, part=33),
         ),
     )
-    text = text_of(tree)
-    assert "planetary_stage 9 is not read, for it is helical" in text
     found = case(tree)
-    assert "planetary" not in found
+    assert found["planetary"]["P"]["torque"] == "90 N*m"
+    helical = {found["gear"][found["planetary"]["P"][role]]["hand"] for role in ("sun", "planet")}
+    assert helical == {"left", "right"}
     assert float(found["pair"]["I"]["torque"].split()[0]) == pytest.approx(90.0 * (1.0 + 66.0 / 18.0))
 
 

@@ -25,7 +25,7 @@ from fegear.exchange.rexs.places import (
     turn_to_axes,
 )
 from fegear.exchange.rexs.said import Said
-from fegear.exchange.rexs.sets import is_helical, planetary_of, set_table
+from fegear.exchange.rexs.sets import planetary_of, set_table
 from fegear.exchange.rexs.shafts import OnShaft, diameter_below, sections_of, shaft_table
 from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift, refuse_equal_hands, teeth_of
 from fegear.geometry.involute import inv
@@ -83,12 +83,8 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     sets = planetary_of(said, stages)
     inside = {number for one in sets for number in one.stages}
     everything, stages = stages, [stage for stage in stages if stage.component.id not in inside]
-    told = [one for one in sets if not (stages and is_helical(said, one))]
-    for whole in sets:
-        if whole not in told:
-            said.notes.append(f"{whole.component.said} is not read, for it is helical: torque and speed pass it alone.")
     gears = {gear.id: gear for stage in stages for gear in stage.gears}
-    of_sets = {gear.id: gear for one in told for gear in one.gears if gear.id not in gears}
+    of_sets = {gear.id: gear for one in sets for gear in one.gears if gear.id not in gears}
     names = _names((*gears.values(), *of_sets.values()), "gear")
     on = {n: shaft_of(said, gear) for n, gear in (gears | of_sets).items()}
     if lost := next((gear for n, gear in (gears | of_sets).items() if on[n] is None), None):
@@ -104,7 +100,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
     bent = bool(shafts) and _held(said, shafts)
     rest = {n: _rest_of_shift(said, gear, everything) for n, gear in (gears | of_sets).items()}
-    tables = [_head(stages, told, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
+    tables = [_head(stages, sets, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
     for n, gear in (gears | of_sets).items():
         bore = _bore(said, gear, on[n], middles) if n in gears else None
         keys = gear_keys(said, gear, rest[n], bore, _far_end(said, gear, stages, flow))
@@ -117,7 +113,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         for n, stage in enumerate(stages)
         if n in loaded
     ]
-    tables += [set_table(said, one, names, n, flow) for n, one in enumerate(sets) if one in told]
+    tables += [set_table(one, names, n, flow) for n, one in enumerate(sets)]
     tables += _shafts(said, shafts, places, stages, names, on, middles, flow) if bent else []
     tables.append(_effects(bent=bent, relieved=relieved))
     about = f"Imported from {source}" if source else "Imported"

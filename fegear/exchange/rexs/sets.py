@@ -103,17 +103,11 @@ def flow_through(said: Said, one: Planetary, bodies: dict[int, int]) -> PlanetSe
     return PlanetSet(numbers["sun"], numbers["ring"], numbers["carrier"], teeth)
 
 
-def is_helical(said: Said, one: Planetary) -> bool:
-    """Whether its teeth are helical."""
-    return any(said.number(gear, "angle", "helix_angle_reference_diameter") for gear in one.gears)
-
-
-def set_table(said: Said, one: Planetary, names: dict[int, str], n: int, flow: Flow) -> Table:
+def set_table(one: Planetary, names: dict[int, str], n: int, flow: Flow) -> Table:
     """``[planetary.P]``: gears, number of planets, what is held and what drives.
 
     Parameters
     ----------
-    said : Said
     one : Planetary
     names : dict
         Of its gears in the case.
@@ -124,7 +118,7 @@ def set_table(said: Said, one: Planetary, names: dict[int, str], n: int, flow: F
     Raises
     ------
     InputError
-        If nothing is held, or the gears are helical.
+        If nothing is held.
     """
     whole, held = flow.sets[n], flow.held
     members = {"sun": whole.sun, "ring": whole.ring, "carrier": whole.carrier}
@@ -134,8 +128,6 @@ def set_table(said: Said, one: Planetary, names: dict[int, str], n: int, flow: F
             one.component.said, f"{len(fixed)} members held", "needs one of sun, ring and carrier held by the casing",
             "join it to the casing by a coupling",
         )  # fmt: skip
-    if is_helical(said, one):
-        raise InputError(one.component.said, "(helical)", "has helical gears", "fegear's sets have spur gears")
     sun, ring = whole.teeth
     on_sun = flow.driven.set_torque[n]
     torques = {"sun": on_sun, "ring": on_sun * ring / sun, "carrier": -on_sun * (sun + ring) / sun}
