@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from fegear.fem.revolved_body import RevolvedBody, condensed
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.bearing import stiff
 from fegear.shafts.gear_on_shaft import GearOnShaft
+from fegear.shafts.gearbox import Gearbox
+from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.solution import LoadedShaft, Seat
 
 BORE, ROOT, E, NU = 0.02, 0.03, 206e9, 0.3
 
@@ -102,3 +110,25 @@ def test_a_web_and_a_short_seat_stiffen_less():
         twists.append(shaft.bent([0.3], np.array([0.3]), np.array([[0, 0, 0, 0, 0, 1.0]]))[0, 5])
     bare = 0.3 * (1.0 + NU) / (E * math.pi / 4.0 * BORE**4)
     assert twists[0] < twists[1] < twists[2] < bare
+
+
+def test_gaps_fall_with_the_stiffness_and_none_is_left_of_rigid_shafts():
+    """With order one; to the last bit where shafts and bearings are rigid, whatever the bodies on them are."""
+
+    def gap(e):
+        tooth = Tooth(20, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(15.0))
+        gears = [Gear(tooth, 3e-3, BORE, 0.03, hand=hand) for hand in ("right", "left")]
+        pair = GearPair(*gears)
+        body = _body(0.03, gears[0].root_radius)
+        bodies = tuple(GearOnShaft(body, at, E if math.isinf(e) else e) for at in (0.04, 0.06))
+        mesh = MeshPlace("I", ("a", "b"), (0.04, 0.06), np.array([0.6, 0.8]), 1, pair, 5e3, bodies)
+        seats = Seat(stiff(math.inf, math.inf), 0.0), Seat(stiff(math.inf), 0.1)
+        shafts = tuple(
+            LoadedShaft(Shaft((Section(0.1, 2.0 * BORE),), e, NU, (one,)), seats, np.empty(0), np.empty((0, 6)), name)
+            for name, one in zip("ab", bodies, strict=True)
+        )
+        box = Gearbox(shafts, (0.0, 0.1), (mesh,), np.zeros((20, 20)), ("a", "b"))
+        return box.gaps(tuple(one.at(z) for one, z in zip(box.under(box.even), box.places, strict=True)))[0]
+
+    assert 10.0 * gap(1e13) == pytest.approx(gap(1e12), rel=1e-8, abs=1e-18)
+    assert not gap(math.inf).any()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
 from fegear.case.built.pair_inputs import gear_name
-from fegear.case.built.shafts import gearbox_of, said_of_bodies
+from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bodies
 from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.wide.gaps import RIGID
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
@@ -137,7 +137,7 @@ def _remarks(data: LoadedShafts, bodies: tuple[str, ...]) -> list[str]:
 
 
 def _fed(scene: Scene) -> list[str]:
-    return [mesh.pair for mesh in gearbox_of(scene).meshes if _feeding(scene, mesh.pair)]
+    return [mesh.pair for mesh in mesh_places(scene) if _feeding(scene, mesh.pair)]
 
 
 def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
@@ -146,6 +146,7 @@ def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
 
 
 def _check(scene: Scene, _name: str) -> None:
+    gearbox_of(scene)
     for pair in _fed(scene):
         check_flanks_to_load(scene, pair)
 
