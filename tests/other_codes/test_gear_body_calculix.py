@@ -42,10 +42,10 @@ def worst(which, settings):
 
 
 def test_load_on_a_web_off_the_middle():
-    """As many functions along the face as the disc's comparison takes: deflection .5 %, root tension .6 %."""
-    moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=2.5))
-    assert moved < 0.008
-    assert stress < 0.01
+    """With functions that resolve hats of half a module beside a web's end: deflection .4 %, root tension .5 %."""
+    moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=3.0))
+    assert moved < 0.006
+    assert stress < 0.008
 
 
 @pytest.mark.long  # the ordinary run has the web off the middle with coarser settings

@@ -16,8 +16,12 @@ from fegear.geometry.gear_body import GearBody
 
 #: How near to a circle a vertex lies on it, as a share of the radius.
 _NEAR = 1e-9
-#: Layers through web and hub at least.
-_FEWEST = 2
+#: Layers through web and hub at least; by how many times more through a slender web at most.
+_FEWEST, _SLENDER = 2, 2
+#: How deep a web's layers at rim and hub are at most, as a share of its thickness and of what a layer may span: where
+#: it is clamped its stress changes over a part of its thickness.
+_CLAMPED = 0.65
+_ROUND_OFF = 1e-9
 
 
 def zones(body: GearBody, points: Array, corners: Index) -> Index:
@@ -45,11 +49,16 @@ def with_body(rim: SectorMesh, body: GearBody, bore_radius: float, share: float)
     bore_radius : float
         [modules].
     share : float
-        A layer of web or hub is at most this share of it deep.
+        A layer of web or hub is at most this share of it deep; those at both ends of a slender web are less deep.
     """
     radii = [body.rim_radius]
-    count = max(_FEWEST, math.ceil(1.0 / share))
-    for outside, inside in ((body.rim_radius, body.hub_radius), (body.hub_radius, bore_radius)):
+    fewest = max(_FEWEST, math.ceil(1.0 / share))
+    clamped = _CLAMPED * share * (body.web[1] - body.web[0]) / (body.rim_radius - body.hub_radius)
+    slender = math.ceil(math.pi / math.acos(1.0 - 2.0 * min(clamped, 1.0)) - _ROUND_OFF)
+    web = min(max(slender, fewest), _SLENDER * fewest)
+    for outside, inside, count in (
+        (body.rim_radius, body.hub_radius, web), (body.hub_radius, bore_radius, fewest),
+    ):  # fmt: skip
         if outside - inside > _NEAR * outside:
             # Fine at both circles, where the body's thickness jumps and its stress has no bound.
             depths = 0.5 * (1.0 - np.cos(np.pi * np.arange(1, count + 1) / count))

@@ -26,6 +26,10 @@ _NEAR = 1e-6
 _PIECE = 0.6
 #: Power of a piece's share of the width with which its degree goes.
 _BY_LENGTH = 0.6
+#: Degree that functions of web and hub have at least, however far from the flank: they bend with cubes over their
+#: thickness, and where they may not thin and thicken as they bend they are too stiff, threefold at a Poisson's ratio
+#: of .45.
+_BENDING = 4
 
 
 @dataclass(frozen=True)
@@ -157,6 +161,10 @@ class FaceFunctions:
         touched = np.concatenate([self._numbers[i] for i in inside]) if inside else np.zeros(0, dtype=np.int64)
         return np.setdiff1d(np.arange(self.count), touched)
 
+    def bending_on(self, low: float, high: float) -> Index:
+        """Functions of low degree that are not zero between two breaks."""
+        return np.concatenate([self._numbers[i][: _BENDING + 1] for i in self._between(low, high)])
+
     def _between(self, low: float, high: float) -> list[int]:
         """Pieces between two breaks."""
         ends, near = self.breaks, _NEAR * self.width
@@ -224,12 +232,15 @@ def solid_unknowns(
     counts = np.full_like(few, face.count) if all_waves else few
     has = np.arange(face.count) < np.repeat(counts, 3)[:, None]
     if len(section.spans) > 1:  # where web and hub are no material no function of theirs is any use
-        there = np.zeros((section.places.shape[1], face.count), dtype=bool)
+        there, bends = np.zeros((2, section.places.shape[1], face.count), dtype=bool)
         for zone, span in enumerate(section.spans):
             used = np.ones(face.count, dtype=bool)
             used[face.vanishing_on(*span)] = False
-            there[np.unique(section.element_dofs[section.zone == zone, ::3] // 3)] |= used
-        has &= np.repeat(there, 3, axis=0)
+            nodes = np.unique(section.element_dofs[section.zone == zone, ::3] // 3)
+            there[nodes] |= used
+            if zone > 0 and len(face.breaks) > 2:  # as wide as the face they are a disc
+                bends[np.ix_(nodes, face.bending_on(*span))] = True
+        has = np.repeat(there, 3, axis=0) & (has | np.repeat(bends, 3, axis=0))
     bore = 3 * section.nodes_of("bore")[:, None] + np.arange(3)
     free = np.zeros(face.count, dtype=bool)
     if held is not None:
