@@ -109,8 +109,12 @@ fegear_setup() {
     fi
     fegear_pip --editable "$root${extra:+[$extra]}" || return 1
     fegear_prepare
-    # What `dev` installs holds what tests and site need: they are not set up once more.
-    served="$extra"
-    [ "$extra" != dev ] || served="dev test docs"
-    for each in ${served:-program}; do printf '%s\n' "$state" >"$venv/.fegear-$each"; done
+    # What an extra holds of others is not set up once more: tests have all that the site and the window need.
+    case "$extra" in
+    dev) served="dev test docs workbench program" ;;
+    test) served="test docs workbench program" ;;
+    docs) served="docs workbench program" ;;
+    *) served="$extra program" ;;
+    esac
+    for each in $served; do printf '%s\n' "$state" >"$venv/.fegear-$each"; done
 }
