@@ -5,8 +5,11 @@ A typed quantity one step up or down, as the arrow keys change it.
 
 from __future__ import annotations
 
+import asyncio
 import re
+import time
 from decimal import Decimal
+from difflib import SequenceMatcher
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +52,9 @@ class Inputs:
                     f'outlined autogrow spellcheck=false debounce={_PAUSE} aria-label="Text of the case (TOML)"'
                 )
                 self._text.style("width: 100%").on_value_change(self._text_typed)
+                self._shown, self._typing = self._desk.text, 0.0
+                for event in ("keydown", "paste"):  # before the text itself comes, when nobody has typed for a while
+                    self._text.on(event, self._begun, args=[], throttle=0.1)
                 self._text_refusal = ui.label().classes("refusal")
         self._build()
         self._judge()
@@ -205,9 +211,19 @@ class Inputs:
             return
         self._bench.changed()
 
+    def _begun(self) -> None:
+        """Note that somebody types in the text: what others change meanwhile is not written over it."""
+        self._typing = time.monotonic()
+
     def _text_typed(self, event: Any) -> None:
-        if event.value != self._desk.text:
-            self._desk.change(event.value or "")
+        if event.value == self._desk.text:
+            return
+        text = merged(self._shown, event.value or "", self._desk.text)
+        self._typing, self._shown = 0.0, text
+        if text != event.value:  # with what another page has changed since
+            self._text.set_value(text)
+        if text != self._desk.text:
+            self._desk.change(text)
             self._bench.changed()
 
     def _table_chosen(self, event: Any) -> None:
@@ -220,8 +236,7 @@ class Inputs:
     def _refresh(self) -> None:
         if self._desk is None:
             return
-        if self._text.value != self._desk.text:
-            self._text.set_value(self._desk.text)
+        self._refresh_text()
         now = {field.path: field for field in fields(form(self._desk.document))}
         if set(now) != set(self._held) or any(now[path].kind != self._held[path].kind for path in now):
             self._build()
@@ -243,6 +258,17 @@ class Inputs:
                     element.set_value(value)
                 element.classes(add="given" if field.given else "absent", remove="absent" if field.given else "given")
         self._judge()
+
+    def _refresh_text(self) -> None:
+        """Show the text as it is now; where somebody types, later: what is typed comes soon, and is merged with it."""
+        if self._desk is None:
+            return
+        if time.monotonic() - self._typing < 2e-3 * _PAUSE:
+            asyncio.get_running_loop().call_later(2e-3 * _PAUSE, self._refresh_text)
+            return
+        self._shown = self._desk.text
+        if self._text.value != self._desk.text:
+            self._text.set_value(self._desk.text)
 
     def _judge(self) -> None:
         refusal = self._desk.refusal
@@ -268,6 +294,29 @@ class Inputs:
                 if path == tuple(steps[:depth]):
                     return path
         return None
+
+
+def merged(base: str, mine: str, theirs: str) -> str:
+    """One text of two that were changed from the same: what was typed, a piece of `mine`, in `theirs`.
+
+    Where both have changed the same lines, what was typed last, which is `mine`, counts alone.
+    """
+    if mine == base:
+        return theirs
+    old, own, other = (text.splitlines(keepends=True) for text in (base, mine, theirs))
+    first = next((i for i, (a, b) in enumerate(zip(old, own, strict=False)) if a != b), min(len(old), len(own)))
+    most = min(len(old), len(own)) - first
+    same = next((i for i, (a, b) in enumerate(zip(old[::-1], own[::-1], strict=False)) if a != b), most)
+    last = len(old) - min(same, most)
+    start, end = first, last
+    for kind, i, j, k, n in SequenceMatcher(None, old, other, autojunk=False).get_opcodes():
+        if kind == "equal":
+            continue
+        if i <= last and j >= first:
+            return mine
+        if j < first:
+            start, end = start + (n - k) - (j - i), end + (n - k) - (j - i)
+    return "".join([*other[:start], *own[first : len(own) - (len(old) - last)], *other[end:]])
 
 
 def more_labels(tables: dict[str, str]) -> dict[str, str]:

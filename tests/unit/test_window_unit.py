@@ -48,6 +48,7 @@ from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
 from fegear.window.form import fields, fields_told, form, tables_to_add
 from fegear.window.glance import glance_tasks, numbers_of, plan_with
+from fegear.window.inputs import Inputs, merged
 from fegear.window.job_queue import Asked, Compute, Design, Export, Inbox, Said, Unwanted
 from fegear.window.journal import Scratch, journal_folder, left_behind, sweep
 from fegear.window.on_gears import gears_in_mesh
@@ -1181,3 +1182,53 @@ def test_a_figure_out_of_sight_stays_as_it_is_until_all_is_at_rest():
     moved = {**content, "figures": [{"key": "k", "data": 2}]}
     assert sent.news(moved) == moved
     assert sent.news(content) == content  # back where it was, which no page has any more
+
+
+class Typed:
+    """A text field of a page, and what lies on the desk."""
+
+    def __init__(self, desk):
+        self.desk, self.value, self.changes = desk, desk.text, 0
+
+    def set_value(self, text):
+        self.value = text
+
+    def changed(self):
+        self.changes += 1
+
+
+def test_text_that_is_being_typed_outlives_the_change_of_another_page(tmp_path):
+    """It was overwritten: the server hears of it when nobody has typed for half a second."""
+    page = object.__new__(Inputs)
+    field = Typed(Desk(TEXT, "c", tmp_path))
+    page._bench = page._text = field
+    page._shown, page._typing = TEXT, 0.0
+
+    async def both():
+        page._begun()
+        field.desk.change(TEXT.replace("28     # z", "31     # z"))  # by the form of another page
+        page._refresh_text()
+        assert field.value == TEXT
+        typed = TEXT.replace('title = "x"', 'title = "mine"')
+        page._text_typed(SimpleNamespace(value=typed))
+        assert field.desk.text == field.value == typed.replace("28     # z", "31     # z")
+        field.desk.change(TEXT)
+        page._refresh_text()  # nobody types any more
+        assert field.value == TEXT
+
+    asyncio.run(both())
+    assert field.changes == 1
+
+
+@pytest.mark.parametrize(
+    ("mine", "theirs", "both"),
+    [
+        ("a\nb\nc\nD\n", "A\nb\nc\nd\n", "A\nb\nc\nD\n"),
+        ("a\nb\nx\nc\nd\n", "a\nz\nb\nc\nD\n", "a\nz\nb\nx\nc\nD\n"),
+        ("A\nb\nc\nd\n", "Z\nb\nc\nd\n", "A\nb\nc\nd\n"),  # the same line: who typed last
+        ("a\nb\nc\nd\n", "Z\nb\nc\nd\n", "Z\nb\nc\nd\n"),
+        ("a\nc\nd\n", "a\nb\nc\nd\ne\n", "a\nc\nd\ne\n"),
+    ],
+)
+def test_two_texts_of_one_are_merged_by_lines(mine, theirs, both):
+    assert merged("a\nb\nc\nd\n", mine, theirs) == both
