@@ -16,7 +16,7 @@ import re
 import stat
 import tempfile
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -132,6 +132,14 @@ def _data(path: Path, key: str) -> bytes:
 
 def _at_once(name: str, flags: int) -> int:
     return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def leads_to(path: Path, kind: Callable[[int], bool]) -> bool:
+    """Whether a path leads to something of a kind, `stat.S_ISDIR` say; a name that no file can have leads nowhere."""
+    try:
+        return kind(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False
 
 
 def named_path(text: str, key: str, *, home: bool = False) -> Path:

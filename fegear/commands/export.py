@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from pathlib import Path
 from typing import Annotated
 
@@ -31,12 +32,13 @@ def export(
     """
     from fegear.base.errors import InputError
     from fegear.case.reading import build_scene, read_scene
+    from fegear.case.text_file import leads_to
     from fegear.output.comparison import read_side
     from fegear.output.export import export_gears
     from fegear.output.folder import default_folder, whole_or_nothing
 
     voice = Voice(quiet, as_json)
-    results = read_side(case) if case.is_dir() else None
+    results = read_side(case) if leads_to(case, stat.S_ISDIR) else None
     if results is not None and formats != "rexs":
         rule = "is the folder of a run, which is written to REXS alone"
         raise InputError("CASE", str(case), rule, "write --format rexs, or give the case file")

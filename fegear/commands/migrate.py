@@ -26,7 +26,7 @@ def migrate(
     """
     from fegear.base.errors import InputError
     from fegear.case.reading import build_scene, parse_document
-    from fegear.case.text_file import read_file, write_file
+    from fegear.case.text_file import leads_to, read_file, write_file
 
     voice = Voice(quiet)
     file = read_file(case, "case")
@@ -40,7 +40,7 @@ def migrate(
     if dry_run:
         return
     kept = case.with_name(case.name + ".old")
-    if kept.exists():
+    if kept.is_symlink() or leads_to(kept, lambda _mode: True):
         raise InputError(
             "case", f'"{kept}"', "is there already; the case would be kept under this name", "move it away"
         )

@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import math
 import os
+import stat
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -200,7 +201,10 @@ def check(
     case: CaseFile,
     overrides: Overrides = None,
     positions: Annotated[
-        int, typer.Option("--positions", min=1, help="Load positions over the flank, evenly spaced in roll angle.")
+        int,
+        typer.Option(
+            "--positions", min=1, max=1000, help="Load positions over the flank, evenly spaced in roll angle."
+        ),
     ] = 3,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -268,6 +272,7 @@ def compare(
 
     Exit code 0: the results are the same; 1: they differ; 2: they cannot be compared.
     """
+    from fegear.case.text_file import leads_to
     from fegear.output.comparison import write_comparison
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.studies.comparison import compare as comparison
@@ -276,7 +281,7 @@ def compare(
         raise InputError("--tolerance", tolerance, "must be zero or greater", "write for example 1e-6")
     voice = Voice(quiet, as_json)
     asked = changes(overrides, wanted)
-    if asked and a.is_dir() and b.is_dir():
+    if asked and all(leads_to(path, stat.S_ISDIR) for path in (a, b)):
         raise InputError("--set", ", ".join(asked), "changes cases, and both are folders", "give a case file")
     try:
         target = out or default_folder(f"{a.resolve().stem}_{b.resolve().stem}", "_compare")
@@ -306,10 +311,11 @@ def _refuse_to_replace(target: Path, *compared: Path) -> None:
 
 def _side(path: Path, asked: list[str], voice: Voice) -> Side:
     """Read a folder, or run a case."""
+    from fegear.case.text_file import leads_to
     from fegear.output.comparison import read_side
     from fegear.studies.comparison.compare import side_of
 
-    if path.is_dir():
+    if leads_to(path, stat.S_ISDIR):
         return read_side(path)
     from fegear.case.reading import read_scene
     from fegear.engine.plan import make_plan

@@ -16,7 +16,9 @@ def verify(
     rows: Annotated[
         list[str] | None, typer.Argument(metavar="[ROW]...", help="Rows to repeat; all without any.")
     ] = None,
-    against: Annotated[str, typer.Option("--against", help="Only rows of a kind: printed, program or own.")] = "",
+    against: Annotated[
+        str | None, typer.Option("--against", help="Only rows of a kind: printed, program or own.")
+    ] = None,
     only_list: Annotated[bool, typer.Option("--list", help="Name the rows, and repeat none.")] = False,
     quiet: Quiet = False,
     as_json: AsJson = False,

@@ -15,7 +15,7 @@ ALL: tuple[Row, ...] = tuple(
 )
 
 
-def chosen(names: Sequence[str], against: str = "") -> tuple[Row, ...]:
+def chosen(names: Sequence[str], against: str | None = None) -> tuple[Row, ...]:
     """Rows by name, all without names, of one kind if it is named.
 
     Raises
@@ -23,7 +23,7 @@ def chosen(names: Sequence[str], against: str = "") -> tuple[Row, ...]:
     InputError
         If there is no such row or kind.
     """
-    if against and against not in AGAINST:
+    if against is not None and against not in AGAINST:
         raise InputError("against", against, f"must be one of {', '.join(AGAINST)}")
     known = {row.name: row for row in ALL}
     for name in names:
@@ -32,7 +32,7 @@ def chosen(names: Sequence[str], against: str = "") -> tuple[Row, ...]:
             hint = f"did you mean {like[0]}?" if like else "see fegear verify --list"
             raise InputError("row", name, "is none that there is", hint)
     rows = tuple(known[name] for name in names) if names else ALL
-    return tuple(row for row in rows if not against or row.against == against)
+    return tuple(row for row in rows if against is None or row.against == against)
 
 
 def said(outcome: Outcome) -> str:

@@ -121,3 +121,14 @@ def test_no_last_digit_chooses_the_piece_that_has_one_more_point(count):
     for seed in range(5):
         noise = 1.0 + 1e-12 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
         assert _shared((lengths * noise).tolist(), count) == _shared(lengths.tolist(), count)
+
+
+@pytest.mark.parametrize("count", range(12, 60))
+def test_which_gear_drives_changes_no_number_of_points_on_a_piece(count):
+    """The first of two pieces that are alike had one more: K_Hbeta of exchanged gears differed by 1.8e-5."""
+    lengths = [0.3014590, 0.1886140, 0.3213130, 0.1886140]
+    found = _shared(lengths, count)
+    assert sum(found) == count
+    assert _shared(lengths[::-1], count) == found[::-1]
+    assert max(np.array(lengths) / (np.array(found) - 1)) < 2.0 * min(np.array(lengths) / (np.array(found) - 1))
+    assert _shared([0.5, 0.5], 7) == [4, 3]  # nothing else can take the last one

@@ -314,12 +314,20 @@ def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 
 
 
 def _shared(lengths: list[float], count: int) -> list[int]:
-    """Points on each piece, so that they stand equally dense."""
+    """Points on each piece, so that they stand equally dense.
+
+    Pieces that are alike have as many, as long as any other can take what is left: no last digit chooses between them,
+    and not which of both gears drives.
+    """
     points = np.full(len(lengths), _FEWEST)
-    for _ in range(count - _FEWEST * len(lengths)):
+    while (left := count - int(points.sum())) > 0:
         apart = np.array(lengths) / (points - 1)
-        # The first of pieces that are alike: no last digit chooses between them.
-        points[np.argmax(apart > (1.0 - _ALIKE) * apart.max())] += 1
+        alike = np.abs(apart[:, None] - apart) < _ALIKE * apart
+        fits = np.where(alike.sum(axis=1) <= left, apart, 0.0)
+        chosen = (
+            alike[int(np.argmax(fits > (1.0 - _ALIKE) * fits.max()))] if fits.any() else np.arange(len(lengths)) == 0
+        )
+        points[chosen] += 1
     found: list[int] = points.tolist()
     return found
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import stat
 import struct
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from xml.parsers import expat
 
 from fegear.base.errors import InputError, shown
-from fegear.case.text_file import read_text
+from fegear.case.text_file import leads_to, read_text
 from fegear.exchange.rexs.archive import archived_text
 from fegear.exchange.rexs.model import MOST_COMPONENTS, Attribute, Component, LoadCase, Model, Relation
 
@@ -41,7 +42,7 @@ def read_model(path: Path) -> Model:
     InputError
         If it is none, is damaged or too large, declares entities, has another version, or relates what is not there.
     """
-    if path.is_file() and _begins(path) == b"PK":
+    if leads_to(path, stat.S_ISREG) and _begins(path) == b"PK":
         return model_of(archived_text(path, lambda rule, remedy: _refusal(path, rule, remedy)), path)
     return model_of(read_text(path, KEY), path)
 
