@@ -283,7 +283,7 @@ class Bench:
             part = slice(first, min(first + step, cases))
             e = base + np.where(contacts.present[:, :, None], modifications[:, :, part], 0.0)
             te[:, part] = share_load(
-                m.compliance, e, loads[part], m.log_slope, m.reference_load, m.tilt, m.power
+                m.compliance, e, loads[part], m.log_slope, m.reference_load, m.edges, m.power
             ).transmission_error
         series = fourier_series(self.points, te, 12)
         return Metrics(effective_error(series), np.ptp(te, axis=0), np.asarray(series.mean), te)

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from fegear.contact.plane.corner import CornerContact
-from fegear.contact.plane.load_sharing import edge_law
+from fegear.contact.plane.edge_law import edge_law
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack

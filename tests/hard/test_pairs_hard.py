@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 from fegear.base.errors import InputError, RangeError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.edge_law import edge_law
 from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.load_sharing import edge_law
 from fegear.contact.plane.meshing import Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import pair_stiffness, revolution, transmission_error

@@ -17,6 +17,7 @@ class SmoothTooth:
     reach: int = 3
 
     power = 0.0
+    tip_wedge = (0.0, 0.0)
     kinks = ()
 
     @property

@@ -5,8 +5,9 @@ mesh is not why: a penalty five times as stiff adds .013 %, contact elements hal
 quarters the edges (66,348 nodes) add .01 %; fegear's own settings change 2e-5. Some .08 % is the load that moves on a
 flank which softens toward its tip, by 3/8 c'^2 R W^2 of the approach, which is neglected (`contact-deformation`) and
 grows with the radius of curvature, large in internal pairs. Root tensions are within .7 %.
-The ring's tip corner carries 3.6 % less than fegear says: 2.0 % with elements of .004 modules there, and more the finer
-they are. Fegear takes both bodies as half-planes about the corner, where the ring is a wedge, which is softer.
+The ring's tip corner carries .7 % less than fegear says, 3.6 % while fegear took both bodies as half-planes there: the
+ring is a wedge, which is softer. CalculiX' elements are .002 modules long at the corner, and say less the finer they
+are. Its bores carry 285.9 and 285.6 N/mm where its contacts carry 285.9.
 """
 
 import sys
@@ -20,6 +21,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.verify.calculix import under_approach
 from fegear.verify.kept import kept
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -27,7 +29,7 @@ import ring_by_calculix as calculix
 
 TOLD = kept("ring_calculix")
 #: Load of each pair, and root tension.
-WITHIN = {"two pairs": (2e-3, 8e-3), "one pair and a tip corner": (4e-2, 5.5e-2)}
+WITHIN = {"two pairs": (2e-3, 8e-3), "one pair and a tip corner": (1e-2, 2.5e-2)}
 
 
 @pytest.fixture(scope="module")
@@ -44,8 +46,9 @@ def engagement():
 def test_loads_and_root_tension(engagement, position):
     told, pair = TOLD[position], engagement.pair
     x = pair.x_start + calculix.POSITIONS[position] * pair.base_pitch
-    state = engagement.solve(engagement.grid([x]), [calculix.LINE_LOAD * 1e3 * pair.face_width])
-    assert state.transmission_error[0, 0] * 1e6 == pytest.approx(told["approach_um"], rel=1e-6)
+    state = under_approach(engagement, x, calculix.LINE_LOAD * 1e3 * pair.face_width, told["approach_um"] * 1e-6)
+    if position == "two pairs":
+        assert state.load[0] / pair.face_width * 1e-3 == pytest.approx(calculix.LINE_LOAD, rel=1e-6)
     loads = {
         str(j): w / pair.face_width * 1e-3
         for j, w in zip(state.grid.contacts.number, state.loads[:, 0, 0], strict=True)

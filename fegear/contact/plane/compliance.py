@@ -55,6 +55,13 @@ class GearCompliance(RootStressInfluence, Protocol):
         """q of a further contact deflection q w^0.9 under a line load w (Palmgren) [m (m/N)^0.9]; 0 in general."""
 
     @property
+    def tip_wedge(self) -> tuple[float, float]:
+        """How much softer than a half-plane the tip is, sigma - 1, and the half-width that `own` has there [m].
+
+        Zeros where `own` takes no notice of the tip; see `edge_law`.
+        """
+
+    @property
     def kinks(self) -> tuple[float, ...]:
         """Radii [m] at which `own` has a kink (knots of a linear table); empty for smooth sources."""
 
@@ -96,6 +103,7 @@ class OneTooth:
 
     __slots__ = ()
     remarks = ()
+    tip_wedge = (0.0, 0.0)
 
     def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
         """Zero."""

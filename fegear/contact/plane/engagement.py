@@ -84,12 +84,12 @@ class Loaded:
     @property
     def corner_bears(self) -> Array:
         """Whether a loaded pair touches at a tip corner or so near to one that it is narrower, bool, shape (P, L)."""
-        contacts, tilt = self.grid.contacts, self.grid.matrices.tilt
+        contacts, edges = self.grid.contacts, self.grid.matrices.edges
         at_corner = np.broadcast_to((contacts.gap > 0.0)[:, :, None], self.loads.shape)
-        if tilt is not None:
+        if edges is not None:
             # the Hertzian width grows with the square root of the load; see `edge_law`
             width = np.sqrt(self.loads / self.grid.matrices.reference_load)
-            at_corner = at_corner | (tilt[:, :, None] > -width)
+            at_corner = at_corner | (edges.tilt[:, :, None] > -width)
         return np.asarray(((self.loads > 0.0) & at_corner).any(axis=0))
 
 

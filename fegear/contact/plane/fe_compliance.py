@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.fem.plane.contact_width import corner_angles, wedge_slope
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -76,6 +77,12 @@ class FiniteElementCompliance:
     def log_slope(self) -> float:
         """kappa [m^2/N]."""
         return self.influence.log_slope
+
+    @property
+    def tip_wedge(self) -> tuple[float, float]:
+        """Of the tip's angle, and the usual half-width."""
+        angle = corner_angles(self.influence.gear.tooth)[1]
+        return 0.5 * math.pi * wedge_slope(angle) - 1.0, self.influence.reference_half_width
 
     @property
     def neighbours(self) -> Mapping[int, Array]:
@@ -222,6 +229,8 @@ class ToothTable:
     log_slope : float
         kappa [m^2/N].
     reach : int
+    tip_wedge : tuple of float
+        As the source has it.
     """
 
     gear: Gear
@@ -232,6 +241,7 @@ class ToothTable:
     half_width: float
     log_slope: float
     reach: int
+    tip_wedge: tuple[float, float]
 
     kinks = ()
     power = 0.0
@@ -243,7 +253,7 @@ class ToothTable:
         half_width = float(source.reference_half_width(np.zeros(1))[0])
         return cls(
             source.influence.gear, source.own_spline, dict(source.neighbours), source.lowest, source.highest,
-            half_width, source.log_slope, source.reach,
+            half_width, source.log_slope, source.reach, source.tip_wedge,
         )  # fmt: skip
 
     def own(self, radius: ArrayLike) -> Array:

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array, Mask
 from fegear.base.errors import ConvergenceError, InputError, RangeError
 from fegear.base.tally import note, tallied
+from fegear.contact.plane.edge_law import EdgeContacts
 
 #: Share below which the logarithm is continued by its tangent: W ln W has an infinite slope at zero. Its effect on any
 #: share is below its own size.
@@ -70,7 +71,7 @@ def share_load(
     load: ArrayLike,
     log_slope: ArrayLike = 0.0,
     reference_load: ArrayLike = 1.0,
-    tilt: ArrayLike | None = None,
+    edges: EdgeContacts | None = None,
     power: ArrayLike = 0.0,
 ) -> SharedLoad:
     """Share total loads among the tooth pairs at many roll positions.
@@ -88,9 +89,8 @@ def share_load(
         kappa_j, change of both bodies' approach per unit load with ln(1 / half-width) [m/N]; 0 for a linear contact.
     reference_load : array_like, shape () or (n, P)
         W_ref [N], the load at which the diagonal of `compliance` holds.
-    tilt : array_like, shape (n, P), optional
-        theta_j R_j over the Hertzian half-width at the reference load, theta_j the slope at which the flanks part
-        from the tip corner inward (negative when the contact lies inside the corner); see `edge_law`.
+    edges : EdgeContacts, optional
+        Contacts near tip corners at the reference load, shape (n, P); see `edge_law`.
     power : array_like, shape () or (n, P)
         q_j of a further deflection q_j W_j^0.9 [m/N^0.9]: Palmgren's contact.
 
@@ -128,7 +128,7 @@ def share_load(
         np.broadcast_to(np.asarray(one, dtype=float), (n, positions))[near]
         for one in (log_slope, reference_load, power)
     )
-    narrow = None if tilt is None else np.asarray(tilt, dtype=float)[near]
+    narrow = None if edges is None else EdgeContacts(edges.tilt[near], edges.wedge[near], edges.room[near])
     shared = _share(c[np.ix_(near, near)], e[near], total, slope, reference, bent, narrow)
     loads = np.zeros((n, positions, cases))
     loads[near] = shared.loads
@@ -136,7 +136,7 @@ def share_load(
 
 
 def _share(
-    c: Array, e: Array, total: Array, log_slope: Array, reference_load: Array, power: Array, tilt: Array | None
+    c: Array, e: Array, total: Array, log_slope: Array, reference_load: Array, power: Array, edges: EdgeContacts | None
 ) -> SharedLoad:
     """`share_load` of arrays of full shape and of pairs that are in reach somewhere."""
     n, positions, cases = e.shape
@@ -160,7 +160,13 @@ def _share(
         half_slope=flat(0.5 * kappa) if kappa.any() else None,
         gap=flat(np.where(reach, e - nearest, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
-        tilt=None if tilt is None else flat(tilt[:, :, None] * np.sqrt(at / total)),
+        edges=None
+        if edges is None
+        else EdgeContacts(
+            flat(edges.tilt[:, :, None] * np.sqrt(at / total)),
+            flat(edges.wedge[:, :, None]),
+            flat(edges.room[:, :, None] * np.sqrt(at / total)),
+        ),
         power=flat(bent * total ** (_PALMGREN - 1.0)) if bent.any() else None,
     )
     v, z, steps = _solve(problem)
@@ -202,7 +208,7 @@ class _Problem:
     half_slope: Array | None
     gap: Array
     reach: Mask
-    tilt: Array | None
+    edges: EdgeContacts | None
     power: Array | None
 
     def only(self, index: NDArray[np.int64]) -> _Problem:
@@ -213,39 +219,9 @@ class _Problem:
             None if self.half_slope is None else self.half_slope[:, index],
             self.gap[:, index],
             self.reach[:, index],
-            None if self.tilt is None else self.tilt[:, index],
+            None if self.edges is None else self.edges.only(index),
             None if self.power is None else self.power[:, index],
         )
-
-
-@tallied("corner contacts")
-def edge_law(t: ArrayLike) -> tuple[Array, Array]:
-    """What the corner of a tip adds to the approach of a line contact, per kappa W.
-
-    Both bodies are taken as half-planes; inward from the corner their surfaces part as theta s + s^2/(2R). The
-    contact then covers [0, c] with the pressure (E*/2R) sqrt((c - s)/s) (s + c/2 + theta R), load
-    (pi E*/4)(theta c + 3 c^2/(4R)), and moves at the corner as a Hertzian contact of half-width
-    (c/2) exp(-1/2 + 3 y^2/8) would at its centre, y = c / b (Johnson, Contact Mechanics, 2.7 and 5). With t =
-    theta R / b it is a function of t alone, zero with zero slope at t = -1, where the corner no longer matters.
-
-    Parameters
-    ----------
-    t : array_like
-        theta R / b, b the Hertzian half-width at the present load.
-
-    Returns
-    -------
-    psi, t_slope : ndarray
-        psi(t) and t dpsi/dt.
-    """
-    at = np.asarray(t, dtype=float)
-    near = at > -1.0
-    s = np.where(near, at, -1.0)
-    y = 2.0 / (s + np.sqrt(s * s + 3.0))
-    inside = np.minimum(s, 0.0)
-    psi = np.where(near, 0.5 - 0.375 * y * y - np.log(0.5 * y) + inside * inside, 0.0)
-    slope = np.where(near, s * (2.0 - s * y) / (1.5 * y + s) + 2.0 * inside * inside, 0.0)
-    return psi, slope
 
 
 def _refuse_wide_contact(diagonal: Array, kappa: Array, total: Array) -> None:
@@ -310,9 +286,8 @@ def _newton_step(problem: _Problem, active: Mask, v: Array) -> tuple[Array, Arra
     if problem.half_slope is not None:
         slope = slope - problem.half_slope * (1.0 + np.log(w))
         constant = constant + problem.half_slope * w
-    if problem.tilt is not None and problem.half_slope is not None:
-        t = problem.tilt / np.sqrt(w)
-        psi, t_slope = edge_law(t)
+    if problem.edges is not None and problem.half_slope is not None:
+        psi, t_slope = problem.edges.law(np.sqrt(w))
         slope = slope + problem.half_slope * (2.0 * psi - t_slope)
         constant = constant + problem.half_slope * w * t_slope
     if problem.power is not None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.tally import tallied
-from fegear.contact.plane.load_sharing import edge_law
+from fegear.contact.plane.edge_law import EdgeContacts
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -36,8 +36,8 @@ class PairMatrices:
         kappa [m/N].
     reference_load : float
         [N].
-    tilt : ndarray, shape (n, P), or None
-        Of contacts near tip corners, see `share_load`; None when corners do not matter.
+    edges : EdgeContacts or None
+        Contacts near tip corners, shape (n, P); None when corners do not matter.
     power : float
         q of a contact deflection q W^0.9 [m/N^0.9].
     """
@@ -45,7 +45,7 @@ class PairMatrices:
     compliance: Array
     log_slope: Array
     reference_load: float
-    tilt: Array | None = None
+    edges: EdgeContacts | None = None
     power: float = 0.0
 
     def at_load(self, loads: Array) -> Array:
@@ -61,8 +61,8 @@ class PairMatrices:
         c = np.broadcast_to(self.compliance[..., None], (n, *loads.shape)).copy()
         w = np.maximum(loads, 1e-20 * self.reference_load) / self.reference_load
         added = -0.5 * (np.log(w) + tangent)
-        if self.tilt is not None:
-            psi, t_slope = edge_law(self.tilt[:, :, None] / np.sqrt(w))
+        if self.edges is not None:
+            psi, t_slope = self.edges.with_loads().law(np.sqrt(w))
             added += psi - 0.5 * tangent * t_slope
         c[np.arange(n), np.arange(n)] += self.log_slope[:, :, None] * added
         if self.power:
@@ -166,11 +166,22 @@ class PairCompliance:
                 slope[j, here] = self.log_slope
         if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
             self._couple(c, at)
-        tilt = None
-        if self.hertz == "load-dependent" and at.edge.max() > -np.inf:
-            tilt = at.edge / self.half_width(np.asarray(reference), at.relative_radius)
+        edges = None
+        if self.hertz == "load-dependent" and at.edge.max() > -np.inf and self.log_slope > 0.0:
+            edges = self._edges(at, self.half_width(np.asarray(reference), at.relative_radius))
         q = self.driver.power + self.driven.power if self.hertz == "load-dependent" else 0.0
-        return PairMatrices(c, slope, reference, tilt, q * face**-0.9)
+        return PairMatrices(c, slope, reference, edges, q * face**-0.9)
+
+    def _edges(self, at: Contacts, half_width: Array) -> EdgeContacts:
+        """Contacts near the tips: that of the driven gear touches at the start of the path, the driver's at its end."""
+        early = at.x < 0.5 * (self.pair.x_start + self.pair.x_end)
+        (soft1, least1), (soft2, least2) = (
+            (softer * source.log_slope / self.log_slope / self.face_width, least)
+            for source in (self.driver, self.driven)
+            for softer, least in (source.tip_wedge,)
+        )
+        wedge, least = np.where(early, soft2, soft1), np.where(early, least2, least1)
+        return EdgeContacts(at.edge / half_width, wedge, least / half_width)
 
     @tallied("neighbours")
     def _couple(self, c: Array, at: Contacts) -> None:

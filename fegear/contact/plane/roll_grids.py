@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Mask
+from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
@@ -126,7 +127,7 @@ class RollGrids:
             if one.grid is grid and np.array_equal(one.load, load) and np.array_equal(one.separation, separation):
                 return one.found
         m = grid.matrices
-        found = share_load(m.compliance, separation, load, m.log_slope, m.reference_load, m.tilt, m.power)
+        found = share_load(m.compliance, separation, load, m.log_slope, m.reference_load, m.edges, m.power)
         self._shared = (*self._shared[-_STATES + 1 :], _Shared(grid, separation, load, found))
         return found
 
@@ -155,23 +156,25 @@ def _joined(x: Array, old: RollGrid, column: NDArray[np.intp], new: RollGrid | N
         return found
 
     places = {name: columns(attrgetter(f"contacts.{name}")) for name in _PLACES}
-    none = old.matrices.tilt is None and (new is None or new.matrices.tilt is None)
+    none = old.matrices.edges is None and (new is None or new.matrices.edges is None)
     matrices = replace(
         old.matrices,
         compliance=columns(lambda grid: grid.matrices.compliance),
         log_slope=columns(lambda grid: grid.matrices.log_slope),
-        tilt=None if none else columns(lambda grid: _tilt(grid.matrices)),
+        edges=None if none else EdgeContacts(*columns(lambda grid: _edges(grid.matrices))),
     )
     return RollGrid(x, replace(old.contacts, **places), matrices)
 
 
-def _tilt(matrices: PairMatrices) -> Array:
-    """None at all is the same as far inside of every corner."""
-    return np.full(matrices.log_slope.shape, -np.inf) if matrices.tilt is None else matrices.tilt
+def _edges(matrices: PairMatrices) -> Array:
+    """Tilt, wedge and room, shape (3, n, P); none at all is the same as far inside of every corner."""
+    found = matrices.edges or EdgeContacts.none(matrices.log_slope.shape)
+    return np.stack([found.tilt, found.wedge, found.room])
 
 
 def _read_only(grid: RollGrid) -> RollGrid:
-    for part in (grid.contacts, grid.matrices):
+    edges = grid.matrices.edges
+    for part in (grid.contacts, grid.matrices) if edges is None else (grid.contacts, grid.matrices, edges):
         for one in fields(part):
             value = getattr(part, one.name)
             if isinstance(value, np.ndarray):

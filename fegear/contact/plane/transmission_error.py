@@ -192,7 +192,7 @@ def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> 
     grid = engagement.grid(points.x)
     m = grid.matrices
     e = np.where(grid.contacts.gap == 0.0, 0.0, np.inf)
-    shared = share_load(m.compliance, e, [load], m.log_slope, m.reference_load, m.tilt, m.power)
+    shared = share_load(m.compliance, e, [load], m.log_slope, m.reference_load, m.edges, m.power)
     return PairStiffness(points, shared.loads[:, :, 0] / shared.transmission_error[:, 0], grid.contacts.x)
 
 
@@ -228,7 +228,7 @@ def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int,
     errors = np.concatenate([engagement.spacing(grid.contacts, k) for k in range(cycles)], axis=1)
     shared = share_load(
         m.compliance, finite[:, :, None] + errors[:, None, :], np.full(cycles, load),
-        m.log_slope, m.reference_load, m.tilt, m.power,
+        m.log_slope, m.reference_load, m.edges, m.power,
     )  # fmt: skip
     # The points of every base pitch lie alike, so that the sum over the base pitches is a fast Fourier transform: a
     # kernel of all points times all harmonics would take gigabytes for hunting tooth numbers.

@@ -30,7 +30,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
 from fegear.base.tally import note, tallied
-from fegear.contact.plane.load_sharing import edge_law
+from fegear.contact.plane.edge_law import edge_law
 
 if TYPE_CHECKING:
     from fegear.contact.wide.compliance import FlankCompliance

@@ -211,7 +211,7 @@ def loaded(engagement: Engagement, load: float, x: Array) -> State:
     c, m = grid.contacts, grid.matrices
     separation = np.stack([engagement.separation(c, int(cycle)) for cycle in c.number], axis=2)
     shared = share_load(
-        m.compliance, separation, np.full(c.number.size, load), m.log_slope, m.reference_load, m.tilt, m.power
+        m.compliance, separation, np.full(c.number.size, load), m.log_slope, m.reference_load, m.edges, m.power
     )
     return State(grid, c.number, shared.loads, shared.transmission_error)
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.plane.load_sharing import edge_law
+from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.pair_compliance import PairMatrices
 from fegear.design.tip_relief.kinks import Kinks, Positions
 from fegear.geometry.pair import MEMBERS
@@ -235,14 +235,15 @@ class Between:
 
     @cached_property
     def _known(self) -> Array:
-        """Compliances, gaps, depths and tilts at the positions, shape (n n + 4 n, P)."""
+        """Compliances, gaps, depths and edges at the positions, shape (n n + 6 n, P)."""
         grid = self.bench.grid
-        tilt, n = grid.matrices.tilt, self.depths.shape[1]
+        n = self.depths.shape[1]
+        edges = grid.matrices.edges or EdgeContacts.none(self.depths.shape[1:])
         parts = [
             grid.matrices.compliance.reshape(n * n, -1),
             np.where(grid.contacts.present, grid.contacts.gap, 0.0),
             *self.depths,
-            np.full(self.depths.shape[1:], _FAR) if tilt is None else np.maximum(tilt, _FAR),
+            *(np.maximum(edges.tilt, _FAR), edges.wedge, edges.room),
         ]
         return np.concatenate(parts)
 
@@ -287,15 +288,15 @@ class Between:
         """One step of Newton's method for the loads."""
         n, count = at.on.shape
         known, rising = self._interpolated(at)
-        c, gap, depths, tilt = np.split(known, [n * n, n * n + n, n * n + 3 * n])
-        c_rise, gap_rise, depth_rise, tilt_rise = np.split(rising, [n * n, n * n + n, n * n + 3 * n])
+        parts = [n * n, n * n + n, *(n * n + i * n for i in (3, 4, 5))]
+        c, gap, depths, tilt, wedge, room = np.split(known, parts)
+        c_rise, gap_rise, depth_rise, tilt_rise, _, room_rise = np.split(rising, parts)
         c, c_rise = c.reshape(n, n, count), c_rise.reshape(n, n, count)
         depths, depth_rise = depths.reshape(2, n, count), depth_rise.reshape(2, n, count)
         own = self.bench.grid.matrices
         number, _, load = at.where
-        m = PairMatrices(
-            c, own.log_slope[:, at.where[1]], own.reference_load, None if own.tilt is None else tilt, own.power
-        )
+        edges = EdgeContacts(tilt, wedge, room) if own.edges else None
+        m = PairMatrices(c, own.log_slope[:, at.where[1]], own.reference_load, edges, own.power)
         numbers = p[number].T[:, None]
         removal, by_number = removed(depths, numbers, self.power)
         w = np.where(at.on, at.loads, 0.0)
@@ -306,10 +307,9 @@ class Between:
         loads = error * y - q
         tangent = m.tangent(np.maximum(loads, np.where(at.on, 0.0, _JUST * self.totals[load]))[..., None])[..., 0]
         rises = np.einsum("ijk,jk->ik", c_rise, loads) + gap_rise
-        if own.tilt is not None:
-            t = tilt / np.sqrt(np.maximum(loads, 1e-20 * own.reference_load) / own.reference_load)
-            by_tilt = edge_law(t)[1] / np.where(tilt == 0.0, 1.0, tilt)
-            rises += m.log_slope * by_tilt * tilt_rise * loads
+        if edges is not None:
+            root = np.sqrt(np.maximum(loads, 1e-20 * own.reference_load) / own.reference_load)
+            rises += m.log_slope * edges.rise(root, tilt_rise, room_rise) * loads
         slopes = np.array([
             -numbers[2 * g] / numbers[2 * g + 1] * depth_rise[g]
             * (np.where(1.0 - depths[g] / numbers[2 * g + 1] > _NONE, 1.0, 0.0) if self.power == 1.0

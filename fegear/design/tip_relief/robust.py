@@ -139,7 +139,7 @@ class _Trials:
             m = own + sum(tip.removal(roll) for tip, roll in zip(tips, _rolls(grid), strict=True))
             at, c = grid.matrices, grid.contacts
             e = np.where(c.present, c.gap + m + engagement.spacing(c, 0), np.inf)
-            shared = share_load(at.compliance, e, [self.load], at.log_slope, at.reference_load, at.tilt, at.power)
+            shared = share_load(at.compliance, e, [self.load], at.log_slope, at.reference_load, at.edges, at.power)
             peaks.append(np.ptp(shared.transmission_error))
         return self._percentile(np.array(peaks))
 

@@ -286,7 +286,7 @@ class Trials:
         added = np.broadcast_to(np.moveaxis(removal, 0, 2)[..., None], shape).reshape(n, positions, -1)
         e = np.where(contacts.present, contacts.gap, np.inf)[:, :, None] + added
         loads = np.tile(self.loads, removal.shape[0])
-        return share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.tilt, m.power)
+        return share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.edges, m.power)
 
     def mean(self) -> float:
         """Mean transmission error of the unmodified pair over all loads, in proportion at the largest [m]."""
