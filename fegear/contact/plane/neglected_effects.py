@@ -143,7 +143,8 @@ def _load_change(states: Callable[[Array], list[Loaded]], x: Array) -> Array:
     difference = np.zeros((int(max(n[-1] for n in numbers) - first) + 1, *before.loads.shape[1:]))
     for state, number, sign in ((after, numbers[1], 1.0), (before, numbers[0], -1.0)):
         difference[number - first] += sign * state.loads
-    row = np.argmax(np.abs(difference), axis=0)
+    size = np.abs(difference)  # what one of two pairs gains the other loses: the last digit must not choose the sign
+    row = np.argmax(size >= (1.0 - 1e-9) * size.max(axis=0), axis=0)
     return np.take_along_axis(difference, row[None], axis=0)[0]
 
 
