@@ -14,8 +14,12 @@ import pytest
 import fegear
 from fegear.base.arrays import same
 from fegear.base.errors import InputError
-from fegear.engine.stage import Stage
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Stage, Task
 from fegear.results.catalogue import STAGES
+from fegear.workbench.run import _scene as fegear_scene
 
 ROOT = Path(__file__).parents[2]
 #: Cases of a second at most, with results of most subjects between them.
@@ -23,6 +27,39 @@ QUICK = ("lin_table1", "mark_tip_relief", "litvin_profile_angle")
 #: What takes minutes; one of its kind is among the others.
 DEAR = {"helical_flank_design", "robust_pair", "root_stress_population", "nasa_relief_design"}
 ALL = sorted(path.stem for path in (ROOT / "cases").glob("*.toml"))
+#: Results that no case of the folder asks for, or only a dear one: case, and what is asked of it instead.
+FURTHER = {
+    "sources/lin_huston_coy_fig5a": {},
+    "sources/lin_townsend_oswald_fig4": {},
+    "sources/litvin_fig01": {},
+    "sources/litvin_fig10": {},
+    "sources/mark_fig03": {},
+    "planetary_set": {"results": ["planet-motion"], "planetary.P.speeds.count": 3},
+    "robust_pair": {"robustness": {"draws": 20}, "accuracy": {"tolerance": 0.05}},
+    "nasa_relief_design": {"results": ["robustness"], "accuracy": {"tolerance": 0.05}},
+    "two_stage_gearbox": {
+        "results": ["gear-mesh-power-loss"],
+        "pair.first.friction.coefficient": 0.05, "pair.second.friction.coefficient": 0.05,
+    },
+    "helical_flank_design": {
+        "accuracy.tolerance": 0.1, "flank_design.positions": 12, "flank_design.largest_face_load_factor": 9,
+        "gear.pinion.face_width": "6 mm", "gear.wheel.face_width": "6 mm", "pair.I.load": "1800 N",
+        "flank_design.grid": {
+            "tip_amounts": ["12 um"], "tip_lengths": ["4.5 mm"], "crownings": ["4 um"], "biases": ["-4 um"],
+        },
+        "flank_design.map.load_factors": [0.5, 1.0], "flank_design.scatter": {"over_face": "6 um", "levels": 2},
+    },
+}  # fmt: skip
+WEB = {
+    "results": ["stiffness", "body-modes"], "accuracy": {"tolerance": 0.1},
+    "gear": {"a": {
+        "teeth": 16, "module": "2 mm", "face_width": "6 mm", "bore_radius": "6 mm",
+        "body": {"rim_thickness": "2 mm", "web_thickness": "2 mm"},
+    }},
+    "stiffness": {"positions": 2, "face_positions": 2},
+}  # fmt: skip
+#: Stages that the window alone asks for.
+IN_MESH = ("stress-in-mesh", "deformed-in-mesh", "stress-inside")
 FE = {
     "results": ["geometry", "tooth-geometry-check", "stiffness", "root-stress"], "accuracy": {"tolerance": 0.05},
     "gear": {"Räd": {"teeth": 20, "module": "3 mm", "face_width": "10 mm"}},
@@ -65,6 +102,36 @@ def test_results_of_finite_elements_go_through_pickle():
 @pytest.mark.parametrize("case", [name for name in ALL if name not in QUICK and name not in DEAR])
 def test_results_of_every_case_go_through_pickle(case):
     check_travels(fegear.run(ROOT / "cases" / f"{case}.toml"))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("case", FURTHER)
+def test_results_of_further_kinds_go_through_pickle(case):
+    check_travels(fegear.run(ROOT / "cases" / f"{case}.toml", FURTHER[case]))
+
+
+@pytest.mark.long
+def test_body_modes_go_through_pickle():
+    check_travels(fegear.run(WEB))
+
+
+@pytest.mark.long
+def test_what_the_window_shows_goes_through_pickle():
+    scene = read_scene(ROOT / "cases" / "pinion_and_wheel.toml", ["accuracy.tolerance=0.05"])
+    plan = make_plan(scene, STAGES, [Task(stage, "I") for stage in IN_MESH])
+    for task, outcome in run_plan(scene, plan).outcomes.items():
+        assert same(through_pickle(outcome).data, outcome.data), task
+
+
+@pytest.mark.long
+def test_no_stage_is_forgotten_here():
+    scenes = [read_scene(ROOT / "cases" / f"{name}.toml") for name in ALL if name not in DEAR]
+    scenes += [fegear_scene(ROOT / "cases" / f"{name}.toml", changes) for name, changes in FURTHER.items()]
+    plans = [make_plan(scene, STAGES) for scene in [*scenes, fegear_scene(WEB, {}), fegear_scene(FE, {})]]
+    plans.append(
+        make_plan(read_scene(ROOT / "cases" / "pinion_and_wheel.toml"), STAGES, [Task(s, "I") for s in IN_MESH])
+    )
+    assert {stage.name for stage in STAGES} == {step.task.stage for plan in plans for step in plan.steps}
 
 
 def test_every_stage_travels_by_its_name():
