@@ -94,6 +94,17 @@ def test_the_class_is_the_tightest_that_holds_slope_form_and_total():
     assert tightest_class(evaluate(x, x * 0.1, -5.4e-3, 5.4e-3), gear, "helix") is None
 
 
+def test_what_exceeds_every_class_is_said_and_is_no_value(tmp_path):
+    z = np.linspace(-6.0, 6.0, 49)
+    write(tmp_path / "lead.csv", ["z [mm]", "deviation [um]"], z, 40.0 * z)
+    scene = scene_of(tmp_path, {"lead": "lead.csv"})
+    plan = make_plan(scene, STAGES)
+    (found,) = (out for task, out in run_plan(scene, plan).outcomes.items() if task.stage == "measured-flanks")
+    assert "a.helix_slope" in {value.name for value in found.values}
+    assert not [value.name for value in found.values if math.isnan(value.si)]
+    assert any("exceed class 11" in remark for remark in found.remarks)
+
+
 def test_traces_of_a_drawn_relief_and_lead_load_the_pair_as_they_do(tmp_path):
     relief = {"tip": {"amount": "10 um", "length": "2 mm"}}
     drawn = scene_of(tmp_path, None, relief=relief, lead={"crowning": "4 um", "slope": "6 um"})

@@ -106,6 +106,10 @@ def _present(data: MeasuredFlanks, asked: FlanksToEvaluate) -> Outcome:
             f"Gear {asked.name}: {one.kind} traces of {len(one.teeth)} {'tooth' if len(one.teeth) == 1 else 'teeth'}, "
             f"{shown}, evaluated from {one.ends[0] * 1e3:.5g} to {one.ends[1] * 1e3:.5g} mm."
         )
+        if _beyond_all_classes(asked, one, found):
+            remarks.append(
+                f"Gear {asked.name}: {one.kind} deviations of a tooth exceed class 11, the widest of ISO 1328-1."
+            )
     return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), tuple(figures))
 
 
@@ -128,7 +132,7 @@ def _values(asked: FlanksToEvaluate, traces: Traces, found: tuple[TraceDeviation
             for key in ("slope", "form", "total")
         ]  # fmt: skip
     kept = _kept(asked, traces, each)
-    if kept is not None:
+    if kept is not None and not math.isnan(kept):
         values.append(Value(f"{of}_class", kept, "", 0.0, "tightest class of ISO 1328-1:2013 that every tooth keeps"))
     return values
 
@@ -142,6 +146,11 @@ def _kept(asked: FlanksToEvaluate, traces: Traces, found: tuple[TraceDeviations,
     except RangeError:
         return None
     return math.nan if None in classes else float(max(one for one in classes if one is not None))
+
+
+def _beyond_all_classes(asked: FlanksToEvaluate, traces: Traces, found: tuple[TraceDeviations, ...]) -> bool:
+    kept = _kept(asked, traces, found[:-1])
+    return kept is not None and math.isnan(kept)
 
 
 def _deviations(data: MeasuredFlanks, asked: FlanksToEvaluate) -> Table:
