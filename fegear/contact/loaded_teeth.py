@@ -158,7 +158,7 @@ class LoadedTeeth(Protocol):
             Where it comes from, by name: `RootStressInfluence` for plane teeth, `SolidInfluence` for wide ones.
         progress : callable
         estimates : bool
-            Whether errors are estimated, where that is a choice.
+            Whether errors are estimated, where that is a choice, and plane teeth looked at for peaks between positions.
         """
 
     def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:

@@ -808,6 +808,19 @@ def test_numbers_without_estimates_are_the_numbers(tmp_path):
     assert not any(one.si_error for one in quick.values)
 
 
+def test_root_stress_while_a_value_moves_is_that_of_the_positions(tmp_path):
+    text = TWO.replace('"load-sharing"', '"root-stress-history"').replace(
+        'compliance = { source = "weber-banaschek" }\n', ""
+    )
+    scene = scene_of(Asked(text + "[accuracy]\ntolerance = 0.05\n", "c", str(tmp_path)))
+    plan, cache = make_plan(scene, STAGES), SolutionCache()
+    whole, quick = (run_plan(replace(scene, estimates=asked), plan, cache=cache) for asked in (True, False))
+    largest = [one.name for one in whole.values if ".largest_root_" in one.name]
+    assert len(largest) == 4
+    for name in largest:
+        assert 0.99 < quick.values[name].si / whole.values[name].si < 1.0 + 1e-12, name
+
+
 def test_designed_reliefs_remove_the_transmission_error(computing, tmp_path):
     made, heard = computing
     text = TWO.replace('"load-sharing"', '"transmission-error"')

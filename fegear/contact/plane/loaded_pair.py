@@ -156,10 +156,11 @@ class LoadedPair:
         *,
         estimates: bool = True,
     ) -> RootStressInMesh:
-        """See `LoadedTeeth`; its positions have the peaks of every source."""
+        """See `LoadedTeeth`; with estimates its positions have the peaks of every source."""
         e = self.engagement
         x = roll_positions(e, POSITIONS)
-        x = with_peaks(e, self.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
+        if estimates:
+            x = with_peaks(e, self.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
         states = loaded_states(e, self.shifted, self.loads, x)
         stress: dict[Member, dict[str, ToothStress]] = {}
         for number, member in enumerate(MEMBERS):
