@@ -400,6 +400,22 @@ def test_a_link_where_fegear_works_costs_nobody_a_file(tmp_path, kind):
             write(out, {"a.csv": "new"})
 
 
+def test_a_sweep_follows_no_link_where_it_works(tmp_path):
+    """`sweep` emptied the folder behind the link, too, even where it then refused."""
+    case, mine = tmp_path / "case.toml", tmp_path / "mine"
+    case.write_text('results = ["geometry"]\n[gear.a]\nteeth = 20\nmodule = "1 mm"\n')
+    mine.mkdir()
+    (mine / "thesis.tex").write_text("three years")
+    folder_for(tmp_path, "out").symlink_to(mine)
+    command = [sys.executable, "-B", "-m", "fegear", "sweep", str(case), "--over", "gear.a.teeth=20,21", "--out", "out"]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 2, done.stderr
+    assert "choose another folder with --out." in done.stderr
+    assert contents(mine) == {"thesis.tex": "three years"}
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of file sizes are set through the resource module")
 def test_a_file_that_may_not_grow_is_one_sentence_and_the_old_results_stay(tmp_path):
     case = tmp_path / "case.toml"
