@@ -13,7 +13,10 @@ from fegear.case.built.loaded_flanks import check_flanks_to_load
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.formulas.iso6336.conditions import Replacement
+from fegear.results.catalogue import STAGES
 
 CASE = tomllib.loads(Path(__file__).parents[2].joinpath("cases", "two_stage_shafts.toml").read_text(encoding="utf-8"))
 
@@ -24,6 +27,19 @@ def _scene(**keys):
         table, name, key = path.split("__")
         case[table][name][key] = value
     return build_scene(case, "box", Path())
+
+
+def test_shafts_without_a_pair_bend_under_their_own_loads():
+    """A gearbox whose gears are in no pair ended in a traceback."""
+    case = {key: value for key, value in copy.deepcopy(CASE).items() if key not in ("pair", "effects", "rating")}
+    case["results"] = ["shaft-deflection"]
+    case["shaft"]["in"]["loads"] = [{"at": "30 mm", "force": ["0 N", "-800 N", "0 N"]}]
+    scene = build_scene({key: case[key] for key in ("results", "gear", "shaft", "bearing")}, "box", Path())
+    found = run_plan(scene, make_plan(scene, STAGES))
+    (forces,) = (table for table in found.tables if table.name == "bearing_forces")
+    # 30 mm from the left of bearings 10 and 110 mm from there: the stiff shaft's lever, but for tilting bearings
+    np.testing.assert_allclose(forces["force_y [N]"], [640.0, 160.0, 0.0, 0.0, 0.0, 0.0], atol=1.0)
+    assert forces["force_y [N]"].sum() == pytest.approx(800.0, rel=1e-9)
 
 
 def test_bearings_take_what_the_meshes_press():

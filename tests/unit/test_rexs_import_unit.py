@@ -6,6 +6,7 @@ import math
 import sys
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from rexs_models import in_json, link, part, planetary_set, shaft, two_stages
@@ -15,7 +16,9 @@ from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model import Attribute
 from fegear.exchange.rexs.reading import model_of
+from fegear.exchange.rexs.said import _in_si
 from fegear.results.catalogue import STAGES
 
 HERE = Path("model.rexs")
@@ -445,3 +448,10 @@ def test_the_command_writes_a_case_that_runs_and_replaces_nobody_s(tmp_path, mon
     assert "is there already" in words
     assert say("import", "none.rexs")[0] == 2
     assert "is none of the model" in say("import", "box.rexs", "--load-case", "7", "--force")[1]
+
+
+def test_a_number_of_hundreds_of_digits_is_no_number():
+    """JSON has whole numbers of any length; as a part of a vector one was an OverflowError."""
+    said = SimpleNamespace(said="shaft 3")
+    with pytest.raises(InputError, match="is no finite number in shaft 3"):
+        _in_si(Attribute("u_axis_vector", "mm", (10**400, 0, 0)), 10**400, said, "length")

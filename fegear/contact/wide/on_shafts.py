@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -178,22 +179,21 @@ def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
 
 
 def _state(gearbox: Gearbox, meshes: Sequence[MeshForces], scale: float, start: tuple[Array, ...]) -> GearboxState:
-    sizes = np.cumsum([gap.size for gap in start])[:-1]
-    shapes = [gap.shape for gap in start]
+    ends = np.cumsum([0, *(gap.size for gap in start)]).tolist()
+    parts = [slice(first, last) for first, last in pairwise(ends)]  # of each mesh; there may be none
 
     def of_all(v: Array) -> tuple[GearboxState, Array, Array]:
         """State at gaps of all meshes one after the other, what its shafts open less `v`, and growth of the forces."""
-        parts = [part.reshape(shape) for part, shape in zip(np.split(v, sizes), shapes, strict=True)]
         under = [
-            one.under(gap, scale * mesh.load) for one, gap, mesh in zip(meshes, parts, gearbox.meshes, strict=True)
+            one.under(v[part].reshape(gap.shape), scale * mesh.load)
+            for one, part, gap, mesh in zip(meshes, parts, start, gearbox.meshes, strict=True)
         ]
         forces = tuple(force for force, _ in under)
         bent = gearbox.under(forces, scale)
         gaps = gearbox.gaps(tuple(one.at(z) for one, z in zip(bent, gearbox.places, strict=True)))
         growth = np.zeros((v.size, v.size))
-        ends = [0, *sizes.tolist(), v.size]
-        for (_, own), first, last in zip(under, ends[:-1], ends[1:], strict=True):
-            growth[first:last, first:last] = own
+        for (_, own), part in zip(under, parts, strict=True):
+            growth[part, part] = own
         left = np.concatenate([gap.ravel() for gap in gaps]) - v if gaps else v
         return GearboxState(scale, bent, forces, gaps, 0, 0.0), left, growth
 

@@ -129,7 +129,7 @@ def _in_si(one: Attribute, value: object, component: Component, quantity: str) -
         raise InputError(one.name, f"{value} {one.unit}".rstrip(), rule, f"those of REXS are {units_of(quantity)}")
     try:
         number = math.nan if isinstance(value, tuple | bool) else float(value)  # type: ignore[arg-type]
-    except ValueError:
+    except (ValueError, OverflowError):  # no number, or one of hundreds of digits
         number = math.nan
     if not math.isfinite(number):
         raise InputError(one.name, shown(value), f"is no finite number in {component.said}", "correct the model")
