@@ -262,12 +262,13 @@ _SYMBOLS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return a remedy that lists the known names, and says which is nearest to `name` if one is."""
+def nearest(name: str, known: Iterable[str], lists_all: str = "") -> str:
+    """Return a remedy that says which known name is nearest to `name` if one is, and lists them or says what does."""
     names = sorted(known)
     near = [key for key in _SYMBOLS.get(name.lower(), ()) if key in names]
     near = near or difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5)
     listed = f"known here: {', '.join(names)}" if names else "none is known here"
+    listed = f"{lists_all} lists all {len(names)}" if lists_all else listed
     return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed
 
 

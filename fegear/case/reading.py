@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from fegear.base.errors import PATH, InputError, shown
+from fegear.base.unit_text import plain_number
 from fegear.case.effects import Described, started
 from fegear.case.model import Case
 from fegear.case.part import BARE_SI, check_references, nearest
@@ -249,14 +250,22 @@ def apply_override(document: dict[str, Any], override: str) -> None:
     steps = path.strip().split(".")
     if not equals or not all(steps):
         raise InputError("--set", f'"{override}"', "must read KEY=VALUE", "for example --set gear.a.teeth=30")
+    value = typed_value(text)
+    if isinstance(value, list):
+        _refuse_decimal_commas(f"{steps[-1]} = {text.strip()}")
+    set_key(document, path.strip(), value)
+
+
+def typed_value(text: str) -> object:
+    """Somebody's value of a key: TOML; else a number that TOML refuses (.05, 5.), or a text as it stands."""
     try:
         read = tomllib.loads(f"value = {text.strip()}")
     except (ValueError, RecursionError):
         read = {}
-    if isinstance(read.get("value"), list):
-        _refuse_decimal_commas(f"{steps[-1]} = {text.strip()}")
-    # What is no TOML is a text, and so is what would be TOML of several keys.
-    set_key(document, path.strip(), read["value"] if set(read) == {"value"} else text.strip())
+    if set(read) == {"value"}:  # not TOML of several keys
+        return read["value"]
+    number = plain_number(text)
+    return text.strip() if number is None else number
 
 
 def set_key(document: dict[str, Any], path: str, value: object, option: str = "--set") -> None:

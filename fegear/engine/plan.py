@@ -208,7 +208,8 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     for result in wanted:
         if result not in by_result:
-            raise InputError("results", f'"{result}"', "is no result that fegear knows", nearest(result, by_result))
+            rule, remedy = "is no result that fegear knows", nearest(result, by_result, '"fegear results"')
+            raise InputError("results", f'"{result}"', rule, remedy)
         asked = [known.called(name) for name in by_result[result]]
         described = [(stage, subject) for stage in asked for subject in stage.subjects(scene)]
         if not described:

@@ -21,7 +21,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.reading import build_scene, read_document, set_key
+from fegear.case.reading import build_scene, read_document, set_key, typed_value
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
@@ -354,7 +354,7 @@ def _list(key: str, given: str) -> Axis:
         read = tomllib.loads(f"values = {given if given.startswith('[') else f'[{given}]'}")
     except (ValueError, RecursionError):
         read = {}
-    values: list[Any] = read["values"] if set(read) == {"values"} else [part.strip() for part in given.split(",")]
+    values: list[Any] = read["values"] if set(read) == {"values"} else list(map(typed_value, given.split(",")))
     if not values or len({str(value) for value in values}) < len(values):
         raise InputError("--over", f'"{key}={given}"', "must list different values", _EXAMPLE)
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):

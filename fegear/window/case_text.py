@@ -16,6 +16,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AbstractTable, Table
 
 from fegear.base.errors import InputError
+from fegear.case.reading import typed_value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,12 +37,13 @@ def literal(value: object) -> str:
 
 
 def as_typed(text: str) -> str:
-    """What somebody typed as a TOML value: what is none is taken as a text, as ``--set`` does."""
+    """What somebody typed as a TOML value: what is none is taken as a number or a text, as ``--set`` does."""
+    typed = text.strip()
     try:
-        read = tomllib.loads(f"value = {text.strip()}")
+        is_toml = set(tomllib.loads(f"value = {typed}")) == {"value"}
     except (ValueError, RecursionError):
-        read = {}
-    return text.strip() if set(read) == {"value"} else literal(text.strip())
+        is_toml = False
+    return typed if is_toml else literal(typed_value(typed))
 
 
 def value_at(document: Mapping[str, Any], path: Path) -> Any:

@@ -154,7 +154,15 @@ def test_what_cannot_be_changed_by_itself_is_refused():
 
 @pytest.mark.parametrize(
     ("typed", "written"),
-    [("3", "3"), (" 0.25 ", "0.25"), ("true", "true"), ("[1, 2]", "[1, 2]"), ("full", '"full"'), ("3, 4", '"3, 4"')],
+    [
+        ("3", "3"),
+        (" 0.25 ", "0.25"),
+        (".05", "0.05"),
+        ("true", "true"),
+        ("[1, 2]", "[1, 2]"),
+        ("full", '"full"'),
+        ("3, 4", '"3, 4"'),
+    ],
 )
 def test_what_is_typed_is_toml_or_a_text(typed, written):
     assert as_typed(typed) == written
