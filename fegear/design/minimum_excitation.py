@@ -15,24 +15,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.design.loading import LoadingFunction
 from fegear.design.relief_bound import refuse_deeper_than_the_tooth
+from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.relief import Relief, TabulatedRelief
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.pair_compliance import PairCompliance
-    from fegear.design.loading import LoadingFunction
-    from fegear.geometry.pair import GearPair, Member
-
 
 #: The extrapolation takes its slope from the end of the design zone to this fraction of the ramp inside it: the slope
 #: at the very end is infinite with a load-dependent contact (W ln W).

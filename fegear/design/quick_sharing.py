@@ -13,13 +13,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from fegear.base.arrays import Floats
-    from fegear.contact.plane.roll_grids import RollGrid
+from fegear.base.arrays import Floats
+from fegear.contact.plane.roll_grids import RollGrid
 
 
 @dataclass(frozen=True)

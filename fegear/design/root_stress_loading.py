@@ -6,22 +6,18 @@ might be taken into account: then by the larger of both over what the case allow
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.contact.plane.compliance import largest_stress
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction, Ramp
+from fegear.fem.plane.root_stress import FilletCurve
 from fegear.geometry.pair import MEMBERS, Member
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.pair_compliance import PairCompliance
-    from fegear.fem.plane.root_stress import FilletCurve
 
 
 @dataclass(frozen=True)

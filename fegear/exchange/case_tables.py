@@ -7,11 +7,8 @@ import math
 import re
 import textwrap
 import unicodedata
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
 
 #: Widest line of a remark, and the column where remarks stand behind keys.
 _WIDE, _REMARKS = 118, 44

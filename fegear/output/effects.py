@@ -6,15 +6,15 @@ The page of ``fegear effects``: for each effect its clearest curve without and w
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 import fegear
 from fegear.case.reading import Scene
+from fegear.engine.figure.figure import Figure
 from fegear.engine.table import Column, Table
 from fegear.output.file_names import file_name
 from fegear.output.folder import SUMMARY, files_in
@@ -22,15 +22,8 @@ from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import Block, DataTable, Facts, Folded, Grid, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.tables import write_json, write_table
-from fegear.studies.effects import Fixed, Switched, clearest_curve, effect_figure
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from fegear.case.reading import Scene
-    from fegear.engine.figure.figure import Figure
-    from fegear.studies.comparison.compare import Pairing
-    from fegear.studies.effects import EffectCurve, Fixed, Switched
+from fegear.studies.comparison.compare import Pairing
+from fegear.studies.effects import EffectCurve, Fixed, Switched, clearest_curve, effect_figure
 
 
 def _carried(effect: str, found: EffectCurve) -> tuple[Table, Table]:

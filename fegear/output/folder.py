@@ -9,12 +9,13 @@ import contextlib
 import errno
 import os
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import NO_ROOM, PATH, InputError, shown
 from fegear.base.streams import complain
 from fegear.case.text_file import named_path
+from fegear.engine.run import Results, Watcher
 from fegear.output.dataset import write_dataset
 from fegear.output.exchange import (
     JOURNAL,
@@ -32,12 +33,6 @@ from fegear.output.figures import Drawing, described
 from fegear.output.file_names import file_name
 from fegear.output.report.run import write_report
 from fegear.output.tables import write_summary, write_table
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from fegear.engine.run import Results, Watcher
-
 
 #: The file that lists all others; with it, a folder's earlier files are replaced as a whole.
 SUMMARY = "summary.json"

@@ -10,20 +10,15 @@ import io
 import json
 import math
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
 import fegear
+from fegear.engine.run import Results
+from fegear.engine.table import Table
 from fegear.output.file_names import file_name
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from fegear.engine.run import Results
-    from fegear.engine.table import Table
-
 
 #: What begins a formula in a spreadsheet.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")

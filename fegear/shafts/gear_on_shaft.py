@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.revolved_body import condensed
+from fegear.base.arrays import Array
+from fegear.fem.revolved_body import RevolvedBody, condensed
 from fegear.shafts.beam import carry
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.fem.revolved_body import RevolvedBody
 
 #: Of the six motions of a section, those across the axis and their tilts, d/dz of each, in both planes.
 _PLANES = ((0, 4, 1.0), (1, 3, -1.0))

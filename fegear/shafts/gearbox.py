@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.shafts.beam import carry
-from fegear.shafts.mesh import straight_slope
-from fegear.shafts.solution import deflect, response
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.shafts.mesh import MeshPlace
-    from fegear.shafts.solution import Deflection, LoadedShaft
+from fegear.shafts.mesh import MeshPlace, straight_slope
+from fegear.shafts.solution import Deflection, LoadedShaft, deflect, response
 
 #: Misalignment of a mesh by cause, and its gap over the face.
 MeshState = tuple["MeshMisalignment", "MeshGap"]

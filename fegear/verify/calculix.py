@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.geometry.pair import GearPair, Member
 from fegear.verify.kept import kept
 from fegear.verify.row import Compared, Rows, near
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement, Loaded
-    from fegear.geometry.pair import GearPair, Member
 
 ROWS = Rows()
 _WHOLE = "CalculiX 2.21, frictionless contact of both whole gears"

@@ -7,16 +7,14 @@ import shutil
 import tempfile
 import warnings
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fegear.base.errors import MissingLibraryError
 from fegear.verify.row import Compared, Rows, near
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 ROWS = Rows()
 LOAD, COS = 500.0, math.cos(math.radians(20.0))

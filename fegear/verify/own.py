@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.dynamics.planetary.planet_set import Central
+from fegear.geometry.internal_tooth import InternalTooth
+from fegear.shafts.beam import Shaft
+from fegear.shafts.bearing import Bearing
+from fegear.shafts.solution import Deflection
 from fegear.verify.row import Compared, Rows, near
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.planetary.planet_set import Central
-    from fegear.geometry.internal_tooth import InternalTooth
-    from fegear.shafts.beam import Shaft
-    from fegear.shafts.bearing import Bearing
-    from fegear.shafts.solution import Deflection
 
 ROWS = Rows()
 E, NU = 206e9, 0.3

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.fem.plane.estimate import Estimate
+from fegear.fem.plane.influence import Influence, Side
+from fegear.geometry.gear import Gear
+from fegear.studies.check import Checked
 from fegear.verify.kept import kept
 from fegear.verify.row import Compared, Rows, near
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.estimate import Estimate
-    from fegear.fem.plane.influence import Influence, Side
-    from fegear.geometry.gear import Gear
-    from fegear.studies.check import Checked
 
 ROWS = Rows()
 _ALONE = "scikit-fem 12 alone, run now: the whole gear in one system, no ring closure, no reference elements"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from fegear.base.errors import InputError
 from fegear.case.built.flank_errors import FlankErrors, cutter_modification, flank_errors
@@ -15,13 +15,11 @@ from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear
 from fegear.case.effects import WIDE_EFFECTS, EffectsPart
 from fegear.case.part import at
+from fegear.case.reading import Scene
+from fegear.contact.wide.gaps import FlankGaps, ShaftGaps
+from fegear.geometry.flank_modification import FlankModification
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.plausible import refuse_load
-
-if TYPE_CHECKING:
-    from fegear.case.reading import Scene
-    from fegear.contact.wide.gaps import FlankGaps, ShaftGaps
-    from fegear.geometry.flank_modification import FlankModification
 
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
+from fegear.contact.fourier import FourierSeries
 from fegear.contact.loaded_teeth import (
     HARMONICS,
     MOST_CYCLES,
@@ -17,6 +20,8 @@ from fegear.contact.loaded_teeth import (
     Neglected,
     RootStressInMesh,
 )
+from fegear.contact.plane.compliance import RootStressInfluence
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_history import PairHistory, pair_history
 from fegear.contact.plane.shifted_compliance import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
@@ -28,19 +33,9 @@ from fegear.contact.plane.transmission_error import (
     secant_stiffness,
     transmission_error,
 )
+from fegear.contact.surface import FrictionLaw
+from fegear.contact.tooth_loss import ToothLoss
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.fourier import FourierSeries
-    from fegear.contact.plane.compliance import RootStressInfluence
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.surface import FrictionLaw
-    from fegear.contact.tooth_loss import ToothLoss
 
 #: Places along the path at which losses are integrated (half as many for the estimate of their error), and at which the
 #: state of the flanks is looked at.

@@ -18,20 +18,15 @@ load sharing with tooth compliances after Cornell. Above two it is no better tha
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.contact.fourier import FourierSeries, Panels, fourier_series
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import pair_stiffness
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement
-
 
 #: Numbers of terms at which convergence is looked at, beside the one asked for.
 _TERMS = (0, 1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 40)

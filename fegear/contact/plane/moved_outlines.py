@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.contact.plane.engagement import Engagement, Loaded
-    from fegear.fem.plane.outline_motion import OutlineMotion
-    from fegear.geometry.pair import Member
-    from fegear.geometry.relief import Relief
+from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.fem.plane.outline_motion import OutlineMotion
+from fegear.geometry.pair import Member
+from fegear.geometry.relief import Relief
 
 
 @dataclass(frozen=True)

@@ -9,23 +9,18 @@ positions would differ by what both miss.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.contact.loaded_teeth import Answer, Change
+from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.pair_history import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement, Loaded
 
 #: Roll positions spread over the base pitch.
 _SPREAD = 32

@@ -5,21 +5,16 @@ Where curves over a base pitch are largest, found closer than the samples that t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import BESIDE
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement
 
 
 @dataclass(frozen=True)

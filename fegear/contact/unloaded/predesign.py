@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.contact.unloaded.pair import HelicalPair
 from fegear.contact.unloaded.tooth_contact import pair_contact
-
-if TYPE_CHECKING:
-    from fegear.contact.unloaded.pair import HelicalPair
 
 
 @dataclass(frozen=True, slots=True)

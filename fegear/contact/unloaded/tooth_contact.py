@@ -8,22 +8,17 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.contact.unloaded.contact_ellipse import parting, pinion_normal
 from fegear.contact.unloaded.extremes import Extreme, extremes
+from fegear.contact.unloaded.pair import HelicalPair
 from fegear.contact.unloaded.reach import Bound
 from fegear.contact.unloaded.separation import Earliest, Placement, earliest_contact
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.contact.unloaded.pair import HelicalPair
-
 
 #: Difference of transmission errors that counts as none [rad].
 _TOGETHER = 1e-13

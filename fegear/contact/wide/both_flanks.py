@@ -6,19 +6,15 @@ other flank is loaded: what stands at the height z in the mesh with the sun stan
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.contact.plane.both_flanks import FilletTrace
+from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.root_stress import rooted_lines
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.loaded_pair import LoadedWidePair
-    from fegear.fem.plane.influence import Side
-    from fegear.fem.solid.solution import SolidSolution
-    from fegear.geometry.pair import Member
+from fegear.fem.plane.influence import Side
+from fegear.fem.solid.solution import SolidSolution
+from fegear.geometry.pair import Member
 
 
 def fillet_trace_at(teeth: LoadedWidePair, member: Member, solution: SolidSolution, z: float) -> FilletTrace:

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -21,14 +22,10 @@ from fegear.base.plain import code_version, content_key, pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
 from fegear.contact.wide.complementarity import Averages, averages
+from fegear.contact.wide.lines import ContactLines
 from fegear.fem.solid.bands import Bands, bands
+from fegear.fem.solid.flank_body import FlankBody, FlankLines
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from fegear.contact.wide.lines import ContactLines
-    from fegear.fem.solid.flank_body import FlankBody, FlankLines
 
 Hertz = Literal["load-dependent", "linear", "none"]
 

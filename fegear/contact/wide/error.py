@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import long_line
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 from fegear.contact.wide.over_pitch import OverPitch, Stated
 from fegear.contact.wide.spots import missed_of_spots
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-    from fegear.fem.solid.flank_body import FlankBody
-    from fegear.geometry.pair import Member
+from fegear.fem.solid.flank_body import FlankBody
+from fegear.geometry.pair import Member
 
 #: By how much panels are longer.
 _LONGER = 1.5

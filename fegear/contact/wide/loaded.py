@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
+from fegear.contact.fourier import Panels
+from fegear.contact.wide.complementarity import Contact
 from fegear.contact.wide.compliance import FlankCompliance, Hertz, flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import (
@@ -28,17 +31,8 @@ from fegear.contact.wide.lines import (
 )
 from fegear.contact.wide.load_factors import averaged_along, load_below, swept_mean
 from fegear.contact.wide.spots import solve_spots
+from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.contact.fourier import Panels
-    from fegear.contact.wide.complementarity import Contact
-    from fegear.fem.solid.flank_body import FlankBody
-
 
 #: Parts of the face whose loads are distinguished: so long at most [modules], so many at least.
 _CELL, _FEWEST_CELLS = 0.5, 4

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.contact.loaded_teeth import (
     ErrorOverPitch,
     FlankLoad,
@@ -17,31 +20,24 @@ from fegear.contact.loaded_teeth import (
     RootStressInMesh,
     TransmissionErrorShift,
 )
+from fegear.contact.plane.tooth_stress import ToothStress
+from fegear.contact.surface import FrictionLaw
+from fegear.contact.tooth_loss import ToothLoss
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.error import FlankError
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.over_pitch import OverPitch, Stated
+from fegear.contact.wide.root_stress import RootedLines, StressOverFace
 from fegear.contact.wide.transmission_error import (
     FlankTransmissionError,
     flank_transmission_error_shift,
     flank_transmission_errors,
 )
+from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart
 from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.tooth_stress import ToothStress
-    from fegear.contact.surface import FrictionLaw
-    from fegear.contact.tooth_loss import ToothLoss
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.error import FlankError
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-    from fegear.contact.wide.over_pitch import OverPitch, Stated
-    from fegear.contact.wide.root_stress import RootedLines, StressOverFace
-    from fegear.fem.plane.influence import Side
 
 #: Places along the face per module, at which root stress is looked for, and how many at least.
 _PER_MODULE, _FEWEST = 4.0, 17

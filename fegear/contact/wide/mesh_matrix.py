@@ -22,18 +22,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
+from fegear.contact.fourier import Panels
 from fegear.contact.wide.complementarity import hat_averages, tangent_compliance
 from fegear.contact.wide.lines import ContactLines, base_twist
-
-if TYPE_CHECKING:
-    from fegear.contact.fourier import Panels
-    from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.geometry.pair import GearPair
+from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.geometry.pair import GearPair
 
 #: Coordinates of a gear: translations, and rotations about axes through its own in the middle of the common face.
 DIRECTIONS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")

@@ -9,17 +9,15 @@ and its largest and smallest transmission error are looked for once more where t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
+from fegear.contact.fourier import Panels
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.load_factors import swept_mean
-
-if TYPE_CHECKING:
-    from fegear.contact.fourier import Panels
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 
 #: Roll positions of which means are taken, at least.
 POSITIONS = 48

@@ -13,16 +13,13 @@ along the line of action, u the deflection under all the load, e the gap of the 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.contact.plane.pair_history import PairHistory
 from fegear.contact.wide.complementarity import averaged_gaps, deflection
-
-if TYPE_CHECKING:
-    from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.contact.wide.loaded import LoadedFlanks
 
 
 def flank_pair_history(found: LoadedFlanks, gap: Array) -> PairHistory:

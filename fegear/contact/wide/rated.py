@@ -11,24 +11,20 @@ of single pair contact stands for Y_F Y_S Y_B, and the load factors stay those o
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair
+from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.solid.influence import SolidInfluence
 from fegear.formulas.iso6336.conditions import Replacement
+from fegear.formulas.iso6336.rated import Both
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.loaded import FlankPair
-    from fegear.fem.plane.gear import GearInfluence
-    from fegear.fem.solid.influence import SolidInfluence
-    from fegear.formulas.iso6336.rated import Both
 
 
 @dataclass(frozen=True)

@@ -8,24 +8,20 @@ other.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
 from fegear.contact.wide.lines import ContactLines, base_twist
+from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import extreme
 from fegear.fem.solid.bands import Bands, loads_of
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.fem.plane.influence import Side
-    from fegear.fem.solid.fillet import SolidFillet
-    from fegear.fem.solid.solution import SolidSolution
-    from fegear.geometry.pair import GearPair, Member
+from fegear.fem.solid.fillet import SolidFillet
+from fegear.fem.solid.solution import SolidSolution
+from fegear.geometry.pair import GearPair, Member
 
 #: Teeth beside the lines in contact that are followed too, where neighbours count.
 _BESIDE = 1

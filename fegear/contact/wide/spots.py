@@ -12,16 +12,13 @@ is low by a quarter of (b/a)^2.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError
 from fegear.contact.wide.complementarity import Contact, solve_contact
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.compliance import FlankCompliance
 
 #: Steps after which contacts are taken for spots.
 _PATIENCE = 60

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
@@ -12,12 +11,10 @@ from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
 from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.wide.complementarity import secant_compliance
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.contact.wide.mesh_matrix import stiffness_of
 from fegear.contact.wide.over_pitch import every_second
-
-if TYPE_CHECKING:
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.loaded import LoadedFlanks
 
 #: Roll positions to a wave of the highest harmonic.
 _TO_A_WAVE = 2

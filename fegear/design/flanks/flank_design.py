@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.one_thread import one_thread
 from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import ContactLines
+from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.forms import FAMILIES, Family, GroundRelief, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import SEARCHED, FlankJudge, Judged, flank_judge
 from fegear.design.flanks.search import FamilyBest, best_of_family, led_on, settled
@@ -25,16 +28,9 @@ from fegear.design.flanks.topography import (
     topography,
 )
 from fegear.design.flanks.trials import FlankTrials, Scatter, Tried
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.lines import ContactLines
-    from fegear.contact.wide.loaded import FlankPair
-    from fegear.fem.solid.flank_body import FlankBody
-    from fegear.geometry.flank_modification import Topography
-    from fegear.geometry.pair import Member
+from fegear.fem.solid.flank_body import FlankBody
+from fegear.geometry.flank_modification import Topography
+from fegear.geometry.pair import Member
 
 UNRELIEVED, EXACT, ROBUST = "no relief", "exact topography", "robust"
 

@@ -8,25 +8,22 @@ it leaves is followed over that number, which gives means and percentiles withou
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.one_thread import one_thread
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines, contact_lines, roll_points
+from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.trials import NOMINAL, FlankTrials, Scatter, Tried
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from fegear.base.arrays import Array
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.loaded import FlankPair
-    from fegear.fem.solid.flank_body import FlankBody
-    from fegear.geometry.pair import Member
+from fegear.fem.solid.flank_body import FlankBody
+from fegear.geometry.pair import Member
 
 #: Roll positions that a search may look at, and those that it is judged at.
 SEARCHED, JUDGED = 48, 192

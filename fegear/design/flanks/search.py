@@ -21,19 +21,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import RangeError
 from fegear.design.flanks.forms import FAMILIES, GROUPS, Family, GroundRelief, ReliefGrid
 from fegear.design.flanks.trials import FlankTrials, QuickFlanks, Tried, quick_flanks
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
-    from fegear.design.flanks.trials import FlankTrials, Tried
-
 
 #: Extent of the first region of trust over the box and the one that ends a descent; its growth and its shrinking.
 _TRUST, _NO_TRUST, _GROWS, _SHRINKS = 0.1, 1e-7, 1.6, 0.3

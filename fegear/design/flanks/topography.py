@@ -21,23 +21,18 @@ contact lines.)
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import RangeError
 from fegear.contact.wide.complementarity import deflection
+from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.lines import ContactLines, base_twist, contact_lines
+from fegear.design.loading import LoadingFunction
 from fegear.geometry.flank_modification import Topography
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.design.loading import LoadingFunction
-    from fegear.geometry.pair import GearPair, Member
-
+from fegear.geometry.pair import GearPair, Member
 
 #: Stations from which a node of a table is interpolated.
 _NEIGHBOURS = 20

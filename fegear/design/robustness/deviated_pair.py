@@ -6,32 +6,28 @@ Loaded flanks with deviations of manufacture: compliances over the face stay, co
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Mask
 from fegear.base.errors import FegearError
 from fegear.contact.fourier import Panels, panels
 from fegear.contact.plane.compliance import RootStressInfluence, largest_stress
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import RootTable, light, root_table
 from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.plane.roll_grids import RollGrid
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.contact.wide.root_stress import RootInfluence
 from fegear.design.robustness.tolerance_draws import Deviations, HelixDeviation, ProfileDeviation
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import CombinedRelief, Relief
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array, Mask
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.roll_grids import RollGrid
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.gaps import FlankGaps
-    from fegear.contact.wide.root_stress import RootInfluence
-
 
 #: Harmonics of the transmission error that are kept.
 HARMONICS = 4

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Floats, Index
 from fegear.design.tip_relief.cutting_planes import least_in_box
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Floats, Index
-    from fegear.design.tip_relief.trials import Trials, Tried
+from fegear.design.tip_relief.trials import Trials, Tried
 
 #: What a round may leave of its own linear problem's promise, and what it must promise to go on, over the value.
 _GAP, _ENDED = 0.01, 3e-4

@@ -14,19 +14,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Floats, Index, Mask
 from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.pair_compliance import PairMatrices
+from fegear.design.charts import Bench
 from fegear.design.tip_relief.kinks import Kinks, Positions
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import roll_of_radius
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Floats, Index, Mask
-    from fegear.design.charts import Bench
 
 #: Steps of Newton's method for loads at a place, for loads and the place where pairs part, and where a curve turns.
 _STEPS, _STEPS_OF_PLACE, _STEPS_OF_TURN = 1, 3, 3

@@ -9,15 +9,13 @@ double at least: the outcome depends on the pair and its load alone, and no long
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from fegear.base.arrays import Array, Floats, Mask
 from fegear.design.tip_relief.descent import Aim, Limits
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Floats, Mask
-    from fegear.design.tip_relief.trials import Trials, Tried
+from fegear.design.tip_relief.trials import Trials, Tried
 
 #: Step of the differences, in the units of the numbers.
 _STEP = 3e-6

@@ -20,16 +20,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fegear.base.arrays import Floats, Index, Mask
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Floats
-    from fegear.contact.fourier import Panels
-
+from fegear.contact.fourier import Panels
 
 #: Neighbouring positions that are closer, over the period, stand on both sides of a change of pairs.
 _CHANGE = 1e-6

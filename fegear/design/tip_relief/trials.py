@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Floats, Index, Mask
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
+from fegear.design.charts import Bench
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
 from fegear.design.tip_relief.extremes import Bends, Between, removed
 from fegear.design.tip_relief.kinks import KinkQuadrature, Positions
 from fegear.geometry.relief import roll_of_radius
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Floats, Index, Mask
-    from fegear.design.charts import Bench
 
 _HARMONICS = 12
 

@@ -9,20 +9,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Mask
 from fegear.base.errors import InputError
+from fegear.contact.fourier import Panels
+from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.over_pitch import every_second
 from fegear.contact.wide.transmission_error import curve_through
 from fegear.dynamics.planetary.mesh_law import MeshSprings, forces, springs
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Mask
-    from fegear.contact.fourier import Panels
-    from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 #: Forces from this share of the mean one on tell where a curve has corners; below it flanks touch in spots.
 _TELLS = 0.3

@@ -8,24 +8,18 @@ of their law between two forces, to first order, and by the places of the cycle.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.dynamics.planetary.one_sided import equilibrium, guarded, spring_forces, tangent
-from fegear.dynamics.planetary.planet_set import CENTRALS
-from fegear.dynamics.planetary.set_cycle import MeshedSet
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.planetary.planet_set import Central
-    from fegear.dynamics.planetary.set_cycle import SetCycle
+from fegear.dynamics.planetary.planet_set import CENTRALS, Central
+from fegear.dynamics.planetary.set_cycle import MeshedSet, SetCycle
 
 #: Places within a piece at which the polynomial through its points is looked at for its largest value.
 _BETWEEN = np.linspace(-1.0, 1.0, 17)

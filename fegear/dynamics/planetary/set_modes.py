@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
+from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.dynamics.planetary.planet_set import CENTRALS
+from fegear.dynamics.planetary.set_model import SetModel
 from fegear.dynamics.train.modes import RIGID, same_way_up
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.planetary.set_model import SetModel
 
 #: Frequencies closer than this share of the highest are one, with several modes.
 _ONE = 1e-8

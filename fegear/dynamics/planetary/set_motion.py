@@ -6,26 +6,20 @@ Teeth are one-sided springs, each mesh delayed by its phase; all modes of the se
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shows
 from fegear.dynamics.motion.motion_model import MotionParts
-from fegear.dynamics.motion.steady_state import steady_state
-from fegear.dynamics.planetary.set_response import forced_response
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.dynamics.motion.steady_state import SteadyState
-    from fegear.dynamics.planetary.set_response import LinearSet
+from fegear.dynamics.motion.steady_state import SteadyState, steady_state
+from fegear.dynamics.planetary.set_response import LinearSet, forced_response
 
 
 @dataclass(frozen=True)

@@ -6,26 +6,19 @@ Linear, with mean mesh stiffnesses: all fluctuation of the teeth stands in their
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array, Complex
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown, shows
-from fegear.dynamics.planetary.planet_set import CENTRALS
-from fegear.dynamics.planetary.set_modes import set_modes
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.planetary.planet_set import Central
-    from fegear.dynamics.planetary.set_cycle import MeshedSet
-    from fegear.dynamics.planetary.set_modes import SetModes
+from fegear.dynamics.planetary.planet_set import CENTRALS, Central
+from fegear.dynamics.planetary.set_cycle import MeshedSet
+from fegear.dynamics.planetary.set_modes import SetModes, set_modes
 
 #: Places of the cycle at which harmonics are added up for their largest value.
 _SAMPLES = 512

@@ -12,22 +12,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Mask
 from fegear.base.errors import RangeError
+from fegear.contact.fourier import Panels
 from fegear.contact.wide.lines import life_of_contact
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.mesh_matrix import mesh_stiffness
 from fegear.contact.wide.transmission_error import curve_through
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Mask
-    from fegear.contact.fourier import Panels
-    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-    from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 #: Accuracy of the fit relative to the largest value, and length of its shortest pieces [base pitches].
 FIT, SHORTEST = 1e-7, 2e-4

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.train import Train
+from fegear.base.arrays import Array
+from fegear.dynamics.train.train import Train
 
 
 @dataclass(frozen=True, slots=True)

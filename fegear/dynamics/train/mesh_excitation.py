@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.neglected_effects import corners_bear
+from fegear.contact.plane.roll_grids import RollGrid
 from fegear.contact.plane.transmission_error import contact_changes
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fegear.base.arrays import Array
-    from fegear.contact.plane.engagement import Engagement, Loaded
-    from fegear.contact.plane.roll_grids import RollGrid
 
 #: Accuracy of the fitted stiffness, separation and transmission error relative to their largest value.
 FIT = 1e-9

@@ -10,15 +10,12 @@ from __future__ import annotations
 import heapq
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Floats
 from fegear.dynamics.train.matrices import elements
-
-if TYPE_CHECKING:
-    from fegear.dynamics.train.train import Train
+from fegear.dynamics.train.train import Train
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,18 +21,14 @@ It says which of two ways to one number kept more digits, and when longer floats
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
 from fegear.dynamics.train.matrices import elements
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.dynamics.train.network import Network
-    from fegear.dynamics.train.train import Train
-
+from fegear.dynamics.train.network import Network
+from fegear.dynamics.train.train import Train
 
 Values = NDArray[np.inexact]
 Bounds = NDArray[np.floating]

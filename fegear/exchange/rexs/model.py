@@ -5,12 +5,9 @@ Source: the public attribute and relation lists of REXS 1.0 to 1.7 (FVA, reposit
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
 
 #: Most components of a model, far more than a gearbox has.
 MOST_COMPONENTS = 5_000

@@ -7,18 +7,16 @@ import binascii
 import json
 import stat
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 from xml.parsers import expat
 
 from fegear.base.errors import InputError, shown
 from fegear.case.text_file import leads_to, read_text
 from fegear.exchange.rexs.archive import archived_text
 from fegear.exchange.rexs.model import MOST_COMPONENTS, Attribute, Component, LoadCase, Model, Relation
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
 
 KEY = "MODEL"
 #: Largest file [characters], and the deepest nesting of its elements.

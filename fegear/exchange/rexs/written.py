@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
@@ -13,9 +12,6 @@ from numpy.typing import NDArray
 
 import fegear
 from fegear.exchange.rexs.units import size_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
 
 #: A table of a run: its columns in SI by name.
 Columns = Mapping[str, NDArray[np.generic]]

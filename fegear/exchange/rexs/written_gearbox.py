@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
-from fegear.case.planetary import set_pair, set_teeth
+from fegear.case.pair import PairPart
+from fegear.case.planetary import PlanetaryPart, set_pair, set_teeth
+from fegear.case.reading import Scene
 from fegear.exchange.rexs.operation import OILS
-from fegear.exchange.rexs.written import Found, Written
+from fegear.exchange.rexs.written import Found, Part, Written
 from fegear.exchange.rexs.written_gears import left_out, write_gear
 from fegear.exchange.rexs.written_shafts import place, write_shaft, write_shaft_results
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.case.pair import PairPart
-    from fegear.case.planetary import PlanetaryPart
-    from fegear.case.reading import Scene
-    from fegear.exchange.rexs.written import Part
 
 #: Keys of tables that are written, or say how fegear computes.
 _PAIR = frozenset(

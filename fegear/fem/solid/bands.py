@@ -21,24 +21,19 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import RangeError
+from fegear.fem.plane.trace import LoadedFlank
+from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.settings import whole
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from fegear.fem.plane.trace import LoadedFlank
-    from fegear.fem.solid.face import FaceFunctions
-
 
 Profile = Literal["hat", "even"]
 

@@ -6,22 +6,18 @@ a spur gear has tau = 0, a right hand a positive one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array, Index, Mask
 from fegear.base.errors import InputError, RangeError
 from fegear.fem.plane.body import zones
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fegear.base.arrays import Array, Index, Mask
-    from fegear.fem.plane.gear_section import Section
-    from fegear.geometry.gear_body import GearBody
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.fem.plane.gear_section import Section
+from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 

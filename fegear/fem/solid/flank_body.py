@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fegear.base.arrays import Array
 from fegear.fem.plane.influence import curvature_slope
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.trace import LoadedFlank
-    from fegear.fem.solid.bands import Bands
-    from fegear.fem.solid.settings import SolidSettings
-    from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.fem.plane.trace import LoadedFlank
+from fegear.fem.solid.bands import Bands
+from fegear.fem.solid.settings import SolidSettings
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: A pressure is at least this share of the flank wide, however little room there is to its end.
 _NARROWEST = 0.02

@@ -10,19 +10,15 @@ The constants were found by tests/golden/make_slices.py from solid gears whose l
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.fem.solid.bands import function_cosines
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.base.arrays import Array
-    from fegear.fem.solid.face import FaceFunctions
+from fegear.fem.solid.face import FaceFunctions
 
 #: Cosines along the face: for each function, and at least.
 _PER_FUNCTION, _FEWEST = 6, 80

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
@@ -25,10 +24,8 @@ from fegear.formulas.iso6336.part3_root_stress import (
     stress_correction_factor,
     virtual_teeth,
 )
+from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_tooth import InvoluteTooth
-
-if TYPE_CHECKING:
-    from fegear.geometry.internal_tooth import InternalTooth
 
 #: Angle of the tangent to the tooth's centre line at the critical section [rad].
 EXTERNAL_TANGENT, INTERNAL_TANGENT = math.radians(30.0), math.radians(60.0)

@@ -6,15 +6,19 @@ Stage ``train-loss`` of the result ``gear-mesh-power-loss``: what the teeth of a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.case.built.pair_surface import PairFriction, check_speed, pair_friction, pair_speed
 from fegear.case.built.train import build_train, check_train, train_inputs, train_part
+from fegear.case.reading import Scene
 from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.surface import FrictionLaw
 from fegear.contact.tooth_loss import ToothLoss
 from fegear.engine.citation import Citation
 from fegear.engine.declared import column_of, column_over, value_of
@@ -23,18 +27,10 @@ from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.geometry.pair import GearPair
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage
 from fegear.results.train.gear_train import the_train
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from fegear.base.arrays import Array
-    from fegear.case.reading import Scene
-    from fegear.contact.surface import FrictionLaw
-    from fegear.geometry.pair import GearPair
-
 
 #: Laws by the works that they stand in.
 _WORKS = {

@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.shafts import mesh_places
+from fegear.case.reading import Scene
+from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, value_of
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import Curve
-from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
-from fegear.shafts.gearbox import CAUSES, MeshMisalignment
-
-if TYPE_CHECKING:
-    from fegear.case.reading import Scene
-    from fegear.contact.wide.on_shafts import LoadedShafts
-    from fegear.engine.outcome import Value
-    from fegear.engine.stage import Upstream, Work
-    from fegear.shafts.gearbox import MeshState
+from fegear.shafts.gearbox import CAUSES, MeshMisalignment, MeshState
 
 _WORDS = {"bearings": "of the rings in their bearings", "housing": "of the bearings' seats",
           "bending": "of the shafts that bend", "torsion": "of the shafts that twist"}  # fmt: skip

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import FegearError, InputError
 from fegear.base.shown import shown
 from fegear.case.built.pair_inputs import PairInputs, pair_inputs
@@ -21,24 +22,21 @@ from fegear.case.built.train import (
     train_inputs,
     train_part,
 )
+from fegear.case.dynamics import DesignChartPart
+from fegear.case.reading import Scene
+from fegear.contact.plane.engagement import Engagement
 from fegear.dynamics.train.dynamic_factor import FactorLine, factor_between, factor_line
+from fegear.dynamics.train.gear_train import GearTrain
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.relief import Shape
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import loaded_pair
 from fegear.results.train.design_chart_tables import chart_tables, chart_values, design_chart_figures, line_remark
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_speeds, own_meshes, the_train
 from fegear.results.train.motion import check_motion
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.dynamics import DesignChartPart
-    from fegear.case.reading import Scene
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.geometry.relief import Shape
 
 #: Harmonics of the static transmission error that the chart keeps (TM-89901, Fig. 7).
 HARMONICS = 4

@@ -10,19 +10,15 @@ One side of a comparison, from a run in memory; `fegear.output.comparison` reads
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from fegear.case.schema import flat, meaning_of
+from fegear.engine.outcome import Value
+from fegear.engine.run import Results
+from fegear.engine.table import Table
 from fegear.studies.comparison.joined import Joined, join
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fegear.engine.outcome import Value
-    from fegear.engine.run import Results
-    from fegear.engine.table import Table
-
 
 #: Columns of a table on the terminal.
 _COLUMNS = 4
