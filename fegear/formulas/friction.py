@@ -137,7 +137,7 @@ _GAUSS = 12
 _SPUR = 1e-9
 
 
-def _scale(pair: GearPair) -> float:
+def teeth_factor(pair: GearPair) -> float:
     """pi (1/z_1 + 1/z_2) / cos(beta_b), of an internal pair with the difference."""
     sum_ = abs(1.0 / pair.driver.teeth + pair.side / pair.driven.teeth)
     return math.pi * sum_ / math.cos(pair.driver.base_helix_angle)
@@ -163,7 +163,7 @@ def ohlendorf(pair: GearPair) -> float:
         raise RangeError("path of contact", "(beside the pitch point)", "is not known to Ohlendorf's H_V")
     if not 1.0 <= one + two <= 2.0:
         raise RangeError("contact ratio", f"{one + two:.4g}", "must lie between 1 and 2 for Ohlendorf's H_V")
-    return _scale(pair) * (1.0 - one - two + one * one + two * two)
+    return teeth_factor(pair) * (1.0 - one - two + one * one + two * two)
 
 
 def overlapping(pair: GearPair) -> float:
@@ -173,7 +173,7 @@ def overlapping(pair: GearPair) -> float:
     ISO/TR 15144-1, Formula 92.
     """
     one, two = contact_ratios(pair)
-    return _scale(pair) * (one * one + two * two) / (one + two)
+    return teeth_factor(pair) * (one * one + two * two) / (one + two)
 
 
 def wimmer(pair: GearPair) -> float:
@@ -198,7 +198,7 @@ def wimmer(pair: GearPair) -> float:
             continue
         middle = 0.5 * (a + b) + 0.5 * (b - a) * node
         total += 0.5 * (b - a) * float(weight @ _mean_distance(middle[:, None] + numbers, start, end, half))
-    return 2.0 * _scale(pair) * total
+    return 2.0 * teeth_factor(pair) * total
 
 
 def _mean_distance(at: Array, start: float, end: float, half: float) -> Array:

@@ -284,3 +284,23 @@ def test_relief_of_a_ring_is_drawn_where_it_is_ground():
         apart = np.hypot(x - px, y - py)
         i = int(np.argmin(apart))
         assert apart[i] == pytest.approx(float(relief.removal(t[i])), abs=2e-8)
+
+
+def test_flanks_of_a_ring_that_meshes(cache):
+    """Hertz at every place with the hollow flank's curvature, and what the standard does not say is said."""
+    oil = "{ viscosity_40 = '220 mm^2/s', temperature = '70 degC', scuffing_load_stage = 12 }"
+    scene = meshing(
+        'results=["flank-surface"]', 'gear.p.roughness={ flank = "0.4 um" }', 'gear.r.roughness={ flank = "0.4 um" }',
+        f"pair.I.lubricant={oil}", 'pair.I.speed="1500 rpm"',
+    )  # fmt: skip
+    found = run_plan(scene, make_plan(scene, STAGES), cache=cache)
+    (table,) = (one for one in found.tables if one.name == "flank_surface_I")
+    at = {column.name: column.si for column in table.columns}
+    assert np.all(at["radius_driven"] < 0.0)
+    bent = 1.0 / at["radius_driver"] + 1.0 / at["radius_driven"]
+    assert at["relative_radius"] == pytest.approx(1.0 / bent)
+    on = at["line_load"] > 0.0
+    modulus = 206.8e9 / 2.0 / (1.0 - 0.3**2)
+    hertz = np.sqrt(at["line_load"] * modulus * bent / np.pi)
+    assert at["hertz_pressure"][on] == pytest.approx(hertz[on], rel=1e-3)
+    assert any("is written for external teeth" in remark for remark in found.remarks)

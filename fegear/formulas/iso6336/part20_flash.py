@@ -1,8 +1,9 @@
 """ISO/TS 6336-20: scuffing by the flash temperature method.
 
 Source: ISO/TR 13989-1:2000, Calculation of scuffing load capacity - Part 1: Flash temperature method, from which ISO/TS
-6336-20 was made; clauses and equations are numbered as there, and known here from secondary sources. External gears,
-unmodified profiles: a relief counts in the approach factor, and in the computed load sharing besides the standard's.
+6336-20 was made; clauses and equations are numbered as there, and known here from secondary sources. External
+gears, and internal ones with signed radii of curvature; unmodified profiles: a relief counts in the approach factor,
+and in the computed load sharing besides the standard's.
 """
 
 from __future__ import annotations

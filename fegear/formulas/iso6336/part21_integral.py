@@ -1,8 +1,9 @@
 """ISO/TS 6336-21: scuffing by the integral temperature method.
 
 Source: ISO/TR 13989-2:2000, Calculation of scuffing load capacity - Part 2: Integral temperature method, from which
-ISO/TS 6336-21 was made; equations are numbered as there, and known here from secondary sources. External cylindrical
-gears, transverse contact ratio below 3 (stated for up to about 2.5).
+ISO/TS 6336-21 was made; equations are numbered as there, and known here from secondary sources. Cylindrical gears,
+transverse contact ratio below 3 (stated for up to about 2.5); gear ratio and radius of curvature of an internal gear
+are negative.
 """
 
 from __future__ import annotations
@@ -78,6 +79,21 @@ def thermal_factor(modulus: float, heat: float = STEEL_HEAT) -> float:
     return 1e3 * (modulus * 1e-6) ** 0.25 / (heat / math.sqrt(1e3))
 
 
+def geometry_factor(ratio: float, rho_1: float, rho_2: float) -> float:
+    """X_BE = 0.51 |u + 1|^0.5 (rho_E1^0.5 - (rho_E2/u)^0.5) / (rho_E1 |rho_E2|)^0.25 (Eq. 22).
+
+    Parameters
+    ----------
+    ratio : float
+        u; negative of an internal pair, as rho_E2 is.
+    rho_1, rho_2 : float
+        Radii of curvature of pinion and wheel at the pinion's tip [mm].
+    """
+    hollow = math.copysign(max(abs(rho_2), 1e-9), ratio)
+    slide = math.sqrt(rho_1) - math.sqrt(hollow / ratio)
+    return 0.51 * math.sqrt(abs(ratio + 1.0)) * slide / (rho_1 * abs(hollow)) ** 0.25
+
+
 def contact_ratio_factor(one: float, two: float) -> float:
     """X_epsilon from both addendum contact ratios (Eqs. 39 to 45).
 
@@ -115,7 +131,7 @@ def integral_temperature(rated: RatedSurface) -> IntegralTemperature:
     pair = rated.pair
     pinion_drives = pair.driver.teeth <= pair.driven.teeth
     one, two = contact_ratios(pair) if pinion_drives else contact_ratios(pair)[::-1]
-    ratio = max(pair.driver.teeth, pair.driven.teeth) / min(pair.driver.teeth, pair.driven.teeth)
+    ratio = pair.side * max(pair.driver.teeth, pair.driven.teeth) / min(pair.driver.teeth, pair.driven.teeth)
     helical = helical_load_factor(pair.total_contact_ratio)
     mu = friction(rated)
     tip = pair.x_end if pinion_drives else pair.x_start  # the end of the path at the pinion's tip
@@ -123,8 +139,7 @@ def integral_temperature(rated: RatedSurface) -> IntegralTemperature:
     rho_1, rho_2 = float(at_tip.radius_driver) * 1e3, float(at_tip.radius_driven) * 1e3
     if not pinion_drives:
         rho_1, rho_2 = rho_2, rho_1
-    rho_2 = max(rho_2, 1e-9)
-    geometry = 0.51 * math.sqrt(ratio + 1.0) * (math.sqrt(rho_1) - math.sqrt(rho_2 / ratio)) / (rho_1 * rho_2) ** 0.25
+    geometry = geometry_factor(ratio, rho_1, rho_2)
     angle, thermal = angle_factor(pair), thermal_factor(rated.modulus)
     first, second = (two, one) if pinion_drives else (one, two)
     q = first / second if second > 0.0 else math.inf

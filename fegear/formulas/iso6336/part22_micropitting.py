@@ -24,7 +24,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds
-from fegear.formulas.friction import Surface, contact_ratios, helical_load_factor, mean_friction
+from fegear.formulas.friction import Surface, contact_ratios, helical_load_factor, mean_friction, teeth_factor
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.formulas.lubricant import Oil
@@ -123,9 +123,9 @@ def narrow(pair: GearPair) -> bool:
 
 
 def loss_factor(pair: GearPair) -> float:
-    """H_v of the standard (Formulae 91 and 92)."""
+    """H_v of the standard (Formulae 91 and 92); the number of teeth of an internal gear is negative."""
     one, two = contact_ratios(pair)
-    scale = math.pi * (1.0 / pair.driver.teeth + 1.0 / pair.driven.teeth) / math.cos(pair.driver.base_helix_angle)
+    scale = teeth_factor(pair)
     whole = one + two
     return scale * (one * one + two * two + 1.0 - whole if whole < 2.0 else 0.5 * whole)
 

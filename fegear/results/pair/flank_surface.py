@@ -177,6 +177,11 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
             f"Pair {name}: the load sharing factors of ISO/TS 6336-20 and -22 are for contact ratios below 2; theirs "
             "is 1 everywhere here, and the computed load sharing says more."
         )
+    if pair.internal:
+        told.append(
+            f"Pair {name}: ISO/TS 6336-22 is written for external teeth; its film is taken here with the signed radius "
+            "of curvature of the hollow flank, and its safety against micropitting has no test behind it."
+        )
     told += _recalled(name, asked)
     if data.share_outside > 0.0:
         told.append(
@@ -190,7 +195,7 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
         )
     for member in ("driver", "driven"):
         gear = pair.gear(member)
-        reach = float(min(pair.flank_curvature_radius(np.array([pair.x_start, pair.x_end]), member)))
+        reach = float(np.abs(pair.flank_curvature_radius(np.array([pair.x_start, pair.x_end]), member)).min())
         if reach < 0.02 * gear.base_radius:
             told.append(
                 f"Pair {name}: contact comes close to the base circle of the {member} gear, where specific sliding "
@@ -235,5 +240,5 @@ FLANK_SURFACE = teeth_stage(
     check=_check,
     cites=_CITES,
     forecast=_forecast,
-    internal=False,
+    internal=True,
 )

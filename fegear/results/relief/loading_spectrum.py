@@ -162,7 +162,14 @@ def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
 
 
 def _check(scene: Scene, name: str) -> None:
-    loading_functions(_inputs(scene, name))  # refuses what no pair of teeth can carry
+    asked = _inputs(scene, name)
+    loading_functions(asked)  # refuses what no pair of teeth can carry
+    if asked.gears is not None and asked.gears.internal and asked.part.tooth_frequency is None:
+        raise InputError(
+            "loading.tooth_frequency", "(not given)",
+            "is needed with an internal pair: the beam that gives it has the foot of an external tooth",
+            'write tooth_frequency = "30 kHz", or no speed',
+        )  # fmt: skip
 
 
 def _compute(asked: LoadingInputs, _upstream: Upstream, _work: Work) -> LoadingData:
@@ -477,4 +484,5 @@ LOADING_SPECTRUM = Stage(
     check=_check,
     cites=citing(Citation("mark", "families of tooth loading functions and their spectra", "Eqs. 4.8 to 4.22")),
     forecast=_forecast,
+    internal=True,
 )
