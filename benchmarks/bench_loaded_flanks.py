@@ -55,7 +55,8 @@ def main() -> None:
             assembly = clock.lap()
             found = flanks.solve(asked.loads, gaps, known)
             rows.append((f"{name}{', neighbours' * coupling}", gear_seconds, assembly, clock.lap(), found))
-    coarse = solve_bodies(scene, asked.name, "solid", settings.coarser())
+    width = asked.pair.face_width / asked.pair.driver.module
+    coarse = solve_bodies(scene, asked.name, "solid", settings.coarser(width))
     print(f"coarser solid gears, for the error: {clock.lap():.2f} s")
     for title, load in (
         ("first", asked.nominal),

@@ -86,29 +86,40 @@ def test_unusual_gears_are_solved(tooth, degrees, width, poisson_ratio, bore):
     assert np.all((tension > 0.0) & np.isfinite(tension))
 
 
-@pytest.mark.long
-def test_random_rings_tell_their_errors():
-    """Eight draws with coarse settings: largest share .75 of contacts, 1.25 of compression, of tension 1.98 in one."""
-    drawn, found = np.random.default_rng(28), []
-    while len(found) < 8:
-        z = int(drawn.integers(30, 200))
-        teeth = int(drawn.integers(12, min(z - 12, 50)))
-        sharpened, shift = drawn.uniform(-0.1, 0.3), drawn.uniform(-0.5, 0.3)
-        nu, degrees = float(drawn.choice([0.25, 0.3, 0.3, 0.49])), float(drawn.choice([0, 8, 15, 25]))
-        rim, width = drawn.uniform(0.6, 4.0), float(drawn.uniform(2, 5))
-        rounding, high = drawn.uniform(0.1, 0.3), drawn.uniform(0.5, 0.95)
-        cutter = PinionCutter(teeth, sharpened, 1.25, tip_radius=rounding)
+def random_ring(drawn):
+    """Arguments of a solid ring gear, its shifts, cutter and rim as wild as can be cut."""
+    while True:
+        z = int(drawn.integers(25, 300))
+        teeth = int(drawn.integers(12, max(14, min(z - 10, 60))))
+        sharpened, shift = drawn.uniform(-0.2, 0.4), drawn.uniform(-0.7, 0.7)
+        nu, degrees = float(drawn.choice([0.2, 0.3, 0.3, 0.45])), float(drawn.choice([0, 0, 10, 20, 30]))
+        rim, width = math.exp(drawn.uniform(math.log(0.3), math.log(12.0))), drawn.uniform(1.5, 5.0)
+        rounding, high, addendum = drawn.uniform(0.05, 0.35), drawn.uniform(0.4, 1.0), drawn.uniform(1.1, 1.35)
         try:
+            cutter = PinionCutter(teeth, sharpened, addendum, tip_radius=rounding)
             tooth = InternalTooth(z, cutter, profile_shift=shift, tip_radius=0.5 * z - shift - high)
         except GeometryError:
             continue
-        size = tooth, math.tan(math.radians(degrees)) / (0.5 * z), width, nu, tooth.root_radius + rim
-        known = solid_influence(*size, SolidSettings().scaled(1.5))
-        true = SolidInfluence(known.fine, solve_solid(*size, SolidSettings()), {}).error
-        found.append([true[key] / SHARES[key] / known.error[key] for key in sorted(SHARES)])
-    over = np.array(found)
-    assert over.max() < 2.2
-    assert (over > 1.5).sum() <= 1
+        return tooth, math.tan(math.radians(degrees)) / (0.5 * z), width, nu, tooth.root_radius + rim
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("settings", [SolidSettings().scaled(1.5), SolidSettings()], ids=["coarse", "usual"])
+def test_random_rings_tell_their_errors(settings):
+    """Of thirty each the largest share is 1.23 (coarse) and 1.43 (usual), of root tension 1.08 and 1.43.
+
+    With one degree less along the face, root tension of five of the coarse ones was off by up to 2.7 times its error.
+    """
+    drawn = np.random.default_rng(101)
+    finer = SolidSettings()
+    if settings == finer:
+        finer = replace(solid_settings(3e-3), waves_per_module=2.4, band_half_width=0.17)
+    for _ in range(30):
+        size = random_ring(drawn)
+        known = solid_influence(*size, settings)
+        true = SolidInfluence(known.fine, solve_solid(*size, finer), {}).error
+        for key in SHARES:
+            assert true[key] / SHARES[key] <= 1.5 * known.error[key], (key, size)
 
 
 @pytest.mark.long

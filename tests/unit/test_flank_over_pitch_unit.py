@@ -48,7 +48,7 @@ def bodies():
     found = {}
     for beta in (0.0, 15.0):
         pair = pair_of(beta)
-        for settings, name in ((COARSE, "usual"), (COARSE.coarser(), "coarse")):
+        for settings, name in ((COARSE, "usual"), (COARSE.coarser(WIDTH / MODULE), "coarse")):
             found[beta, name] = {
                 member: solve_solid(
                     gear.tooth, gear.twist * MODULE, WIDTH / MODULE, 0.3, gear.bore_radius / MODULE, settings, reach=2

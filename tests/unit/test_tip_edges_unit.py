@@ -139,7 +139,8 @@ def test_errors_are_honest_against_finer_everything(beta, most_gap):
     pair = GearPair(*hands)
     base = SolidSettings().scaled(1.7)
     solids = [
-        [solid(one, settings) for one in hands] for settings in (base, base.coarser(), SolidSettings().scaled(0.9))
+        [solid(one, settings) for one in hands]
+        for settings in (base, base.coarser(15e-3 / pair.driver.module), SolidSettings().scaled(0.9))
     ]
     usual, coarse, fine = (dict(zip(("driver", "driven"), two, strict=True)) for two in solids)
     flanks = FlankPair(pair, usual, panel=0.25, positions=16, most_gap=most_gap)

@@ -291,6 +291,6 @@ def solid_influence(
         )
 
     fine = solve(settings)
-    coarse = solve(settings.coarser()) if estimate_error else None
+    coarse = solve(settings.coarser(width)) if estimate_error else None
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
     return SolidInfluence(fine, coarse, read_only(seconds))

@@ -28,6 +28,11 @@ _SECTION = MeshSettings(
 _COARSER = 1.35
 
 
+#: By how much the degree of its polynomials along the face is lower, if that leaves them cubic: degrees next to each
+#: other differ by one function, odd or even, and two such solutions are alike under loads of the other kind.
+_FEWER_DEGREES = 2
+
+
 #: How much less room its bands take beside the ends of the flank, where room alone decides how wide they are.
 _OTHER_ROOM = 0.7
 
@@ -97,10 +102,16 @@ class SolidSettings:
             band_half_width=min(self.band_half_width * math.sqrt(factor), 0.5),
         )
 
-    def coarser(self) -> SolidSettings:
-        """The set whose solution shows the error of this one's: nothing that leaves an error is the same."""
+    def coarser(self, width: float) -> SolidSettings:
+        """The set whose solution shows the error of this one's on a face [modules]: nothing that errs is the same."""
         other = SolidSettings() if self == _THIRD else self.scaled(_COARSER)
-        return replace(other, room_share=_OTHER_ROOM * self.room_share)
+        degree = max(3, min(other.degree(width), self.degree(width) - _FEWER_DEGREES))
+        return replace(
+            other,
+            room_share=_OTHER_ROOM * self.room_share,
+            least_degree=degree,
+            waves_per_module=min(other.waves_per_module, degree / width),
+        )
 
 
 #: By how much what a count is made of may be off; no count hangs on so little.
