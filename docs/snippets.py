@@ -5,7 +5,7 @@
 - a block whose first line is ``# name.ext`` is a file of that name (a case, a table, a program), and with
   ``# name.ext, continued`` the rest of it;
 - ``sh`` is run by the shell and ``python`` in one namespace for the whole page; a block that starts with
-  ``# needs PROGRAM`` is passed over where that program is not installed;
+  ``# needs NAME`` is passed over where no program and no Python package of that name is installed;
 - ``text`` is what the block before it prints. Numbers may differ in the last printed digit or by 0.4 %, error estimates
   (after ``+-``) by a factor of five; ``...`` stands for anything in a line, alone for any lines but notes: a command
   that has notes for its reader (``Note: ...``) is followed by a block with all of them, whole; their numbers may differ
@@ -24,6 +24,7 @@ notes of the run that are missing are put in; other lines that are new or gone a
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import io
 import json
 import os
@@ -79,9 +80,9 @@ class Block:
 
     @property
     def missing(self) -> bool:
-        """True if the block needs a program that is not installed."""
+        """True if the block needs a program or a package that is not installed."""
         found = _NEEDS.match(self.text.partition("\n")[0])
-        return bool(found) and shutil.which(found[1]) is None
+        return bool(found) and shutil.which(found[1]) is None and importlib.util.find_spec(found[1]) is None
 
 
 def blocks(page: Path) -> list[Block]:

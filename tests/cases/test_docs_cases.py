@@ -23,7 +23,8 @@ DOCS = ROOT / "docs"
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
     "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export", "fem",
-    "gear-with-its-width", "helical", "helical-misalignment", "load-over-the-face", "proofs", "python",
+    "gear-with-its-width", "helical", "helical-misalignment", "load-over-the-face", "mesh-as-fmu", "mesh-in-adams",
+    "mesh-in-openmodelica", "mesh-in-ross", "mesh-in-simulink", "proofs", "python",
     "python-mechanics", "several-meshes",
     "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table", "sweep-on-a-cluster",
     "sweeps", "tutorial",
