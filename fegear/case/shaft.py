@@ -70,6 +70,11 @@ class BearingPlacePart(Part):
 
     bearing: str = Field(description="Name of a bearing of the case.")
     at: LengthOrZero = Field(description="Where its force acts, from the shaft's left end.")
+    around: str | None = Field(
+        default=None,
+        description="Name of the shaft around this one in which its outer ring sits; the housing without it. Its name "
+        "stands at the inner shaft alone.",
+    )
     reversed: bool = Field(
         default=False,
         description="Whether the bearing is mounted the other way round: its contact angle and the coupling of force "

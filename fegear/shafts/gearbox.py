@@ -11,8 +11,9 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.shafts.beam import carry
+from fegear.shafts.held import Held, LoadedShaft, groups_of, held_by
 from fegear.shafts.mesh import MeshPlace, straight_slope
-from fegear.shafts.solution import Deflection, LoadedShaft, deflect, response
+from fegear.shafts.solution import Deflection, deflect, response
 
 #: Misalignment of a mesh by cause, and its gap over the face.
 MeshState = tuple["MeshMisalignment", "MeshGap"]
@@ -189,21 +190,26 @@ class Gearbox:
     def by_cause(self, bent: tuple[Deflection, ...]) -> tuple[Array, ...]:
         """Displacements of each shaft at `places` by `CAUSES`, which add up to all of it, shape (4, k, 6).
 
-        The forces being known, rings, seats and bent shaft at the bearings leave a straight line to the shaft: it is
-        that of least squares through them, exact for two bearings.
+        The forces being known, rings, seats and bent shafts at the bearings leave a straight line to each shaft: it is
+        that of least squares through them, exact for two bearings. Shafts that bearings join have theirs together.
         """
-        pressed = self.housing @ np.concatenate([one.bearing_forces.ravel() for one in bent])
-        found, first = [], 0
-        for one, z in zip(bent, self.places, strict=True):
-            seats = np.array([seat.at for seat in one.loaded.seats])
-            count = 5 * seats.size
-            seat = pressed[first : first + count].reshape(-1, 5)
+        loaded = tuple(one.loaded for one in bent)
+        held = held_by(loaded)
+        rings = np.concatenate([one.rings for one in bent])
+        sag = np.zeros_like(rings)
+        for one, on in zip(bent, held, strict=True):
+            sag[on.bearings] += on.sign[:, None] * one.bent(on.at)[:, :5]
+        pressed = (self.housing @ np.concatenate([one.bearing_forces.ravel() for one in bent])).reshape(-1, 5)
+        left = np.stack([rings, -pressed, -sag])
+        lines = np.zeros((len(bent), 3, 6))
+        for group in groups_of(loaded):
+            lines[list(group)] = _straight([loaded[n] for n in group], [held[n] for n in group], loaded, left)
+        found = []
+        for one, z, own in zip(bent, self.places, lines, strict=True):
             twisted, curved = one.bent(z), one.bent(z)
             twisted[:, :5], curved[:, 5] = 0.0, 0.0
-            lines = _straight(one, seats, np.stack([one.rings, -seat, -one.bent(seats)[:, :5]]))
-            straight = np.einsum("nba,cb->cna", carry(z), lines)
+            straight = np.einsum("nba,cb->cna", carry(z), own)
             found.append(np.stack([straight[0], straight[1], straight[2] + curved, twisted]))
-            first += count
         return tuple(found)
 
     def misalignment(self, bent: tuple[Deflection, ...], forces: tuple[Array, ...]) -> tuple[MeshState, ...]:
@@ -230,17 +236,23 @@ class Gearbox:
         return tuple(found)
 
 
-def _straight(one: Deflection, seats: Array, left: Array) -> Array:
-    """Motions of the left end nearest to displacements (c, b, 5) of the rings that are held, shape (c, 6)."""
-    held = np.any([seat.bearing.usual != 0.0 for seat in one.loaded.seats], axis=2)
-    held |= np.array([seat.bearing.rigid for seat in one.loaded.seats])
-    moved = np.swapaxes(carry(seats)[:, :5, :5], 1, 2)  # (b, 5 of the ring, 5 of the left end)
-    length = one.loaded.shaft.length
-    scale = np.array([1.0, 1.0, 1.0, length, length])
-    across = held & (np.arange(5) < 3)
-    for rows in (across, held):
-        matrix = (moved * scale[:, None] / scale)[rows]
-        if np.linalg.matrix_rank(matrix) == 5:
+def _straight(group: list[LoadedShaft], held: list[Held], shafts: tuple[LoadedShaft, ...], left: Array) -> Array:
+    """Motions of the left ends of joined shafts nearest to displacements (c, b, 5) of their rings, shape (g, c, 6)."""
+    bearings = [seat.bearing for one in shafts for seat in one.seats]
+    own = np.unique(np.concatenate([on.bearings for on in held]))
+    firm = np.array([bearings[n].rigid | np.any(bearings[n].usual != 0.0, axis=1) for n in own])
+    moved = np.zeros((len(own), 5, 5 * len(group)))  # (b, 5 of the ring, 5 of each left end)
+    scale = np.ones((len(own), 5))
+    for n, (one, on) in enumerate(zip(group, held, strict=True)):
+        rows = np.searchsorted(own, on.bearings)
+        columns = slice(5 * n, 5 * n + 5)
+        moved[rows, :, columns] = on.sign[:, None, None] * np.swapaxes(carry(on.at)[:, :5, :5], 1, 2)
+        scale[rows[on.sign > 0.0], 3:] = one.shaft.length
+    turns = np.concatenate([[1.0, 1.0, 1.0, one.shaft.length, one.shaft.length] for one in group])
+    across = firm & (np.arange(5) < 3)
+    for kept in (across, firm):
+        matrix = (moved * scale[..., None] / turns)[kept]
+        if np.linalg.matrix_rank(matrix) == turns.size:
             break
-    motion = np.linalg.lstsq(matrix, (left * scale)[:, rows].T, rcond=None)[0].T / scale
-    return np.pad(motion, ((0, 0), (0, 1)))
+    motion = np.linalg.lstsq(matrix, (left[:, own] * scale)[:, kept].T, rcond=None)[0].T / turns
+    return np.pad(np.swapaxes(motion.reshape(-1, len(group), 5), 0, 1), ((0, 0), (0, 0), (0, 1)))

@@ -9,11 +9,14 @@ Nothing is divided by a compliance: rigid shafts (A = 0), rigid seats (H = 0) an
 Newton's method; where it fails, a stiffness added to every bearing at first, and taken away step by step, brings loose
 shafts into contact; 1e-10 of it stays where a shaft floats in its clearance. Turning about the axis is free: torques
 must balance, and twist is measured from the left end.
+
+The outer ring of a bearing may turn with another shaft, around the inner one: -p acts there, and u is what the inner
+shaft moves more than the outer one. A, R, u_0 and the outer forces are then sums over both.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -23,12 +26,12 @@ from fegear.base.arrays import distinct
 from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.shown import shown
 from fegear.shafts.beam import carry
+from fegear.shafts.held import LoadedShaft, held_by, refuse_loose, refuse_torque
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
-    from fegear.shafts.beam import Shaft
     from fegear.shafts.bearing import Bearing
     from fegear.shafts.life import LifeRating
 
@@ -41,83 +44,8 @@ _ITERATIONS, _HALVINGS = 60, 40
 _DONE = 1e-12
 #: Of sums of displacements, a few times that of the machine.
 _ROUND_OFF = 2e-15
-#: Torques about an axis that balance to so much of the largest are round-off.
-_BALANCED = 1e-9
 #: Places along a shaft at which its line is known besides its bearings, steps and forces.
 _PLACES = 101
-#: Smallest over largest stiffness of a shaft on its bearings below which it is loose.
-_LOOSE = 1e-12
-
-
-@dataclass(frozen=True)
-class Seat:
-    """A bearing on a shaft.
-
-    Parameters
-    ----------
-    bearing : Bearing
-    at : float
-        From the shaft's left end [m].
-    name : str
-        For messages.
-    """
-
-    bearing: Bearing
-    at: float
-    name: str = "bearing"
-
-
-@dataclass(frozen=True)
-class LoadedShaft:
-    """A shaft, its bearings and the forces from outside.
-
-    Parameters
-    ----------
-    shaft : Shaft
-    seats : tuple of Seat
-    loads_at : ndarray, shape (m,)
-        From its left end [m].
-    loads : ndarray, shape (m, 6)
-        Forces and moments F_x, F_y, F_z, M_x, M_y, M_z at the axis [N, N m].
-    name : str
-
-    Raises
-    ------
-    InputError
-        If a bearing or force is off the shaft, it has no bearings, or is loose.
-    """
-
-    shaft: Shaft
-    seats: tuple[Seat, ...]
-    loads_at: Array
-    loads: Array
-    name: str = "shaft"
-
-    def __post_init__(self) -> None:
-        """Refuse shafts that are not held."""
-        for seat in self.seats:
-            self.shaft.place(seat.at, f"{self.name}.{seat.name}.at")
-        for at in self.loads_at:
-            self.shaft.place(float(at), f"{self.name}.load.at")
-        if not self.seats:
-            raise InputError(f"{self.name}.bearings", "(none)", "leave the shaft without support", "give two bearings")
-        length = self.shaft.length
-        scale = np.array([1.0, 1.0, 1.0, 1.0 / length, 1.0 / length])
-        held = np.zeros((5, 5))
-        for seat in self.seats:
-            moved = carry(seat.at)[:5, :5].T
-            soft = np.abs(np.diag(seat.bearing.usual))
-            firm = np.diag(np.where(seat.bearing.rigid, max(1e9, float(soft[:3].max())) / scale**2 * 1e3, 0.0))
-            held += moved.T @ (seat.bearing.usual + firm) @ moved
-        stiff = held * np.outer(scale, scale)
-        values, motions = np.linalg.eigh(stiff)
-        if not values[0] > _LOOSE * values[-1]:
-            ways = ("across along x", "across along y", "along its axis", "in tilt about x", "in tilt about y")
-            loose = ways[int(np.argmax(np.abs(motions[:, 0])))]
-            raise InputError(
-                f"{self.name}.bearings", f"{len(self.seats)} in number", f"leave the shaft loose {loose}",
-                "give a bearing that holds it there",
-            )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -162,6 +90,8 @@ class Deflection:
         Motion of the left end.
     floating : float
         Share of the bearings' usual stiffness that holds shafts which nothing else does; zero where none floats.
+    inside_at, inside : ndarray, shapes (c,), (c, 6)
+        Forces of bearings whose outer rings sit in it.
     """
 
     loaded: LoadedShaft
@@ -169,12 +99,17 @@ class Deflection:
     rings: Array
     left_end: Array
     floating: float = 0.0
+    inside_at: Array = field(default_factory=lambda: np.empty(0))
+    inside: Array = field(default_factory=lambda: np.empty((0, 6)))
 
     @cached_property
     def _all(self) -> tuple[Array, Array]:
         places = np.array([seat.at for seat in self.loaded.seats])
         forces = np.column_stack([self.bearing_forces, np.zeros(len(places))])
-        return np.concatenate([places, self.loaded.loads_at]), np.vstack([forces, self.loaded.loads])
+        return (
+            np.concatenate([places, self.inside_at, self.loaded.loads_at]),
+            np.vstack([forces, self.inside, self.loaded.loads]),
+        )
 
     def at(self, z: ArrayLike) -> Array:
         """Displacement and turns at places, shape (n, 6) [m, rad]."""
@@ -260,41 +195,23 @@ class _System:
         return residual, derivative, by_rings
 
 
-def refuse_torque(shafts: tuple[LoadedShaft, ...]) -> None:
-    """Refuse torques about an axis that nothing takes.
-
-    Raises
-    ------
-    InputError
-    """
-    for one in shafts:
-        torque = one.loads[:, 5]
-        if abs(torque.sum()) > _BALANCED * max(float(np.abs(torque).max(initial=0.0)), 1e-12):
-            raise InputError(
-                one.name, f"{torque.sum():.6g} N m", "is a torque about its axis that nothing takes",
-                "give a coupling that takes it",
-            )  # fmt: skip
-
-
 def _system(shafts: tuple[LoadedShaft, ...], housing: Array | None) -> _System:
-    counts = [len(one.seats) for one in shafts]
-    total = sum(counts)
+    total = sum(len(one.seats) for one in shafts)
     compliance = np.zeros((5 * total, 5 * total)) if housing is None else np.array(housing, dtype=float)
     if compliance.shape != (5 * total, 5 * total):
         raise InputError("housing", f"{compliance.shape}", f"must have 5 rows for each of {total} bearings")
     motion, free, outer = np.zeros((5 * total, 5 * len(shafts))), np.zeros(5 * total), np.zeros(5 * len(shafts))
-    scale, first = [], 0
-    for n, one in enumerate(shafts):
-        at = np.array([seat.at for seat in one.seats])
-        rows, columns = slice(5 * first, 5 * (first + len(at))), slice(5 * n, 5 * n + 5)
-        own = one.shaft.compliance(at)[:, :5, :, :5].reshape(5 * len(at), -1)
-        compliance[rows, rows] += own
-        motion[rows, columns] = np.swapaxes(carry(at)[:, :5, :5], 1, 2).reshape(-1, 5)
-        free[rows] = one.shaft.bent(at, one.loads_at, one.loads)[:, :5].ravel()
+    scale = np.ones(5 * total)
+    for n, (one, held) in enumerate(zip(shafts, held_by(shafts), strict=True)):
+        rows, columns, sign = held.rows, slice(5 * n, 5 * n + 5), np.repeat(held.sign, 5)
+        own = one.shaft.compliance(held.at)[:, :5, :, :5].reshape(rows.size, -1)
+        compliance[np.ix_(rows, rows)] += sign[:, None] * own * sign
+        motion[rows, columns] = sign[:, None] * np.swapaxes(carry(held.at)[:, :5, :5], 1, 2).reshape(-1, 5)
+        free[rows] += sign * one.shaft.bent(held.at, one.loads_at, one.loads)[:, :5].ravel()
         outer[columns] = np.einsum("nab,nb->a", carry(one.loads_at), one.loads)[:5]
-        scale += [np.array([1.0, 1.0, 1.0, one.shaft.length, one.shaft.length])] * len(at)
-        first += len(at)
-    return _System(shafts, compliance, motion, free, outer, np.concatenate(scale))
+        turns = rows.reshape(-1, 5)[held.sign > 0.0, 3:]
+        scale[turns] = one.shaft.length
+    return _System(shafts, compliance, motion, free, outer, scale)
 
 
 def _solved(matrix: Array, right: Array) -> Array:
@@ -356,11 +273,12 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
     Raises
     ------
     InputError
-        If the torques of a shaft do not balance.
+        If the torques of a shaft do not balance, or one is loose.
     ConvergenceError
         If no equilibrium is found.
     """
     refuse_torque(shafts)
+    refuse_loose(shafts)
     system = _system(shafts, housing)
     p, q = np.zeros(system.free.size), np.zeros(5 * len(shafts))
     helped = 0.0
@@ -378,11 +296,14 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
         names = ", ".join(one.name for one in shafts)
         raise ConvergenceError(f"The bearings of {names} find no equilibrium: reduce clearance or loads.")
     found, first = [], 0
-    u = system.moved(p, q)
-    for n, one in enumerate(shafts):
-        last = first + 5 * len(one.seats)
+    u, forces = system.moved(p, q), p.reshape(-1, 5)
+    for n, (one, held) in enumerate(zip(shafts, held_by(shafts), strict=True)):
+        last, inside = first + len(one.seats), held.sign < 0.0
         left = np.append(q[5 * n : 5 * n + 5], 0.0)
-        found.append(Deflection(one, p[first:last].reshape(-1, 5), u[first:last].reshape(-1, 5), left, helped))
+        found.append(Deflection(
+            one, forces[first:last], u.reshape(-1, 5)[first:last], left, helped, held.at[inside],
+            np.pad(-forces[held.bearings[inside]], ((0, 0), (0, 1))),
+        ))  # fmt: skip
         first = last
     return tuple(found)
 
@@ -415,18 +336,18 @@ def response(found: tuple[Deflection, ...], at: tuple[Array, ...], housing: Arra
     _, derivative, by_rings = system.equations(p, q, found[0].floating)
     total, size = 6 * sum(z.size for z in at), p.size
     right, own, across = np.zeros((size + q.size, total)), np.zeros((total, total)), np.zeros((total, size + q.size))
-    rings, places = 0, 0
-    for n, (one, z) in enumerate(zip(found, at, strict=True)):
-        seats = np.array([seat.at for seat in one.loaded.seats])
-        b, these, held = seats.size, slice(places, places + 6 * z.size), slice(rings, rings + 5 * seats.size)
-        bent = one.loaded.shaft.compliance(np.concatenate([seats, z]))
+    places = 0
+    for n, (one, z, held) in enumerate(zip(found, at, held_by(system.shafts), strict=True)):
+        b, sign, rows = held.at.size, np.repeat(held.sign, 5), held.rows
+        these, motion = slice(places, places + 6 * z.size), slice(size + 5 * n, size + 5 * n + 5)
+        bent = one.loaded.shaft.compliance(np.concatenate([held.at, z]))
         own[these, these] = bent[b:, :, b:].reshape(6 * z.size, 6 * z.size)
-        across[these, held] = bent[b:, :, :b, :5].reshape(6 * z.size, 5 * b)
+        across[these, rows] = sign * bent[b:, :, :b, :5].reshape(6 * z.size, 5 * b)
         moved = carry(z)[:, :5]
-        across[these, size + 5 * n : size + 5 * n + 5] = np.swapaxes(moved, 1, 2).reshape(6 * z.size, 5)
-        right[held, these] = bent[:b, :5, b:].reshape(5 * b, 6 * z.size)
-        right[size + 5 * n : size + 5 * n + 5, these] = np.swapaxes(moved, 0, 1).reshape(5, 6 * z.size)
-        rings, places = held.stop, these.stop
+        across[these, motion] = np.swapaxes(moved, 1, 2).reshape(6 * z.size, 5)
+        right[rows, these] = sign[:, None] * bent[:b, :5, b:].reshape(5 * b, 6 * z.size)
+        right[motion, these] = np.swapaxes(moved, 0, 1).reshape(5, 6 * z.size)
+        places = these.stop
     right[:size] = by_rings @ right[:size]
     try:
         return np.asarray(own - across @ _solved(derivative, right))

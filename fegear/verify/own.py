@@ -411,7 +411,8 @@ def _shaft(*sections: tuple[float, ...]) -> Shaft:
 
 
 def _deflected(shaft: Shaft, seats: tuple[tuple[Bearing, float], ...], at: float, *load: float) -> Deflection:
-    from fegear.shafts.solution import LoadedShaft, Seat, deflect
+    from fegear.shafts.held import LoadedShaft, Seat
+    from fegear.shafts.solution import deflect
 
     held = tuple(Seat(bearing, z) for bearing, z in seats)
     return deflect((LoadedShaft(shaft, held, np.array([at]), np.array([load], dtype=float), "shaft"),))[0]
@@ -467,7 +468,8 @@ def cones() -> Iterator[Compared]:
 @ROWS.add("tension and twist of shafts", "own", "rods in closed form")
 def tension_and_twist() -> Iterator[Compared]:
     """Free end of a hollow shaft."""
-    from fegear.shafts.solution import LoadedShaft, Seat, deflect
+    from fegear.shafts.held import LoadedShaft, Seat
+    from fegear.shafts.solution import deflect
 
     loads = np.array([[0, 0, 700.0, 0, 0, -50.0], [0, 0, 0, 0, 0, 50.0]])
     held = (Seat(_held()[2], 0.0),)

@@ -99,6 +99,51 @@ def test_tilt_falls_with_stiffness_in_order_one():
     assert tilts[1] == pytest.approx(tilts[0] / 10.0, rel=1e-9, abs=1e-18)
 
 
+def _idler(pin_bearings, idler_bearings=()):
+    """The middle shaft as a sleeve round a pin that stands in the housing."""
+    case = copy.deepcopy(CASE)
+    case["shaft"]["mid"] |= {"sections": [{"length": "120 mm", "outer": "40 mm", "inner": "26 mm"}]}
+    case["shaft"]["mid"]["bearings"] = list(idler_bearings)
+    case["shaft"]["pin"] = {
+        "axis": ["108.75 mm", "0 mm"], "start": "-20 mm", "sections": [{"length": "160 mm", "outer": "18 mm"}],
+        "bearings": [{"bearing": "plain", "at": "5 mm"}, {"bearing": "fixed", "at": "155 mm"}, *pin_bearings],
+    }  # fmt: skip
+    case["bearing"]["stout"] = {"radial": "1e9 N/um", "axial": "1e9 N/um"}
+    return case
+
+
+def test_an_idler_on_a_pin_brings_its_forces_to_the_housing():
+    on_pin = [{"bearing": "stout", "at": f"{at} mm", "around": "mid"} for at in (30, 130)]
+    box = gearbox_of(build_scene(_idler(on_pin), "box", Path()))
+    bent = dict(zip(box.names, box.under(box.even), strict=True))
+    assert max(one.balance.max() for one in bent.values()) < 1e-9
+    # What the sleeve gets from its meshes the pin brings to the housing.
+    of_meshes = bent["mid"].loaded.loads[:, :3].sum(axis=0)
+    assert bent["pin"].bearing_forces[:2, :3].sum(axis=0) == pytest.approx(-of_meshes, rel=1e-9, abs=1e-6)
+    # The pin sits in the stiff bearings of the sleeve: both move alike there.
+    apart = bent["mid"].at([0.01, 0.11]) - bent["pin"].at([0.03, 0.13])
+    assert np.abs(apart[:, :2]).max() < 1e-4 * np.abs(bent["pin"].at([0.03, 0.13])[:, :2]).max()
+    every = box.by_cause(tuple(bent.values()))
+    for (name, one), causes, places in zip(bent.items(), every, box.places, strict=True):
+        whole, found = one.at(places), causes.sum(axis=0)
+        assert found == pytest.approx(whole, rel=1e-7, abs=1e-7 * np.abs(whole).max(initial=0.0)), name
+
+
+@pytest.mark.parametrize(
+    ("around", "word"),
+    [("md", 'nearest known name is "mid"'), ("out", "has its axis 130 mm from that of pin"), ("pin", "no other shaft")],
+)
+def test_bearings_in_shafts_that_are_not_around_are_refused(around, word):
+    with pytest.raises(InputError, match=word):
+        gearbox_of(build_scene(_idler([{"bearing": "stout", "at": "30 mm", "around": around}]), "box", Path()))
+
+
+def test_a_sleeve_on_one_ball_joint_is_loose():
+    on_pin = [{"bearing": "stout", "at": "30 mm", "around": "mid"}]
+    with pytest.raises(InputError, match="loose in tilt"):
+        gearbox_of(build_scene(_idler(on_pin), "box", Path()))
+
+
 @pytest.mark.parametrize(
     ("keys", "word"),
     [

@@ -14,8 +14,8 @@ from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gear_on_shaft import GearOnShaft
 from fegear.shafts.gearbox import Gearbox
+from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
-from fegear.shafts.solution import LoadedShaft, Seat
 
 BORE, ROOT, E, NU = 0.02, 0.03, 206e9, 0.3
 

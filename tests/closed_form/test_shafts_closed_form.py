@@ -10,7 +10,8 @@ import pytest
 from fegear.base.errors import FegearError, InputError
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import LooseBearing, StiffBearing, stiff
-from fegear.shafts.solution import LoadedShaft, Seat, deflect
+from fegear.shafts.held import Around, LoadedShaft, Seat
+from fegear.shafts.solution import deflect
 
 E, NU, INF = 206e9, 0.3, math.inf
 PIN, ROLLER = stiff(INF, INF), stiff(INF)
@@ -160,3 +161,45 @@ def test_shafts_without_sections_or_wall_are_refused():
         Shaft(())
     with pytest.raises(FegearError, match="no wall"):
         Section(0.1, 0.05, 0.05)
+
+
+def _sag(length, a, z, force, d, h):
+    """Of a force at `a` on a shaft between rigid bearings at its ends, at z."""
+    a, z = (a, z) if z <= a else (length - a, length - z)
+    b = length - a
+    bent = force * b * z * (length**2 - b**2 - z**2) / (6.0 * _bending(d, h) * length)
+    return bent + force * b * z / length / _shear(d, h)
+
+
+def test_a_shaft_on_bearings_within_another_one():
+    """A shaft whose bearings both sit in a hollow one, and a sleeve that turns on a pin."""
+    at, low, high, force, k = 0.25, 0.1, 0.3, 4e3, 2e8
+    outer, inner = _shaft((0.4, 0.08, 0.05)), _shaft((0.4, 0.03))
+    held, none = (Seat(PIN, 0.0), Seat(ROLLER, 0.4)), (np.empty(0), np.empty((0, 6)))
+    loads = np.array([at]), np.array([[force, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    within = tuple(Seat(stiff(k, along), z, around=Around(0, z)) for z, along in ((low, INF), (high, 0.0)))
+    first, second = deflect((LoadedShaft(outer, held, *none), LoadedShaft(inner, within, *loads)))
+    share = force * (high - at) / (high - low), force * (at - low) / (high - low)
+    assert -second.bearing_forces[:, 0] == pytest.approx(share, rel=1e-11)
+    for z, one in zip((low, high), share, strict=True):
+        expected = sum(_sag(0.4, a, z, f, 0.08, 0.05) for a, f in zip((low, high), share, strict=True))
+        assert first.at(z)[0, 0] == pytest.approx(expected, rel=1e-11)
+        assert second.at(z)[0, 0] == pytest.approx(expected + one / k, rel=1e-11)
+    assert max(first.balance.max(), second.balance.max()) < 1e-12
+    assert first.bearing_forces[:, 0].sum() == pytest.approx(-force, rel=1e-12)
+    # The same two turned inside out: the sleeve carries the force and has no bearing of its own.
+    on_pin = tuple(Seat(stiff(k, along), z, around=Around(1, z)) for z, along in ((low, INF), (high, 0.0)))
+    pin, sleeve = deflect((LoadedShaft(inner, (*held, *on_pin), *none), LoadedShaft(outer, (), *loads)))
+    assert pin.bearing_forces[2:, 0] == pytest.approx(share, rel=1e-11)
+    for z, one in zip((low, high), share, strict=True):
+        expected = sum(_sag(0.4, a, z, f, 0.03, 0.0) for a, f in zip((low, high), share, strict=True))
+        assert sleeve.at(z)[0, 0] == pytest.approx(expected + one / k, rel=1e-11)
+    assert max(pin.balance.max(), sleeve.balance.max()) < 1e-12
+
+
+def test_shafts_that_hold_each_other_alone_are_refused():
+    seats = Seat(PIN, 0.0, around=Around(1, 0.0)), Seat(ROLLER, 0.2, around=Around(1, 0.2))
+    one = LoadedShaft(_shaft((0.2, 0.02)), seats, np.empty(0), np.empty((0, 6)), "one")
+    other = LoadedShaft(_shaft((0.2, 0.06, 0.04)), (), np.empty(0), np.empty((0, 6)), "other")
+    with pytest.raises(InputError, match="leave the shaft loose"):
+        deflect((one, other))

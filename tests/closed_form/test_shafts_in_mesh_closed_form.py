@@ -16,8 +16,8 @@ from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gearbox import CAUSES, Gearbox
+from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
-from fegear.shafts.solution import LoadedShaft, Seat
 
 E_Z = np.array([0.0, 0.0, 1.0])
 OTHER = {"right": "left", "left": "right", "spur": "spur"}

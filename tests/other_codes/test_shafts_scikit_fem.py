@@ -15,7 +15,8 @@ from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import stiff
-from fegear.shafts.solution import LoadedShaft, Seat, deflect
+from fegear.shafts.held import LoadedShaft, Seat
+from fegear.shafts.solution import deflect
 
 E, NU, STEP, DEGREE = 206e9, 0.3, 5e-3, 4
 

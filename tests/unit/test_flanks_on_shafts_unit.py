@@ -19,8 +19,8 @@ from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import LooseBearing, stiff
 from fegear.shafts.gearbox import Gearbox
+from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
-from fegear.shafts.solution import LoadedShaft, Seat
 
 MODULE, WIDTH, LOAD = 3e-3, 12e-3, 4000.0
 INF = math.inf

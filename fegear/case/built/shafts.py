@@ -15,6 +15,7 @@ from fegear.case.reading import Scene
 if TYPE_CHECKING:
     from fegear.case.built.gears_on_shafts import StiffenedShaft
     from fegear.shafts.gearbox import Gearbox
+    from fegear.shafts.held import Around
     from fegear.shafts.mesh import MeshPlace
 
 #: By so much the distance of two axes may differ from a pair's centre distance [m].
@@ -179,7 +180,7 @@ def gearbox_of(scene: Scene) -> Gearbox:
         If a name is unknown, a shaft is not held, or something is off it.
     """
     from fegear.shafts.gearbox import Gearbox
-    from fegear.shafts.solution import LoadedShaft, Seat, refuse_torque
+    from fegear.shafts.held import LoadedShaft, Seat, refuse_loose, refuse_torque
 
     _refuse_many(scene)
     meshes = mesh_places(scene)
@@ -195,9 +196,11 @@ def gearbox_of(scene: Scene) -> Gearbox:
                 raise InputError(key, f'"{place.bearing}"', "is no bearing of this case", nearest(place.bearing, known))
             data = known[place.bearing]
             try:
-                seats.append(Seat(data.build(mirrored=place.reversed), place.at, f"bearings.{n}"))
+                made = data.build(mirrored=place.reversed)
             except InputError as error:
                 raise at(f"bearing.{place.bearing}", error, _ELEMENTS) from None
+            around = None if place.around is None else _around(scene, name, n, bodies)
+            seats.append(Seat(made, place.at, f"bearings.{n}", around))
             across, along = (1.0 / k if k else 0.0 for k in (data.housing_radial, data.housing_axial))
             seat_compliance += [across, across, along, 0.0, 0.0]
         places = np.array([one.at for one in part.loads])
@@ -212,4 +215,30 @@ def gearbox_of(scene: Scene) -> Gearbox:
         tuple(scene.case.shaft),
     )  # fmt: skip
     refuse_torque(box.loaded(box.even))
+    refuse_loose(box.shafts)
     return box
+
+
+def _around(scene: Scene, shaft: str, number: int, bodies: list[StiffenedShaft]) -> Around:
+    """Where a bearing of a shaft sits in the shaft around it.
+
+    Raises
+    ------
+    InputError
+        If there is no such shaft, on another axis or not as long.
+    """
+    from fegear.shafts.held import Around
+
+    parts = scene.case.shaft
+    own, place = parts[shaft], parts[shaft].bearings[number]
+    key, name = f"shaft.{shaft}.bearings.{number}.around", str(place.around)
+    if name not in parts or name == shaft:
+        known = [one for one in parts if one != shaft]
+        raise InputError(key, f'"{name}"', "is no other shaft of this case", nearest(name, known))
+    if (apart := float(np.hypot(*np.subtract(parts[name].axis, own.axis)))) > _APART:
+        raise InputError(
+            key, f'"{name}"', f"has its axis {apart * 1e3:.6g} mm from that of {shaft}",
+            "name a shaft on the same axis, or none for the housing",
+        )  # fmt: skip
+    order = list(parts).index(name)
+    return Around(order, bodies[order].shaft.place(own.start + place.at - parts[name].start, key))
