@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.base.shown import shown
+from fegear.base.shown import shown, shows
 from fegear.contact.fourier import Panels, effective_error, fourier_series, panels
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.load_sharing import share_load
@@ -62,6 +62,18 @@ class ReliefChart:
         "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}"
     )
     peak_to_peak: Array = shown("um", "peak to peak", name="te_peak_to_peak")
+
+    @property
+    @shows("", "length with the least A_e")
+    def length_effective(self) -> Array:
+        """For each amount and load, shape (A, L)."""
+        return self.optimum_lengths("effective_error")
+
+    @property
+    @shows("", "length with the least peak to peak")
+    def length_peak_to_peak(self) -> Array:
+        """For each amount and load, shape (A, L)."""
+        return self.optimum_lengths("peak_to_peak")
 
     def optimum_lengths(self, metric: Metric = "effective_error") -> Array:
         """Length with the least excitation for each amount and load, shape (A, L); parabola through the lowest three.

@@ -68,6 +68,31 @@ def column_over(objects: Sequence[Any], attribute: str, *, name: str = "", meani
                      meaning=meaning)  # fmt: skip
 
 
+def columns_on_grid(found: object, axes: Sequence[str], *cells: str, table: str = "") -> tuple[Column, ...]:
+    """Columns of what was computed on a grid over keys or inputs, a row for each point, the last axis fastest.
+
+    Parameters
+    ----------
+    found : object
+        Of a class that declares its axes, of shape (A,), (B,), ..., and its cells, of shape (A, B, ...).
+    axes : sequence of str
+    *cells : str
+    table : str
+        Whose declared columns are cells, too.
+    """
+    points = np.meshgrid(*(getattr(found, axis) for axis in axes), indexing="ij")
+    named = (*cells, *(columns_declared(_class(found), table) if table else ()))
+    return (
+        *(column_of(found, axis, point.ravel()) for axis, point in zip(axes, points, strict=True)),
+        *(column_of(found, cell, np.ravel(getattr(found, cell))) for cell in named),
+    )
+
+
+def stacked(parts: Sequence[Sequence[Column]]) -> tuple[Column, ...]:
+    """Rows of several tables with the same columns, at least one, below each other."""
+    return tuple(replace(same[0], si=np.concatenate([one.si for one in same])) for same in zip(*parts, strict=True))
+
+
 def tiled(columns: Iterable[Column], times: int) -> tuple[Column, ...]:
     """All rows of some columns, so many times one after the other."""
     return tuple(replace(column, si=np.tile(column.si, times)) for column in columns)

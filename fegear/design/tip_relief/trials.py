@@ -12,7 +12,8 @@ from fegear.base.arrays import Floats, Index, Mask
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.design.charts import Bench
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
-from fegear.design.tip_relief.extremes import Bends, Between, removed
+from fegear.design.tip_relief.between_positions import Bends
+from fegear.design.tip_relief.extremes import Between, removed
 from fegear.design.tip_relief.kinks import KinkQuadrature, Positions
 from fegear.geometry.relief import roll_of_radius
 

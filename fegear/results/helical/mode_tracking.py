@@ -6,13 +6,14 @@ Figures of modes followed over a parameter, and of the response at values of it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.case.built.helical_pair import HelicalPairInputs, helical_pair_inputs, model_at, own_value
 from fegear.case.part import at
 from fegear.case.reading import Scene
@@ -22,6 +23,7 @@ from fegear.dynamics.helical_pair.mode_following import FollowedModes, Meeting
 from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, columns_of, repeated, stacked
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Outcome
@@ -34,28 +36,22 @@ Model = HelicalPairModel | ReducedPairModel
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Response at one value of the parameter, at points that show every peak and zero.
-
-    Parameters
-    ----------
-    value : float
-        [SI].
-    ratio : ndarray, shape (p,)
-        Lambda.
-    dynamic : ndarray, shape (p,)
-        Size of G - a_M for theta_z by y, over K_M.
-    line_of_action, torsion : ndarray, shape (p,)
-        Size of the mesh force transmissibility along y and about z.
-    undamped : ndarray
-        Lambda of poles.
-    """
+    """Response at one value of the parameter [SI], at p points that show every peak and zero, and Lambda of poles."""
 
     value: float
-    ratio: Array
-    dynamic: Array
-    line_of_action: Array
-    torsion: Array
     undamped: Array
+    ratio: Array = shown("", "frequency over sqrt(K_M/m_eq)", name="Lambda", table="response")
+    dynamic: Array = shown(
+        "", "G - a_M over K_M, amplitude", name="G_minus_a_theta_z_y_abs", label="|G − a_{M}|_{θz,y} / K_{M}",
+        table="response",
+    )  # fmt: skip
+    line_of_action: Array = shown(
+        "", "mesh force transmissibility, amplitude", name="R_y_y_abs", label="|R_{y,y}|", table="response"
+    )
+    torsion: Array = shown(
+        "", "mesh force transmissibility, amplitude", name="R_theta_z_theta_z_abs", label="|R_{θz,θz}|",
+        table="response",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +77,6 @@ class FollowedData:
 
 
 @dataclass(frozen=True, slots=True)
-class FollowedInputs:
-    """The pair as the case describes it."""
-
-    pair: HelicalPairInputs
-    name: str = field(compare=False)
-
-
-@dataclass(frozen=True, slots=True)
 class FollowedPair:
     """The pair with its mesh."""
 
@@ -97,8 +85,8 @@ class FollowedPair:
     name: str
 
 
-def _compute(inputs: FollowedInputs, upstream: Upstream, work: Work) -> tuple[FollowedData, ...]:
-    asked = FollowedPair(inputs.pair.part, own_mesh(inputs.pair, upstream)[0], inputs.name)
+def _compute(inputs: HelicalPairInputs, upstream: Upstream, work: Work) -> tuple[FollowedData, ...]:
+    asked = FollowedPair(inputs.part, own_mesh(inputs, upstream)[0], inputs.name)
     follow = asked.part.follow
     ranges = follow.ranges if follow else {}
     found = []
@@ -139,10 +127,10 @@ def _response(asked: FollowedPair, model: Model, value: float) -> Response:
     found, undamped = resolved_response(model, asked.part.lambda_from, asked.part.lambda_to)
     R = np.abs(next(iter(mesh_forces(found).values())))
     dynamic = np.abs(found.G_minus_a[:, 4, 0]) / model.mesh.stiffness
-    return Response(value, found.ratio, dynamic, R[:, 0, 0], R[:, 4, 4], undamped)
+    return Response(value, undamped, found.ratio, dynamic, R[:, 0, 0], R[:, 4, 4])
 
 
-def _present(data: tuple[FollowedData, ...], asked: FollowedInputs) -> Outcome:
+def _present(data: tuple[FollowedData, ...], asked: HelicalPairInputs) -> Outcome:
     tables, figures, remarks = [], [], []
     for one in data:
         tables.append(_table(asked.name, one))
@@ -152,7 +140,7 @@ def _present(data: tuple[FollowedData, ...], asked: FollowedInputs) -> Outcome:
             tables.append(_response_table(asked.name, one))
             figures.append(response_figure(asked.name, one))
     least = min((one.modes.likeness for one in data), default=1.0)
-    settings: dict[str, object] = {"least_likeness": least, "damping_ratio": asked.pair.part.damping_ratio}
+    settings: dict[str, object] = {"least_likeness": least, "damping_ratio": asked.part.damping_ratio}
     return Outcome(data, tuple(tables), (), settings, tuple(remarks), tuple(figures))
 
 
@@ -171,18 +159,15 @@ def _table(name: str, one: FollowedData) -> Table:
 
 
 def _response_table(name: str, one: FollowedData) -> Table:
-    def joined(key: str) -> Array:
-        return np.concatenate([getattr(row, key) for row in one.responses])
-
-    value = np.concatenate([np.full(row.ratio.size, row.value) for row in one.responses])
+    value = Column(
+        one.parameter, np.array([row.value for row in one.responses]), PARAMETERS[one.parameter][1],
+        "value of the parameter",
+    )  # fmt: skip
     return Table(
         f"response_over_{one.parameter}_{name}",
         (
-            Column(one.parameter, value, PARAMETERS[one.parameter][1], "value of the parameter"),
-            Column("Lambda", joined("ratio"), "", "frequency over sqrt(K_M/m_eq)"),
-            Column("G_minus_a_theta_z_y_abs", joined("dynamic"), "", "G - a_M over K_M, amplitude"),
-            Column("R_y_y_abs", joined("line_of_action"), "", "mesh force transmissibility, amplitude"),
-            Column("R_theta_z_theta_z_abs", joined("torsion"), "", "mesh force transmissibility, amplitude"),
+            *repeated([value], [row.ratio.size for row in one.responses]),
+            *stacked([columns_of(row, table="response") for row in one.responses]),
         ),
         f"Response of pair {name} at values of {one.parameter}",
     )
@@ -265,12 +250,12 @@ def modes_figure(name: str, one: FollowedData) -> Figure:
     steps = np.diff(x)
     log = bool(x[0] > 0.0 and np.ptp(steps) > _EVEN * steps.max())
     axis = Axis(label, unit, log=log, limits=(float(x[0]), float(x[-1])))
-    shown = np.flatnonzero(one.modes.ratio.max(axis=0) > 0.0)
+    present = np.flatnonzero(one.modes.ratio.max(axis=0) > 0.0)
 
     def panel(title: str, rows: Array) -> Panel:
         return Panel(axis, Axis(title, zero=True), tuple(
             Curve(x, rows[:, r], f"mode {r + 1}", f"series:{k}", markers=False, width=3.0 - 0.3 * min(k, 5))
-            for k, r in enumerate(shown)
+            for k, r in enumerate(present)
         ))  # fmt: skip
 
     panels = [panel("Λ_{r}", one.modes.ratio)]
@@ -290,9 +275,7 @@ def response_figure(name: str, one: FollowedData) -> Figure:
     label, unit = PARAMETERS[one.parameter]
     symbol = label.rsplit(" ", 1)[-1] if one.parameter != "bearing_stiffness" else "bearing stiffness"
     panels = []
-    for key, title in (
-        ("dynamic", "|G − a_{M}|_{θz,y} / K_{M}"), ("line_of_action", "|R_{y,y}|"), ("torsion", "|R_{θz,θz}|"),
-    ):  # fmt: skip
+    for key in ("dynamic", "line_of_action", "torsion"):
         curves = []
         for k, row in enumerate(one.responses):
             x, y = broken(row.ratio, getattr(row, key), row.undamped)
@@ -300,7 +283,7 @@ def response_figure(name: str, one: FollowedData) -> Figure:
             curves.append(Curve(x, np.where(y > 0.0, y, np.nan), value, f"series:{k}", markers=False))
         poles = any(row.undamped.size for row in one.responses)
         limits = ends([getattr(row, key) for row in one.responses]) if poles else None
-        panels.append(Panel(LAMBDA, Axis(title, log=True, limits=limits), tuple(curves)))
+        panels.append(Panel(LAMBDA, axis_of(Response, key, log=True, limits=limits), tuple(curves)))
     return Figure(
         f"response_over_{one.parameter}_{name}",
         f"Conventional frequency response of pair {name} by {label}",
@@ -313,7 +296,7 @@ def response_figure(name: str, one: FollowedData) -> Figure:
 MODE_TRACKING = Stage(
     subjects=_pairs,
     needs=mesh_needs,
-    inputs=lambda scene, name: FollowedInputs(helical_pair_inputs(scene, name), name),
+    inputs=helical_pair_inputs,
     compute=_compute,
     present=_present,
     check=_check,

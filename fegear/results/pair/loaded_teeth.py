@@ -6,7 +6,7 @@ and effects from here and knows no kind.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
@@ -17,7 +17,7 @@ from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
-from fegear.engine.declared import column_of
+from fegear.engine.declared import column_of, stacked
 from fegear.engine.figure.figure import Axis
 from fegear.engine.figure.items import Mark, few, ramp
 from fegear.engine.stage import Stage, Task, Upstream
@@ -156,7 +156,7 @@ def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tup
     rows = [len(part[0]) for part in parts]
     return (
         column_of(ErrorOverPitch, "total_load", np.repeat(loads, rows)),
-        *(replace(same[0], si=np.concatenate([column.si for column in same])) for same in zip(*parts, strict=True)),
+        *stacked(parts),
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.shown import declared
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, drawn, value_of
+from fegear.engine.declared import axis_of, columns_on_grid, drawn, stacked, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
 
 
-#: Abscissas of a chart, and how its single best is found.
-_GRID, _BEST = ("amounts", "lengths", "loads"), "equal tip reliefs, worst load, by A_e"
+#: How the single best of a chart is found.
+_BEST = "equal tip reliefs, worst load, by A_e"
 
 
 @dataclass(frozen=True)
@@ -89,37 +89,15 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
 def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
     name, metric, asked = inputs.name, inputs.metric, inputs.part
     chart, best, delta = data.chart, data.best, data.delta
-    a, b, w = np.meshgrid(chart.amounts, chart.lengths, chart.loads, indexing="ij")
-    optimum = {key: chart.optimum_lengths(key) for key in ("effective_error", "peak_to_peak")}
-    aa, ww = np.meshgrid(chart.amounts, chart.loads, indexing="ij")
     tables = (
         Table(
             f"relief_chart_{name}",
-            (
-                *(column_of(chart, key, grid.ravel()) for key, grid in zip(_GRID, (a, b, w), strict=True)),
-                *(column_of(chart, key, getattr(chart, key).ravel()) for key in optimum),
-            ),
+            columns_on_grid(chart, ("amounts", "lengths", "loads"), "effective_error", "peak_to_peak"),
             f"Excitation of {name} over amount, length and load",
         ),
         Table(
             f"relief_optimum_{name}",
-            (
-                column_of(chart, "amounts", aa.ravel()),
-                column_of(chart, "loads", ww.ravel()),
-                *(
-                    column_of(
-                        chart,
-                        "lengths",
-                        optimum[key].ravel(),
-                        name=f"length_{head}",
-                        meaning=f"length with the {words}",
-                    )
-                    for key, head, words in (
-                        ("effective_error", "effective", "least A_e"),
-                        ("peak_to_peak", "peak_to_peak", "least peak to peak"),
-                    )
-                ),
-            ),
+            columns_on_grid(chart, ("amounts", "loads"), "length_effective", "length_peak_to_peak"),
             f"Optimum lengths of tip relief of {name}",
         ),
     )
@@ -194,27 +172,20 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
 
 
 def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outcome:
-    name, metric, rows, values = inputs.name, inputs.metric, [], []
+    name, metric, values = inputs.name, inputs.metric, []
     for label, r in data.candidates.items():
-        for (i, j, k), value in np.ndenumerate(r.values):
-            rows.append((label, r.load_factors[i], r.spacing_errors[j], r.relief_errors[k], value))
         factor, spacing, depth = r.worst_case
         where = f"load x {factor:g}, spacing error {spacing * 1e6:g} um, relief {depth:+.0%}"
         where = f"worst of the {r.values.size} combinations asked for, which bounds no others: {where}"
         values.append(
             Value(f"{name}.worst_{metric}.{label.replace(' ', '_')}", r.worst, "um", None, f"{label}, {where}")
         )
-    columns, some = list(zip(*rows, strict=True)), next(iter(data.candidates.values()))
+    labels = np.repeat(list(data.candidates), [r.values.size for r in data.candidates.values()])
+    axes = ("load_factors", "spacing_errors", "relief_errors")
+    *over, excitation = stacked([columns_on_grid(r, axes, "values") for r in data.candidates.values()])
     table = Table(
         f"robustness_{name}",
-        (
-            Column("candidate", np.array(columns[0]), "", "which relief"),
-            *(
-                column_of(some, key, column)
-                for key, column in zip(("load_factors", "spacing_errors", "relief_errors"), columns[1:4], strict=True)
-            ),
-            column_of(some, "values", columns[4], name=metric),
-        ),
+        (Column("candidate", labels, "", "which relief"), *over, replace(excitation, name=metric)),
         f"Robustness of the reliefs of {name}",
     )
     figure = _robustness_figure(name, data.candidates, metric)

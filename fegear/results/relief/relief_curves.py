@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, column_over, repeated
+from fegear.engine.declared import column_of, column_over, columns_of, repeated, stacked
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, ramp
 from fegear.engine.outcome import Outcome, Value
@@ -111,27 +111,25 @@ def _curve(engagement: Engagement, load: float, amount: float, length: float) ->
     return ReliefCurve(amount, length, history, transmission_error(engagement, load, _HARMONICS))
 
 
+def _along(history: PairHistory) -> tuple[Column, ...]:
+    return (
+        *columns_of(history, "x", "driver_roll_angle", load=0),
+        column_of(history, "transmission_error", load=0, name="te"),
+        *columns_of(history, "load", "share", load=0),
+    )
+
+
 def _present(data: ReliefCurvesData, inputs: Reads[ChartPart]) -> Outcome:
     from fegear.design.charts import ReliefChart
 
     name, curves = inputs.name, data.curves
-    rows = [curve.history.x.size for curve in curves]
-
-    def along(key: str, head: str = "") -> Column:
-        every = np.concatenate([np.ravel(getattr(curve.history, key)) for curve in curves])
-        return column_of(curves[0].history, key, every, name=head)
-
     amounts, lengths = np.array([c.amount for c in curves]), np.array([c.length for c in curves])
     relief = column_of(ReliefChart, "amounts", amounts), column_of(ReliefChart, "lengths", lengths)
     history = Table(
         f"relief_curves_{name}",
         (
-            *repeated(relief, rows),
-            along("x"),
-            along("driver_roll_angle"),
-            along("transmission_error", "te"),
-            along("load"),
-            along("share"),
+            *repeated(relief, [curve.history.x.size for curve in curves]),
+            *stacked([_along(curve.history) for curve in curves]),
         ),
         f"Transmission error and load of a tooth pair of {name}, relief by relief, {data.pair.nominal:.6g} N",
     )

@@ -5,12 +5,13 @@ Figures of a design chart of tip relief: TM-89901's Figs. 7 to 11.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.declared import axis_of, column_of, column_over, drawn, value_of
+from fegear.engine.declared import axis_of, column_of, column_over, columns_on_grid, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, Mark, Points
 from fegear.engine.outcome import Value
@@ -22,21 +23,22 @@ if TYPE_CHECKING:
     from fegear.results.train.design_chart import DesignChartData
 
 
+#: What was computed at every point of the chart, in the order of its table.
+_CELLS = ("dynamic_factor", "speed", "effective_error", "contact_loss", "unsteady")
+
+
+def _with_body(columns: Iterable[Column], body: str) -> tuple[Column, ...]:
+    """The columns, of the speed with the body that it is of."""
+    return tuple(replace(one, meaning=f"{one.meaning}, of {body}") if one.name == "speed" else one for one in columns)
+
+
 def chart_tables(chart: DesignChartData, mesh: str) -> tuple[Table, ...]:
     """The chart, and reliefs of their own on each gear where there are any."""
-    amounts, lengths = chart.amounts, chart.lengths
     tables = [
         Table(
             f"design_chart_{mesh}",
             (
-                column_of(chart, "amounts", np.repeat(amounts, lengths.size)),
-                column_of(chart, "lengths", np.tile(lengths, amounts.size)),
-                column_of(chart, "dynamic_factor", chart.dynamic_factor.ravel()),
-                column_of(chart, "speed", chart.speed.ravel(), further=f", of {chart.speed_of}"),
-                *(
-                    column_of(chart, key, getattr(chart, key).ravel())
-                    for key in ("effective_error", "contact_loss", "unsteady")
-                ),
+                *_with_body(columns_on_grid(chart, ("amounts", "lengths"), *_CELLS), chart.speed_of),
                 *(
                     column_of(
                         chart, "harmonics", row.ravel(), name=f"amplitude_{n}",
@@ -62,14 +64,12 @@ def _foretold(line: FactorLine | None, error: Array) -> tuple[Column, ...]:
 
 
 def _unequal_table(chart: DesignChartData, mesh: str) -> Table:
-    driver, driven, length, factor, speed, error, between, reason = (
-        column_over(chart.unequal, field.name) for field in fields(chart.unequal[0])
-    )
-    speed = replace(speed, meaning=f"{speed.meaning}, of {chart.speed_of}")
-    foretold = _foretold(chart.line, np.asarray(error.si))
+    every = (column_over(chart.unequal, field.name) for field in fields(chart.unequal[0]))
+    *numbers, reason = _with_body(every, chart.speed_of)
+    foretold = _foretold(chart.line, np.array([one.effective_error for one in chart.unequal]))
     return Table(
         f"design_chart_unequal_{mesh}",
-        (driver, driven, length, factor, speed, error, between, *foretold, reason),
+        (*numbers, *foretold, reason),
         f"Dynamic factor of mesh {mesh} with a relief of its own on each gear",
     )
 
