@@ -5,15 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.planetary import set_inputs
 from fegear.case.built.train import build_train, train_inputs
 from fegear.case.reading import build_scene
 from fegear.dynamics.planetary.set_modes import set_modes
+from fegear.dynamics.train.friction import sliding_contact, with_friction
 from fegear.dynamics.train.matrices import mass_matrix, static_forces, stiffness_matrix
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.formulas.flash_temperature import flank_speeds
 from fegear.results.catalogue import STAGES
 
 SIZE = {"module": "2 mm", "face_width": "25 mm", "thickness_allowance": "20 um"}
@@ -33,7 +34,7 @@ def scene(train, results, **more):
     return build_scene(case, "case", None)
 
 
-def single(results=("natural-modes",), drives="planet", **more):
+def single(results=("natural-modes",), drives="planet", more_of_pair=None, **more):
     torque = {"planet": {"planet": "80 N*m"}, "ring": {"ring": "80 N*m"}}[drives]
     roles = ("p", "r") if drives == "planet" else ("r", "p")
     train = {
@@ -42,7 +43,8 @@ def single(results=("natural-modes",), drives="planet", **more):
                        "damping_ratio": 0.05}},
         "torque": torque, "balance": "ring" if drives == "planet" else "planet",
     }  # fmt: skip
-    pair = {"I": {"driver": roles[0], "driven": roles[1]} | {"torque": "80 N*m"}}
+    own = (more_of_pair or {}).get("I", {})
+    pair = {"I": {"driver": roles[0], "driven": roles[1]} | {"torque": "80 N*m"} | own}
     return scene(train, results, pair=pair, **more)
 
 
@@ -104,20 +106,68 @@ def test_mesh_force_follows_the_formula_of_one_degree_of_freedom():
         assert force == pytest.approx(expected, rel=0.02)
 
 
-def test_friction_of_internal_meshes_is_refused():
-    effects = {"friction": True, "parametric": True, "contact_loss": True}
-    what = single(("dynamic-factor",), dynamics={"speeds": ["600 rpm"]}, effects=effects)
-    with pytest.raises(InputError, match="whose pair is internal"):
-        make_plan(what, STAGES)
+@pytest.mark.parametrize("drives", ["planet", "ring"])
+def test_flanks_of_a_ring_slide_in_a_train_as_they_do_in_a_pair(drives):
+    """Lever arms and speeds are those of the flanks' radii of curvature, the ring's base radius counting negative."""
+    pair = single(drives=drives).pairs["I"]
+    x = np.linspace(pair.x_start, pair.x_end, 7)
+    radii = (gear.tooth.side * gear.base_radius for gear in (pair.driver, pair.driven))
+    found = sliding_contact(x, *radii, pair.working_pressure_angle, 30.0 * pair.driver.base_radius)
+    known = flank_speeds(pair, x, 30.0)
+    assert found.arm_driver == pytest.approx(np.abs(known.radius_driver), rel=1e-9)
+    assert found.arm_driven == pytest.approx(np.abs(known.radius_driven), rel=1e-9)
+    assert found.sliding == pytest.approx(known.sliding, abs=1e-12)
+    assert found.rolling == pytest.approx(known.sum, rel=1e-9)
+
+
+@pytest.mark.parametrize("drives", ["planet", "ring"])
+def test_friction_of_an_internal_mesh_takes_what_the_pair_loses(drives):
+    """Both torques times both speeds are the loss of the pair's own result."""
+    law = {"law": "constant", "coefficient": 0.06}
+    speed = {"planet": 600.0, "ring": 600.0 * 29 / 83}[drives]
+    pair = {"I": {"speed": f"{speed} rpm", "friction": law}}
+    what = single(
+        ("tooth-friction", "gear-mesh-power-loss"), drives, more_of_pair=pair,
+        dynamics={"speeds": ["600 rpm"], "friction": law},
+        effects={"friction": True, "parametric": True, "contact_loss": True, "hertz": "linear"},
+    )  # fmt: skip
+    found = run_plan(what, make_plan(what, STAGES), cache=SolutionCache())
+    values = {value.name: value.si for value in found.values}
+    assert values["M.friction_loss"] == pytest.approx(values["I.tooth_loss"], rel=2e-3)
+    assert values["M.friction_efficiency"] == pytest.approx(values["I.tooth_efficiency"], abs=1e-5)
+    (data,) = (
+        one.data for one in found.outcomes.values() if hasattr(one.data, "train") and hasattr(one.data, "meshes")
+    )
+    mesh, one = data.train.meshes[0], data.meshes[0]
+    turn = 600.0 * math.pi / 30.0 * data.train.ratios[data.train.dof["planet" if mesh.a == "planet" else "ring"]]
+    base_pitch, speed_along = one.pair.base_pitch, abs(turn * mesh.radius_a)
+    rubbed = with_friction(
+        one.excitation, mesh, base_pitch, one.pair.working_pressure_angle, speed_along / base_pitch, one.force,
+        lambda v, _r, _w: np.full(np.shape(v), 0.06), a_drives=one.a_drives, internal=True,
+    )  # fmt: skip
+    phase = np.array([0.11, 0.37, 0.83])
+    for slot, (on_a, on_b) in enumerate(rubbed.friction):
+        power = on_a(phase) * turn - on_b(phase) * turn * mesh.radius_a / mesh.radius_b
+        x = rubbed.place(slot, phase) * base_pitch
+        slides = np.abs(flank_speeds(one.pair, x, speed_along / one.pair.driver.base_radius).sliding)
+        bears = one.excitation.stiffness[slot](phase) > 0.0
+        assert power == pytest.approx(np.where(bears, -0.06 * slides, 0.0), abs=1e-6)
+    (rows,) = (t for t in found.tables if t.name == "tooth_friction_M")
+    at = {column.name: column.si for column in rows.columns}
+    turning = speed * math.pi / 30.0, speed * math.pi / 30.0 * (29 / 83 if drives == "planet" else 83 / 29)
+    on = (at["load"] > 0.0) & (at["sliding_velocity"] != 0.0)
+    lost = -(at["torque_driver"] * turning[0] + at["torque_driven"] * turning[1])
+    assert lost[on] == pytest.approx((0.06 * at["load"] * np.abs(at["sliding_velocity"]))[on], rel=1e-9)
 
 
 def test_every_result_of_a_train_takes_an_internal_mesh():
     """A ring that drives, too; motion with contact loss far above the resonance stays at the static force."""
     results = ("dynamic-increments", "tooth-force", "dynamic-root-stress", "dynamic-factor")
+    law = {"law": "constant", "coefficient": 0.06}
     for drives in ("planet", "ring"):
         what = single(
-            results, drives, dynamics={"speed": "600 rpm", "speeds": ["300 rpm"], "harmonics": 4},
-            effects={"hertz": "linear", "contact_loss": True, "parametric": True},
+            results, drives, dynamics={"speed": "600 rpm", "speeds": ["300 rpm"], "harmonics": 4, "friction": law},
+            effects={"hertz": "linear", "contact_loss": True, "parametric": True, "friction": drives == "ring"},
         )  # fmt: skip
         found = run_plan(what, make_plan(what, STAGES), cache=SolutionCache())
         (factor,) = next(t for t in found.tables if t.name == "dynamic_factor_M").columns[1].si

@@ -254,7 +254,7 @@ def excitations_at(asked: MotionInputs, data: GearTrain, speed: float) -> tuple[
         if asked.friction:
             excitation = with_friction(
                 excitation, mesh, one.pair.base_pitch, one.pair.working_pressure_angle, float(frequency), one.force,
-                friction_coefficient(asked.law, one.pair), a_drives=one.a_drives,
+                friction_coefficient(asked.law, one.pair), a_drives=one.a_drives, internal=one.pair.internal,
             )  # fmt: skip
         found.append(excitation)
     return tuple(found)

@@ -109,7 +109,7 @@ def sliding_contact(
     x : array_like
         Position from the pitch point, positive toward the driver's tip [m].
     radius_driver, radius_driven : float
-        Base radii [m].
+        Base radii [m]; negative of a ring gear, whose flanks are hollow.
     pressure_angle : float
         Working pressure angle [rad].
     speed : float
@@ -118,7 +118,9 @@ def sliding_contact(
     place, tangent = np.asarray(x, dtype=float), math.tan(pressure_angle)
     arm_1, arm_2 = radius_driver * tangent + place, radius_driven * tangent - place
     v_1, v_2 = speed / radius_driver * arm_1, speed / radius_driven * arm_2
-    return Sliding(arm_1, arm_2, v_1 - v_2, v_1 + v_2)
+    return Sliding(
+        math.copysign(1.0, radius_driver) * arm_1, math.copysign(1.0, radius_driven) * arm_2, v_1 - v_2, v_1 + v_2
+    )
 
 
 @tallied("friction fits")
@@ -133,6 +135,7 @@ def with_friction(
     *,
     tolerance: float = 1e-7,
     a_drives: bool = True,
+    internal: bool = False,
 ) -> MeshExcitation:
     """Add tooth friction to a gear pair.
 
@@ -156,6 +159,8 @@ def with_friction(
         Accuracy of the fitted torques relative to the largest.
     a_drives : bool
         Whether the mesh's body `a` drives, and not body `b` (see `train_mesh.a_drives`).
+    internal : bool
+        Whether one of the gears is a ring.
 
     Raises
     ------
@@ -169,6 +174,8 @@ def with_friction(
     speed = mesh_frequency * base_pitch  # of the contact along the line of action
     radii = (mesh.radius_a, mesh.radius_b) if a_drives else (mesh.radius_b, mesh.radius_a)
     radius_1, radius_2 = (abs(r) for r in radii)  # of the gear that drives, of the driven one
+    if internal:  # the larger gear is the ring
+        radius_1, radius_2 = (-radius_1, radius_2) if radius_1 > radius_2 else (radius_1, -radius_2)
     # the gears approach as the driver turns forward and the driven gear back
     sense_1, sense_2 = math.copysign(1.0, radii[0]), -math.copysign(1.0, radii[1])
     kinks = tuple(excitation.contact_changes(load)) if load > 0.0 else ()
@@ -304,13 +311,13 @@ def _on_slots(
 ) -> Array:
     """Load, sliding, rolling, coefficient and both torques of the tooth pair in each slot, shape (slots, 6, N)."""
     excitation, pair = mesh.excitation, mesh.pair
+    radius_1, radius_2 = (gear.tooth.side * gear.base_radius for gear in (pair.driver, pair.driven))
     approach, rows = excitation.approach(mesh.force, phase), []
     for slot in range(len(excitation.stiffness)):
         load = excitation.tooth_force(slot, phase, approach)
         at = sliding_contact(
-            excitation.place(slot, phase) * pair.base_pitch, pair.driver.base_radius, pair.driven.base_radius,
-            pair.working_pressure_angle, speed,
-        )  # fmt: skip
+            excitation.place(slot, phase) * pair.base_pitch, radius_1, radius_2, pair.working_pressure_angle, speed
+        )
         mu = coefficient(np.abs(at.sliding), at.rolling, load)
         rub = np.sign(at.sliding) * mu * load
         rows.append([load, at.sliding, at.rolling, mu, -rub * at.arm_driver, rub * at.arm_driven])

@@ -428,4 +428,5 @@ TRAIN_LOSS = Stage(
     present=_present_train,
     check=_check_train,
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
+    internal=True,
 )

@@ -69,10 +69,6 @@ def _check(scene: Scene, _subject: str) -> None:
                 "is loaded over its face, and teeth of another width bear in another way", "describe a pair of its own",
             )  # fmt: skip
         _check_spacing(scene, part.loaded_pair_of(name))
-        if scene.case.effects.friction and scene.pairs[part.pair_of(name)].internal:
-            raise InputError(
-                "effects.friction", "true", f"is not known to mesh {name}, whose pair is internal", "leave it out",
-            )  # fmt: skip
     for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
         check_relief(scene, name)
 
