@@ -11,6 +11,7 @@ from scipy.integrate import quad
 from fegear.base.errors import GeometryError, RangeError
 from fegear.fem.plane.body import zones
 from fegear.fem.plane.gear_section import uneven_section
+from fegear.fem.solid import face
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.extruded import extruded
@@ -94,6 +95,17 @@ def test_a_thin_web_bends():
     )
     assert cut == pytest.approx(whole, rel=0.02)
     assert (cut < 1.001 * whole).all()
+
+
+def test_teeth_of_a_deep_rim_feel_no_breaks(monkeypatch):
+    """Functions of their own over the whole face, instead of the body's pieces: what the body does stays."""
+    given = GearBody(5.9, HUB, (-1.5, -0.5), FACE)
+    own = solve_solid(TOOTH, 0.02, WIDTH, NU, BORE, COARSE, body=given)
+    monkeypatch.setattr(face, "_DEEP", math.inf)
+    pieces = solve_solid(TOOTH, 0.02, WIDTH, NU, BORE, COARSE, body=given)
+    assert len(own.face.breaks) == 2 < len(pieces.face.breaks)
+    assert own.unknowns < 0.75 * pieces.unknowns
+    assert deflections(own, 1) == pytest.approx(deflections(pieces, 1), abs=3e-3 * deflections(pieces).max())
 
 
 @pytest.mark.long  # the ordinary run has three webs

@@ -18,7 +18,7 @@ from fegear.fem.plane.condensation import Condensed, Eliminated, joined, numbere
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index, Mask
-    from fegear.fem.solid.face import FaceFunctions
+    from fegear.fem.solid.face import FaceFunctions, JoinedFunctions
     from fegear.fem.solid.section import Section
 
 #: Unknowns of the section that a smallest part has about, those inside its elements among them.
@@ -63,7 +63,7 @@ def unknowns(has: Mask) -> Unknowns:
 
 
 def condense_solid(
-    section: Section, face: FaceFunctions, known: Unknowns, kept: Index, *, expandable: bool = False
+    section: Section, face: FaceFunctions | JoinedFunctions, known: Unknowns, kept: Index, *, expandable: bool = False
 ) -> Condensed:
     """Eliminate all unknowns but those of some of the section's.
 
@@ -194,15 +194,16 @@ def _smallest(
     local = local.reshape(dofs.shape)
     n = every.size
     place = local[:, :, None] * n + local[:, None, :]
-    # Unknowns with many functions first: those that have a function are then the first so many.
-    counts = (number[every] >= 0).sum(axis=1)
-    highest = np.where(counts > 0, number.shape[1] - np.argmax(number[every][:, ::-1] >= 0, axis=1), 0)
+    # Of the functions that any of them has; those of highest number first, which are then the first so many.
+    functions = np.flatnonzero((number[every] >= 0).any(axis=0))
+    own = number[every][:, functions]
+    used = functions.size
+    highest = (np.arange(1, used + 1) * (own >= 0)).max(axis=1, initial=0)
     sequence = np.argsort(-highest, kind="stable")
-    reach = np.array([int((highest > k).sum()) for k in range(number.shape[1])])
-    used = int((reach > 0).sum())
-    start = np.concatenate([[0], np.cumsum(reach[:used])])
+    reach = [int((highest > k).sum()) for k in range(used)]
+    start = np.concatenate([[0], np.cumsum(reach, dtype=np.int64)])
     none = np.zeros(0, dtype=np.int64)
-    ids = np.concatenate([none, *(number[every[sequence[: reach[k]]], k] for k in range(used))])
+    ids = np.concatenate([none, *(own[sequence[: reach[k]], k] for k in range(used))])
     matrix = np.zeros((ids.size, ids.size))
     for zone, product in enumerate(products):
         mine = section.zone[elements] == zone
@@ -214,7 +215,7 @@ def _smallest(
             sums.append(total[np.ix_(sequence, sequence)])
         a00, a01, a11 = sums
         a10 = np.ascontiguousarray(a01.T)
-        m0, m1, m2 = (part[:used, :used] for part in product)
+        m0, m1, m2 = (part[np.ix_(functions, functions)] for part in product)
         for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
             rows, columns = slice(0, reach[k]), slice(0, reach[m])
             block = matrix[start[k] : start[k + 1], start[m] : start[m + 1]]

@@ -17,6 +17,7 @@ from fegear.fem.plane.elements import line_functions
 from fegear.fem.solid.dissection import Unknowns, unknowns
 from fegear.fem.solid.section import Section, upward
 from fegear.fem.solid.settings import SolidSettings, whole
+from fegear.geometry.gear_body import GearBody
 
 #: Coefficients of a function's series that are smaller than this share of its largest are none.
 _NOISE = 1e-10
@@ -30,6 +31,8 @@ _BY_LENGTH = 0.6
 #: thickness, and where they may not thin and thicken as they bend they are too stiff, threefold at a Poisson's ratio
 #: of .45.
 _BENDING = 4
+#: How far outside the circle where a web begins its breaks are felt, and how deep a rim has teeth beyond [modules].
+_FELT, _DEEP = 1.0, 1.45
 
 
 @dataclass(frozen=True)
@@ -136,21 +139,17 @@ class FaceFunctions:
     def products_over(self, low: float, high: float) -> tuple[Array, Array, Array]:
         """The same from one break to another."""
         place, weight = self.quadrature(low, high)
-        values, slopes = self.at(place)
-        found = [(values * weight) @ values.T, (values * weight) @ slopes.T, (slopes * weight) @ slopes.T]
-        for matrix in found:
-            matrix[np.abs(matrix) < 1e-13 * np.abs(matrix).max()] = 0.0
-        return found[0], found[1], found[2]
+        return _products(*self.at(place), weight)
 
-    def quadrature(self, low: float = -math.inf, high: float = math.inf) -> tuple[Array, Array]:
+    def quadrature(self, low: float = -math.inf, high: float = math.inf, least: int = 0) -> tuple[Array, Array]:
         """Gauss points and weights that integrate products of two functions exactly, shape (q,) each [modules].
 
-        Over the whole face, or from one break to another.
+        Over the whole face, or from one break to another; also products of polynomials of a degree `least`.
         """
         places, weights = [], []
         for i in self._between(low, high):
             start, end = self.breaks[i], self.breaks[i + 1]
-            x, w = np.polynomial.legendre.leggauss(self.degrees[i] + 1)
+            x, w = np.polynomial.legendre.leggauss(max(self.degrees[i], least) + 1)
             places.append(0.5 * (start + end) + 0.5 * (end - start) * x)
             weights.append(0.5 * (end - start) * w)
         return np.concatenate(places), np.concatenate(weights)
@@ -169,6 +168,33 @@ class FaceFunctions:
         """Pieces between two breaks."""
         ends, near = self.breaks, _NEAR * self.width
         return [i for i in range(len(self.degrees)) if ends[i] >= low - near and ends[i + 1] <= high + near]
+
+
+def _products(values: Array, slopes: Array, weight: Array) -> tuple[Array, Array, Array]:
+    found = [(values * weight) @ values.T, (values * weight) @ slopes.T, (slopes * weight) @ slopes.T]
+    for matrix in found:
+        matrix[np.abs(matrix) < 1e-13 * np.abs(matrix).max()] = 0.0
+    return found[0], found[1], found[2]
+
+
+@dataclass(frozen=True)
+class JoinedFunctions:
+    """Functions of a body's pieces, and behind them those of teeth that are too far from the body to feel its breaks.
+
+    Parameters
+    ----------
+    body, teeth : FaceFunctions
+        Piece by piece, and over the whole face at once.
+    """
+
+    body: FaceFunctions
+    teeth: FaceFunctions
+
+    def products_over(self, low: float, high: float) -> tuple[Array, Array, Array]:
+        """Integrals of products of all functions from one break to another, as `FaceFunctions` has them."""
+        place, weight = self.body.quadrature(low, high, max(self.teeth.degrees))
+        values, slopes = (np.vstack(both) for both in zip(self.body.at(place), self.teeth.at(place), strict=True))
+        return _products(values, slopes, weight)
 
 
 def face_functions(width: float, degree: int, cuts: Sequence[float] = ()) -> FaceFunctions:
@@ -209,6 +235,7 @@ def solid_unknowns(
     *,
     plane_strain: bool = False,
     all_waves: bool = False,
+    teeth: tuple[FaceFunctions, float] | None = None,
 ) -> Unknowns:
     """Unknowns of the solid sector, its bore held.
 
@@ -223,6 +250,8 @@ def solid_unknowns(
         Nothing moves along the axis.
     all_waves : bool
         Every node has all functions along the face, as a body without a loaded flank wants them.
+    teeth : (FaceFunctions, float), optional
+        Functions, behind those of the face, that nodes beyond a radius [modules] have in their place.
 
     Returns
     -------
@@ -246,9 +275,23 @@ def solid_unknowns(
     if held is not None:
         free[face.vanishing_on(*held)] = True
     has[bore.ravel()] &= free
+    if teeth is not None:
+        beyond = np.repeat(np.hypot(*section.places) > teeth[1], 3)[:, None]
+        own = np.arange(teeth[0].count) < np.repeat(function_counts(section, teeth[0], settings), 3)[:, None]
+        has = np.hstack([has & ~beyond, own & beyond])
     if plane_strain:
         has[2::3] = False
     return unknowns(has)
+
+
+def own_of_teeth(face: FaceFunctions, body: GearBody | None, root_radius: float) -> float:
+    """Beyond which radius teeth have functions of their own over the whole face [modules]; none if infinite.
+
+    A thin rim has none: its fillets feel where the web ends. Nor has a disc, or a body of one piece.
+    """
+    if body is None or len(face.breaks) == 2 or root_radius - body.rim_radius < _DEEP:
+        return math.inf
+    return body.rim_radius + _FELT
 
 
 def function_counts(section: Section, face: FaceFunctions, settings: SolidSettings) -> Index:

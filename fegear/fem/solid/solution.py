@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
-from fegear.fem.solid.face import FaceFunctions, face_functions, solid_unknowns
+from fegear.fem.solid.face import FaceFunctions, JoinedFunctions, face_functions, own_of_teeth, solid_unknowns
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
 from fegear.fem.solid.flank_body import TwistedFlank
 from fegear.fem.solid.section import Section, make_section, upward
@@ -254,7 +255,12 @@ def _solve(
     section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body, side=tooth.side)
     held = held if body is None else body.hub
     face = face_functions(width, settings.degree(width), (held or ()) if body is None else body.ends)
-    known = solid_unknowns(section, face, settings, held, plane_strain=plane_strain)
+    beyond = own_of_teeth(face, body, tooth.root_radius)
+    own = face_functions(width, settings.degree(width)) if math.isfinite(beyond) else face
+    joined, columns = (face, slice(None)) if own is face else (JoinedFunctions(face, own), slice(face.count, None))
+    known = solid_unknowns(
+        section, face, settings, held, plane_strain=plane_strain, teeth=None if own is face else (own, beyond)
+    )
     flank = section_flank(mesh, section, tooth)
     fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
     integrated = time.perf_counter()
@@ -263,7 +269,7 @@ def _solve(
     ports = 3 * flank_nodes(section)
     seen = [(3 * fillet.nodes[:, None] + every).ravel() for fillet in fillets.values()]
     inner = np.setdiff1d(np.concatenate([ports, *seen]), np.concatenate(sides))
-    condensed = condense_solid(section, face, known, np.concatenate([*sides, inner]))
+    condensed = condense_solid(section, joined, known, np.concatenate([*sides, inner]))
     ring = closed_ring(
         condensed, known.of(sides[0]).size, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=integrated
     )
@@ -276,7 +282,7 @@ def _solve(
         compliance[k] = np.ascontiguousarray(u[: loaded.size])
         row = loaded.size
         for side, part in zip(_FILLETS, seen, strict=True):
-            has = known.number[part] >= 0
+            has = known.number[part][:, columns] >= 0
             local = np.zeros((*has.shape, loaded.size))
             local[has] = u[row : row + int(has.sum())]
             row += int(has.sum())
@@ -289,7 +295,7 @@ def _solve(
         "influence": time.perf_counter() - closed,
     }
     return SolidSolution(
-        tooth, tau, width, bore_radius, held, body, nu, plane_strain, face, flank, compliance, fillets, displacement,
+        tooth, tau, width, bore_radius, held, body, nu, plane_strain, own, flank, compliance, fillets, displacement,
         reach, known.size, settings, seconds,
     )  # fmt: skip
 
