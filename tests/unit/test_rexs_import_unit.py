@@ -13,12 +13,14 @@ from rexs_models import in_json, link, part, planetary_set, shaft, two_stages
 
 import fegear.cli
 from fegear.base.errors import InputError
+from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.exchange.rexs.gearbox import case_of
 from fegear.exchange.rexs.model import Attribute
 from fegear.exchange.rexs.reading import model_of
 from fegear.exchange.rexs.said import _in_si
+from fegear.exchange.rexs.written_gearbox import model_text
 from fegear.results.catalogue import STAGES
 
 HERE = Path("model.rexs")
@@ -187,6 +189,40 @@ def test_a_bearing_between_two_shafts_counts_as_held_by_the_casing():
     assert [len(one["bearings"]) for one in shafts.values()] == [2, 2, 2]
     assert "concept_bearing 52: what it presses on shaft 4, which holds it, is neglected" in text
     assert make_plan(build_scene(tomllib.loads(text), "case", Path()), STAGES).steps
+
+
+def coaxial():
+    """Two stages of one centre distance: the output shaft has its left bearing in the hollow input shaft."""
+    distance, first = 80.0 / math.cos(math.radians(10.0)), 60.0
+    tree = values_of(two_stages(), 5, support_vector=([first, 0.0, 0.0], "mm"))
+    tree = values_of(tree, 13, number_of_teeth=(20, "none"), helix_angle_reference_diameter=(10.0, "deg"))
+    tree = values_of(
+        tree, 14, number_of_teeth=(60, "none"), helix_angle_reference_diameter=(-10.0, "deg"),
+        u_coordinate_on_shaft=(90.0 - first, "mm"),
+    )  # fmt: skip
+    tree = values_of(tree, 22, center_distance=(distance, "mm"))
+    tree = values_of(tree, 41, length=(75.0, "mm"), inner_diameter_begin=(12.0, "mm"))
+    tree = values_of(tree, 52, u_coordinate_on_shaft_inner_side=(70.0, "mm"))
+    places = {"inner": (5.0, "mm"), "outer": (65.0, "mm")}
+    tree = values_of(tree, 55, **{f"u_coordinate_on_shaft_{side}_side": at for side, at in places.items()})
+    links = [one for one in tree["relations"] if {"role": "assembly", "id": 55} not in one["refs"]]
+    return {**tree, "relations": [*links, link(199, "side", assembly=55, inner_part=5, outer_part=3)]}
+
+
+def test_a_bearing_between_two_shafts_on_one_axis_joins_them():
+    text = case_of(model_of(in_json(coaxial()), HERE))
+    again, _ = model_text(build_scene(tomllib.loads(text), "case", Path()), "2026-01-01T00:00:00")
+    for found in (text, case_of(model_of(again, HERE))):
+        one = tomllib.loads(found)
+        inner = one["shaft"]["shaft_5"]
+        assert [seat.get("around") for seat in inner["bearings"]] == ["shaft_3", None]
+        assert [len(shaft["bearings"]) for shaft in one["shaft"].values()] == [2, 2, 2]
+        assert "taken as held by the casing" not in found
+        box = gearbox_of(build_scene(one, "case", Path()))
+        bent = box.under(box.even)
+        assert max(shaft.balance.max() for shaft in bent) < 1e-9
+        assert [shaft.inside_at.size for shaft in bent] == [1, 0, 0]
+        assert bent[0].inside_at == pytest.approx([0.065], rel=1e-9)
 
 
 def values_of(tree, number, **changed):

@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from fegear.exchange.rexs.model import Component
+    from fegear.exchange.rexs.places import Place
     from fegear.exchange.rexs.said import Said
 
 _BOTH, _NONE, _PLUS, _MINUS = "both_directions", "no_direction", "positive", "negative"
+#: Distance of axes that are one [m].
+_COAXIAL = 1e-6
 #: What a bearing that slides in its seat holds along the axis [N/m]: nothing beside any other.
 _SLIDES = 1e3
 
@@ -41,6 +44,8 @@ class Held:
         What rolls in it, where that is said.
     stopped : bool
         Whether something beside what rolls in it holds the shaft along its axis.
+    joins : Component, optional
+        The other shaft of the case that it sits on; the inner one has it in the case.
     """
 
     component: Component
@@ -49,6 +54,7 @@ class Held:
     outside: bool = False
     rows: Rows | None = None
     stopped: bool = False
+    joins: Component | None = None
 
     @property
     def seats(self) -> list[tuple[str, bool, bool]]:
@@ -100,24 +106,44 @@ class Rows:
     about: str
 
 
-def bearings_of(said: Said, shaft: Component, names: Mapping[int, str]) -> list[Held]:
-    """What holds a shaft; bearings between shafts count as held by the casing.
+def bearings_of(
+    said: Said, shaft: Component, names: Mapping[int, str], places: Mapping[int, Place] | None = None
+) -> list[Held]:
+    """What holds a shaft; of bearings between shafts of which the case has one alone the casing holds the other ring.
 
-    One inside the end of a shaft that other bearings hold at two places holds the inner shaft alone.
+    Such a one inside the end of a shaft that other bearings hold at two places holds the inner shaft alone.
+
+    Parameters
+    ----------
+    said : Said
+    shaft : Component
+    names : mapping
+        Of the bearings.
+    places : mapping
+        Where the shafts of the case stand.
     """
     found: list[Held] = []
     for side, other, at in (("inner_part", "outer_part", "inner"), ("outer_part", "inner_part", "outer")):
         for one in said.linked(shaft, side, "side", "assembly", *BEARINGS):
-            mates = said.linked(one, "assembly", "side", other)
-            between = any(mate.type == "shaft" for mate in mates)
-            if between and at == "outer" and len({held.at for held in found}) > 1:
+            mates = [mate for mate in said.linked(one, "assembly", "side", other) if mate.type == "shaft"]
+            joins = next((mate for mate in mates if _coaxial(places or {}, shaft, mate)), None)
+            alone = bool(mates) and joins is None
+            if alone and at == "outer" and len({held.at for held in found}) > 1:
                 said.notes.append(f"{one.said}: what it presses on {shaft.said}, which holds it, is neglected.")
                 continue
-            if between:
+            if alone:
                 said.notes.append(f"{one.said} holds {shaft.said} in another shaft: it is taken as held by the casing.")
             place = said.needed(one, "length", f"u_coordinate_on_shaft_{at}_side", "u_coordinate_on_shaft_inner_side")
-            found.append(Held(one, names[one.id], place, outside=at == "outer", rows=_rows(said, one)))
+            found.append(Held(one, names[one.id], place, outside=at == "outer", rows=_rows(said, one), joins=joins))
     return sorted(found, key=lambda one: one.at)
+
+
+def _coaxial(places: Mapping[int, Place], one: Component, other: Component) -> bool:
+    """Whether both are shafts of the case on one axis."""
+    if one is other or one.id not in places or other.id not in places:
+        return False
+    first, second = places[one.id], places[other.id]
+    return math.hypot(second.v - first.v, second.w - first.w) <= _COAXIAL
 
 
 def fixed_bearing(said: Said, shaft: Component, bearings: Sequence[Held], push: float) -> Held:
@@ -131,6 +157,7 @@ def fixed_bearing(said: Said, shaft: Component, bearings: Sequence[Held], push: 
     push : float
         Force of its meshes along the shaft's own u [N]: of bearings that hold one way, that which takes it is chosen.
     """
+    bearings = sorted(bearings, key=lambda one: one.joins is not None)  # the casing holds before another shaft does
     ways = [_holds(said, one.component) for one in bearings]
     for kind in (_BOTH, *((_MINUS, _PLUS) if push < 0.0 else (_PLUS, _MINUS))):
         if kind not in ways:

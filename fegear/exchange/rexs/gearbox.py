@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
@@ -98,7 +99,8 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     gears = {n: gear for n, gear in gears.items() if any(gear in stages[one].gears for one in loaded)}
     names = {n: name for n, name in names.items() if n in gears or n in of_sets}
     shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
-    bent = bool(shafts) and _held(said, shafts)
+    places = places_of(said, stages, middles)
+    bent = bool(shafts) and _held(said, shafts, {n: places[n] for n in shafts if n in places})
     rest = {n: _rest_of_shift(said, gear, everything) for n, gear in (gears | of_sets).items()}
     tables = [_head(stages, sets, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
     for n, gear in (gears | of_sets).items():
@@ -106,7 +108,6 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         keys = gear_keys(said, gear, rest[n], bore, _far_end(said, gear, stages, flow))
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
-    places = places_of(said, stages, middles)
     heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
     tables += [
         _pair(said, stage, names, flow, n, heights if bent else {}, bins)
@@ -305,10 +306,19 @@ def _shafts(
     called = _names(shafts.values(), "shaft")
     held = _names(said.model.of(*BEARINGS), "bearing")
     origin = places[next(iter(shafts))]
-    made: list[Table] = []
-    seats: list[Table] = []
+    standing = {n: places[n] for n in shafts}
+    on_bearings, fixed, stopped = {}, set(), set()
     for n, shaft in shafts.items():
-        gears = [one for one in every.values() if on[one.id] is shaft]
+        bearings = bearings_of(said, shaft, held, standing)
+        push = (-1.0 if places[n].reversed else 1.0) * flow.push(said, stages, _standing(every, on, shaft))
+        along = fixed_bearing(said, shaft, bearings, push)
+        on_bearings[n] = stopped_along(said, shaft, bearings, along)
+        fixed.add(along.component.id)
+        stopped |= {one.component.id for one in on_bearings[n] if one.stopped}
+    made: list[Table] = []
+    seats: dict[str, Table] = {}
+    for n, shaft in shafts.items():
+        gears = _standing(every, on, shaft)
         mine = tuple((names[one.id], middles[one.id]) for one in gears)
         ends = tuple(
             said.needed(one, "length", "u_coordinate_on_shaft")
@@ -318,25 +328,28 @@ def _shafts(
         if not ends and flow.left_by(stages, gears):
             ends = (sections_of(said, shaft)[-1].end,)
             said.notes.append(f"{shaft.said}: nothing says where its torque enters or leaves: its end is assumed.")
-        bearings = bearings_of(said, shaft, held)
-        sense = -1.0 if places[n].reversed else 1.0
-        along = fixed_bearing(said, shaft, bearings, sense * flow.push(said, stages, gears))
-        bearings = stopped_along(said, shaft, bearings, along)
-        for one in bearings:  # between two shafts it comes twice
-            known = {seat.name for seat in seats}
-            made_now = bearing_tables(said, one, fixed=one.component is along.component)
-            seats += [table for table in made_now if table.name not in known]
+        bearings = [
+            replace(one, stopped=one.component.id in stopped)
+            for one in on_bearings[n] if one.joins is None or not one.outside
+        ]  # fmt: skip
+        for one in bearings:  # between shafts of which the case has no other it comes twice
+            for table in bearing_tables(said, one, fixed=one.component.id in fixed):
+                seats.setdefault(table.name, table)
         clockwise = flow.driven.speed[flow.bodies[n]] < 0.0
-        made.append(
-            shaft_table(said, shaft, called[n], places[n], OnShaft(mine, ends), bearings, origin, clockwise=clockwise)
-        )
-    return [*made, *seats]
+        around = {one.name: called[one.joins.id] for one in bearings if one.joins is not None}
+        on_it = OnShaft(mine, ends, around)
+        made.append(shaft_table(said, shaft, called[n], places[n], on_it, bearings, origin, clockwise=clockwise))
+    return [*made, *seats.values()]
 
 
-def _held(said: Said, shafts: dict[int, Component]) -> bool:
+def _standing(gears: dict[int, Component], on: dict[int, Component | None], shaft: Component) -> list[Component]:
+    return [one for one in gears.values() if on[one.id] is shaft]
+
+
+def _held(said: Said, shafts: dict[int, Component], places: dict[int, Place]) -> bool:
     """Whether every shaft has sections and bearings that hold it; a note where one has not."""
     for shaft in shafts.values():
-        bearings = bearings_of(said, shaft, _Any())
+        bearings = bearings_of(said, shaft, _Any(), places)
         why = "no sections" if not sections_of(said, shaft) else "no bearings" if not bearings else None
         if len({one.at for one in bearings}) == 1 and not any(one.tilts(said) for one in bearings):
             why = "one bearing alone, which lets it tilt: what joins it to other shafts is not in a case"

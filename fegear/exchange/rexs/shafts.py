@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -50,10 +50,13 @@ class OnShaft:
         Names and middles of faces.
     torque_at : tuple of float
         Where torque enters or leaves.
+    around : dict of str to str
+        Shafts in which the outer rings of its bearings sit, by bearing.
     """
 
     gears: tuple[tuple[str, float], ...]
     torque_at: tuple[float, ...] = ()
+    around: dict[str, str] = field(default_factory=dict)
 
 
 def sections_of(said: Said, shaft: Component) -> tuple[Section, ...]:
@@ -147,7 +150,12 @@ def shaft_table(
         places = listed(inline(gear=text(gear), at=along(at)) for gear, at in on.gears)
         keys.append(Key("gears", places, "middle of the face"))
     seats = listed(
-        inline(bearing=text(name), at=along(one.at), reversed="true" if back != place.reversed and turns else None)
+        inline(
+            bearing=text(name),
+            at=along(one.at),
+            reversed="true" if back != place.reversed and turns else None,
+            around=text(on.around[one.name]) if one.name in on.around else None,
+        )
         for one in bearings
         for name, back, turns in one.seats
     )

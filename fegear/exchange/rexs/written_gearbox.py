@@ -98,8 +98,10 @@ def model_text(scene: Scene, date: str, results: Found = _NOTHING) -> tuple[str,
     used |= dict.fromkeys(gear for part in sets.values() for gear in (part.sun, part.planet, part.ring) if gear)
     gears = {name: write_gear(written, scene, name.removesuffix(_LIKE)) for name in used}
     bodies = _Bodies()
+    holders: dict[str | None, Part] = {None: casing}
+    holders |= {name: written.part("shaft", name) for name in scene.case.shaft}
     for name in scene.case.shaft:
-        made = write_shaft(written, scene, name, casing, gears)
+        made = write_shaft(written, scene, name, holders, gears)
         bodies.shaft |= {there.gear: made for there in scene.case.shaft[name].gears}
         written.relate("assembly", assembly=unit, part=made)
     planets = {part.planet for part in sets.values()}

@@ -30,7 +30,9 @@ _TYPES = {
 }
 
 
-def write_shaft(written: Written, scene: Scene, name: str, casing: Part, gears: Mapping[str, Part]) -> Part:
+def write_shaft(
+    written: Written, scene: Scene, name: str, holders: Mapping[str | None, Part], gears: Mapping[str, Part]
+) -> Part:
     """A shaft of a case with its sections, gears, bearings and forces.
 
     Parameters
@@ -38,13 +40,13 @@ def write_shaft(written: Written, scene: Scene, name: str, casing: Part, gears: 
     written : Written
     scene : Scene
     name : str
-    casing : Part
-        That holds the bearings.
+    holders : mapping
+        What holds the outer rings: the casing (None), and all shafts by name.
     gears : mapping
         Components of the gears by name.
     """
     part = scene.case.shaft[name]
-    made = place(written.part("shaft", name), (part.start, part.axis[0], part.axis[1]))
+    made = place(holders[name], (part.start, part.axis[0], part.axis[1]))
     begin = 0.0
     for one in part.sections:
         section = written.part("shaft_section").say(
@@ -67,7 +69,9 @@ def write_shaft(written: Written, scene: Scene, name: str, casing: Part, gears: 
         gears[there.gear].say("length", u_coordinate_on_shaft=there.at)
         written.relate("assembly", assembly=made, part=gears[there.gear])
     for seat in part.bearings:
-        _bearing(written, scene.case.bearing[seat.bearing], seat, made, casing)
+        start = part.start if seat.around is None else scene.case.shaft[seat.around].start
+        outer = seat.at + part.start - start
+        _bearing(written, scene.case.bearing[seat.bearing], seat, (made, holders[seat.around]), outer)
     _loads(written, name, part, made)
     return made
 
@@ -77,7 +81,9 @@ def place(made: Part, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Part:
     return made.say("length", support_vector=at, u_axis_vector=_ALONG, w_axis_vector=(0.0, 0.0, 1e-3))
 
 
-def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft: Part, casing: Part) -> None:
+def _bearing(
+    written: Written, part: BearingPart, seat: BearingPlacePart, sides: tuple[Part, Part], outer_at: float
+) -> None:
     """A bearing on its seat: what rolls in it, or its stiffness."""
     left_out(written, f"Bearing {seat.bearing}", part, _BEARING)
     elements, life = part.elements, part.life
@@ -85,7 +91,7 @@ def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft:
     rolling = detailed if elements else "rolling_bearing_with_catalog_geometry"
     plain = elements is None and life is None and not part.radial_clearance
     made = written.part("concept_bearing" if plain else rolling, seat.bearing)
-    made.say("length", u_coordinate_on_shaft_inner_side=seat.at, u_coordinate_on_shaft_outer_side=seat.at)
+    made.say("length", u_coordinate_on_shaft_inner_side=seat.at, u_coordinate_on_shaft_outer_side=outer_at)
     made.word(axial_force_absorption=_holds(part, reversed_=seat.reversed), radial_force_absorption=part.radial != 0.0)
     made.say("stiffness", radial_stiffness=part.radial, axial_stiffness=part.axial)
     made.say("tilting stiffness", bending_stiffness=part.tilting if "tilting" in part.model_fields_set else None)
@@ -116,7 +122,7 @@ def _bearing(written: Written, part: BearingPart, seat: BearingPlacePart, shaft:
         )
         written.relate("ordered_assembly", 1, assembly=made, part=row)
         written.relate("ordered_assembly", 1, assembly=row, part=roller)
-    written.relate("side", assembly=made, inner_part=shaft, outer_part=casing)
+    written.relate("side", assembly=made, inner_part=sides[0], outer_part=sides[1])
 
 
 def _holds(part: BearingPart, *, reversed_: bool) -> str:
