@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.base.errors import InputError
-from fegear.case.gear_body import GearBodyPart
+from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.part import (
     Angle,
@@ -130,6 +130,10 @@ class GearPart(Part):
         default=None,
         description="Rim, web and hub of a gear that is solved with its width, its bore held over the hub; without it "
         "the body is a disc as wide as the face.",
+    )
+    rim_support: Table[RimSupportPart] | None = Field(
+        default=None,
+        description="What carries the rim of an internal gear: pins or a spline; without it its outer circle is held.",
     )
     face_width: PositiveLength | None = Field(
         default=None, description="Width of the gear; without it 1 mm, which no result per unit width depends on."
@@ -281,7 +285,7 @@ class GearPart(Part):
     def _check_internal(self) -> None:
         """Refuse keys of external gears on internal ones, and of internal gears on external ones."""
         if not self.internal:
-            for key in ("cutter", "outer_radius"):
+            for key in ("cutter", "outer_radius", "rim_support"):
                 if getattr(self, key) is not None:
                     raise refuse("has a meaning only for internal gears", "write internal = true", key=key)
             return
@@ -356,7 +360,8 @@ class GearPart(Part):
             width = 1e-3 if self.face_width is None else self.face_width
             held = self._held_radius(tooth.root_radius * m)
             body = None if self.body is None else self.body.build(tooth.root_radius * m, held, width)
-            gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur", body)
+            support = None if self.rim_support is None else self.rim_support.build()
+            gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur", body, support)
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
             told = self.deviations is not None and self.deviations.enough_to_rate

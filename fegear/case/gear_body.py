@@ -1,13 +1,14 @@
-"""``[gear.NAME.body]``: rim, web and hub of a gear that is solved with its width."""
+"""``body`` and ``rim_support`` of ``[gear.NAME]``: rim, web and hub of a gear, and what carries the rim of a ring."""
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Length, Part, PositiveLength, refuse
+from fegear.case.part import Angle, Length, Part, PositiveLength, refuse
 from fegear.geometry.gear_body import GearBody
+from fegear.geometry.rim_support import RimSupport
 
 
 class GearBodyPart(Part):
@@ -52,3 +53,39 @@ class GearBodyPart(Part):
             return GearBody(rim, bore_radius, web, web)
         width = face_width if self.hub_width is None else self.hub_width
         return GearBody(rim, self.hub_radius, web, part(width, self.hub_offset))
+
+
+class RimSupportPart(Part):
+    """``rim_support = { kind, pins, width, angle }`` of a ring gear."""
+
+    kind: Literal["held", "splined", "pins"] = Field(
+        description="`held`: the whole outer circle; `splined`: force and torque leave by tractions that are spread "
+        "evenly over it, and its mean motion is none; `pins`: evenly spaced parts of it are held on average."
+    )
+    pins: int | None = Field(default=None, description="Number of pins, bolts or lugs, 2 to the number of teeth.")
+    width: PositiveLength | None = Field(
+        default=None, description="Width of each, along the outer circle: over it the rim moves neither way on average."
+    )
+    angle: Angle = Field(
+        default=0.0,
+        description="Of the first pin from the centre line of tooth 0, positive the way that its loaded flank faces.",
+    )
+
+    @model_validator(mode="after")
+    def _pins(self) -> Self:
+        for key in ("pins", "width"):
+            if self.kind == "pins" and getattr(self, key) is None:
+                raise refuse("is missing for a rim on pins", 'write pins = 6, width = "12 mm"', key=key)
+        for key in ("pins", "width", "angle"):
+            if self.kind != "pins" and key in self.model_fields_set:
+                raise refuse("has a meaning only for a rim on pins", 'write kind = "pins"', key=key)
+        if self.pins is not None and self.pins < 2:
+            raise refuse(
+                "must be at least 2, for the ring would turn about one", "give the number of pins", key="pins",
+                value=self.pins,
+            )  # fmt: skip
+        return self
+
+    def build(self) -> RimSupport | None:
+        """Make the support; None of a held rim."""
+        return None if self.kind == "held" else RimSupport(self.pins or 0, self.width or 0.0, self.angle)

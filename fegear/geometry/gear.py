@@ -11,6 +11,7 @@ from fegear.base.shown import shown, shows
 from fegear.geometry.gear_body import GearBody, moments
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
+from fegear.geometry.rim_support import RimSupport
 from fegear.geometry.tooth import Tooth
 
 Plane = Literal["strain", "stress"]
@@ -80,6 +81,8 @@ class Gear:
         Hand of the helix; "spur" if and only if the helix angle is zero.
     body : GearBody, optional
         Rim, web and hub in the place of a disc as wide as the face [m].
+    support : RimSupport, optional
+        Pins or a spline that carry the rim of a ring gear [m]; by default its whole outer circle is held.
 
     Raises
     ------
@@ -97,6 +100,7 @@ class Gear:
     plane: Literal["strain", "stress", "auto"] = "strain"
     hand: Hand = "spur"
     body: GearBody | None = None
+    support: RimSupport | None = None
 
     def __post_init__(self) -> None:
         """Refuse sizes that cannot be and settle the plane assumption."""
@@ -119,6 +123,10 @@ class Gear:
         self._check_held_radius()
         if self.body is not None:
             self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius)
+        if self.support is not None:
+            if not self.tooth.internal:
+                raise GeometryError("rim_support", "of an external gear", "has a meaning only for internal gears")
+            self.support.check(self.module, self.bore_radius, self.teeth)
         if self.plane not in ("strain", "stress", "auto"):
             raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
         if self.plane == "auto":
@@ -310,6 +318,11 @@ class Gear:
     def body_in_modules(self) -> GearBody | None:
         """Rim, web and hub in normal modules, as finite elements take them."""
         return None if self.body is None else self.body.scaled(1.0 / self.module)
+
+    @property
+    def support_in_modules(self) -> RimSupport | None:
+        """What carries the rim of a ring gear, in normal modules."""
+        return None if self.support is None else self.support.scaled(1.0 / self.module)
 
     @property
     def base_pitch(self) -> float:

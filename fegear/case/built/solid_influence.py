@@ -137,6 +137,11 @@ def check_solid_gear(scene: Scene, name: str) -> None:
             f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
             'solve the gear as a solid: write "solid" for "slices"',
         )  # fmt: skip
+    if scene.gears[name].support is not None:
+        raise InputError(
+            f"gear.{name}.rim_support", "pins or a spline", "is known to plane gears alone so far",
+            'leave the pair\'s width = "solid" and helix angles out, or write rim_support = { kind = "held" }',
+        )  # fmt: skip
     if part.face_width is None:
         raise InputError(
             f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",

@@ -147,6 +147,33 @@ def solution_settings(influence: GearInfluence) -> dict[str, object]:
 
 def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:
     """Say where a tolerance took more than one solution, and where the last of them still misses it."""
+    return (*support_remarks(name, influence), *_tolerance_remarks(name, influence, tolerance))
+
+
+def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
+    """How the teeth of a ring on pins differ, and what a ring that is not held all round leaves out."""
+    support = influence.gear.support
+    if support is None:
+        return ()
+    apart = (
+        f"Gear {name}: its rim gives way as a whole; planets of a set are each taken alone with the ring, and what one "
+        "planet's load does to the rim below another is neglected."
+    )
+    if influence.fine.pins is None:
+        return (apart,)
+    low, high = influence.gear.involute_radii
+    each = influence.over_the_teeth([0.5 * (low + high)], [influence.reference_half_width])
+    c, tension = each["c_self"][:, 0], each["root_tension"][:, 0]
+    spread = (
+        f"Gear {name}: on {support.pins} pins {c.size} teeth in a row differ. Loaded at half height, c_self is "
+        f"{c.min() / c.mean() - 1.0:+.1%} to {c.max() / c.mean() - 1.0:+.1%} of its mean over the teeth, root tension "
+        f"{tension.min() / tension.mean() - 1.0:+.1%} to {tension.max() / tension.mean() - 1.0:+.1%}. Tables, pairs "
+        "and sets take the mean compliance and stress of all teeth."
+    )
+    return spread, apart
+
+
+def _tolerance_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:
     rounds = influence.rounds
     if not rounds or (len(rounds) == 1 and rounds[0].error <= tolerance):
         return ()

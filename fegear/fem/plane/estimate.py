@@ -25,6 +25,9 @@ _STRESS_SHARE, _LEAST_STRESS_SHARE = 5.0, 0.2
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
+#: Relative errors of root stress are of no less than this share of its largest over the flank: on a rim that bends as a
+#: whole the tension of a tooth may pass through zero.
+_LEAST_STRESS = 0.1
 #: Positions over the flank, evenly in roll angle, at which usual errors are looked for; for the largest, twice as many
 #: and these distances from its ends [modules].
 _SAMPLES = 17
@@ -90,7 +93,7 @@ class Estimate:
             errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
         for side in SIDES:
             value, difference = self._stress_at_samples(0)[side]
-            errors[f"root_{side}"] = self._stress_estimate(0, side, value, difference) / np.abs(value)
+            errors[f"root_{side}"] = self._stress_estimate(0, side, value, difference) / _stress_scale(value)
         return read_only({key: float(np.max(values)) for key, values in errors.items()})
 
     def _self_difference(self, value: Array, radius: Array, half_width: Array) -> Array:
@@ -133,7 +136,7 @@ class Estimate:
 
     def _stress_estimate(self, k: int, side: Side, value: Array, difference: Array) -> Array:
         usual = {
-            at: _root_mean_square((off / largest)[:_SAMPLES])
+            at: _root_mean_square((off / _stress_scale(largest))[:_SAMPLES])
             for at, (largest, off) in self._stress_at_samples(k).items()
         }
         # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
@@ -164,6 +167,12 @@ class Estimate:
         near = 2.0 * tooth.base_radius * np.array(_BESIDE_ENDS)
         ends = np.sqrt(np.concatenate([low**2 + near, high**2 - near]))
         return np.concatenate([evenly, between, ends[(ends > low) & (ends < high)]])
+
+
+def _stress_scale(value: Array) -> Array:
+    """What relative errors of root stress over the flank are of."""
+    size = np.abs(value)
+    return np.maximum(size, _LEAST_STRESS * size.max())
 
 
 def _root_mean_square(values: Array) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.estimate import QUANTITIES, Estimate
+from fegear.fem.plane.tooth_on_pins import over_the_teeth
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -129,6 +130,16 @@ class GearInfluence:
         m = self.gear.module
         value, arc = self.fine.largest_root_stress(k, side, self._modules(radius), self._half_width(half_width))
         return value / m, arc * m
+
+    def over_the_teeth(self, radius: ArrayLike, half_width: ArrayLike) -> dict[str, Array]:
+        """c_self [m^2/N], root_tension and root_compression [1/m] of all teeth that stand differently to pins, (T, P).
+
+        Tooth 0 first; of a rim without pins all teeth are alike.
+        """
+        r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
+        found = over_the_teeth(self.fine, r, self.settings.patch_half_width, b)
+        modulus, m = self.gear.material.young_modulus, self.gear.module
+        return {key: value / (modulus if key == "c_self" else m) for key, value in found.items()}
 
     def contact(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array]:
         """`self_compliance` and its estimated error as the approach of a true contact [m^2/N], shape (P,) each.

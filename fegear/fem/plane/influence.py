@@ -14,6 +14,7 @@ from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
 from fegear.fem.plane.elasticity import SectorElasticity, assemble, assemble_two_orders
+from fegear.fem.plane.rim import PinForces, supported_response
 from fegear.fem.plane.ring import close_ring
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.rim_support import RimSupport
 
 Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")
@@ -92,6 +94,10 @@ class Influence:
     seconds : mapping of str to float
     lower : Influence, optional
         The same on the same mesh with elements one order lower, which shows the error.
+    pins : PinForces, optional
+        Of a ring on pins what differs from tooth to tooth (`tooth_on_pins`); `compliance` and `stress` are means.
+    support : RimSupport, optional
+        What carries the rim of a ring gear; by default its whole outer circle is held.
     """
 
     tooth: InvoluteTooth
@@ -107,6 +113,8 @@ class Influence:
     unknowns: int
     seconds: Mapping[str, float]
     lower: Influence | None = None
+    pins: PinForces | None = None
+    support: RimSupport | None = None
 
     @property
     def log_slope(self) -> float:
@@ -158,7 +166,7 @@ class Influence:
         self._last["remote"] = key, found
         return found
 
-    def _fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
+    def fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
 
         In their exact place, for it decides about the bending; narrowed where they would reach past an end of the
@@ -317,7 +325,7 @@ class Influence:
 
         The tension fillet is the one below the loaded flank.
         """
-        loads = self._fillet_loads(radius_q, half_width)[0]
+        loads = self.fillet_loads(radius_q, half_width)[0]
         return np.ascontiguousarray((loads @ self.stress[k, side].T).T)
 
     def largest_root_stress(
@@ -328,7 +336,7 @@ class Influence:
         That of the whole fillet, up to the start of the flank, but no nearer than .05 modules to the contact's edge;
         of a fillet that this would leave less than half of, that of its lower half (`search_end`).
         """
-        loads, above, width = self._fillet_loads(radius_q, half_width)
+        loads, above, width = self.fillet_loads(radius_q, half_width)
         if k or side == "compression":
             above = np.full(above.shape, math.inf)
         return self.fillet_curve(side).largest_below((loads @ self.stress[k, side].T).T, above, width)
@@ -353,6 +361,7 @@ def solve_influence(
     margin: float = 0.15,
     sector_teeth: int = 0,
     two_orders: bool = False,
+    support: RimSupport | None = None,
 ) -> Influence:
     """Solve one ring for all that can be asked of its teeth.
 
@@ -375,12 +384,14 @@ def solve_influence(
         at most (sector_teeth - 1) // 2.
     two_orders : bool
         Whether to solve with elements one order lower as well (`Influence.lower`), which takes .4 of the time again.
+    support : RimSupport, optional
+        Of a ring gear's rim [modules]; by default its whole outer circle is held.
 
     Returns
     -------
     Influence
     """
-    what = _Asked(tooth, mesh, poisson_ratio, plane, reach, corner_distance, margin, sector_teeth)
+    what = _Asked(tooth, mesh, poisson_ratio, plane, reach, corner_distance, margin, sector_teeth, support)
     with one_thread():
         started = time.perf_counter()
         if not two_orders:
@@ -400,10 +411,11 @@ class _Asked(NamedTuple):
     corner_distance: float
     margin: float
     sector_teeth: int
+    support: RimSupport | None
 
 
 def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influence:
-    tooth, mesh, poisson_ratio, plane, reach, corner_distance, margin, sector_teeth = what
+    tooth, mesh, poisson_ratio, plane, reach, corner_distance, margin, sector_teeth, support = what
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     fillets: dict[Side, FilletStrain] = {
@@ -412,9 +424,15 @@ def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influe
     }
     assembled = time.perf_counter()
     watch = np.concatenate([flank.dofs, fillets["tension"].dofs, fillets["compression"].dofs])
-    ring = close_ring(mesh, elasticity, watch, reach, sector_teeth=sector_teeth)
+    response: Mapping[int, Array]
+    pins: PinForces | None = None
     closed = time.perf_counter()
-    response = ring.respond(flank.dofs, watch)
+    if support is None:
+        ring = close_ring(mesh, elasticity, watch, reach, sector_teeth=sector_teeth)
+        closed = time.perf_counter()
+        response = ring.respond(flank.dofs, watch)
+    else:
+        response, pins, ring = supported_response(mesh, elasticity, support, watch, flank.dofs.size, reach)
     n, t = flank.dofs.size, fillets["tension"].dofs.size
     modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
     compliance: dict[int, Array] = {}
@@ -432,5 +450,5 @@ def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influe
     }
     return Influence(
         tooth, poisson_ratio, plane, mesh, flank, compliance, fillets, stress,
-        corner_distance, reach, ring.size, seconds,
+        corner_distance, reach, ring.size, seconds, pins=pins, support=support,
     )  # fmt: skip

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
+from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.fem.plane.elasticity import assemble, lame
 from fegear.fem.plane.elements import sector_elements
@@ -71,6 +72,11 @@ def inner_stress(influence: Influence, reach: int) -> InnerStress:
     reach : int
         K; at most (z - 1) // 2 are given.
     """
+    if influence.support is not None:
+        raise InputError(
+            "rim_support", "pins or a spline", "is not known to the stress inside a gear, whose rim is held",
+            "leave this result out: root stress and deflections take the support",
+        )  # fmt: skip
     mesh, flank = influence.mesh, influence.flank
     reach = min(reach, (mesh.teeth - 1) // 2)
     arc = np.linspace(flank.flank_start, flank.flank_end, _PLACES)

@@ -12,6 +12,7 @@ from fegear.base.one_thread import one_thread
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.rim import supported_response
 from fegear.fem.plane.ring import close_ring
 
 #: Boundaries of a sector that are no outline of a tooth.
@@ -137,8 +138,13 @@ def outline_motion(influence: Influence, reach: int) -> OutlineMotion:
         elasticity = assemble(mesh, influence.poisson_ratio, influence.plane, influence.flank.order)
         watch = elasticity.node_dofs[:, chain].reshape(-1)
         reach = min(reach, (mesh.teeth - 1) // 2)
-        ring = close_ring(mesh, elasticity, np.union1d(influence.flank.dofs, watch), reach)
-        response = ring.respond(influence.flank.dofs, watch)
+        flank = influence.flank.dofs
+        if influence.support is None:
+            response = close_ring(mesh, elasticity, np.union1d(flank, watch), reach).respond(flank, watch)
+        else:
+            ports = np.append(flank, watch)
+            moved, _, _ = supported_response(mesh, elasticity, influence.support, ports, flank.size, reach)
+            response = {k: u[flank.size :] for k, u in moved.items()}
     stacked = np.stack([response[k].T for k in range(-reach, reach + 1)], axis=1).astype(np.float32)
     return OutlineMotion(influence, *_between(mesh, chain), stacked, reach)
 

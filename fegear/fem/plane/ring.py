@@ -19,10 +19,12 @@ tridiagonal, so one sweep from either end leaves the two sides of the loaded sec
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError
@@ -69,13 +71,15 @@ def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, 
     return found[0], found[1]
 
 
+#: Motion of a side, shape (m,), in which a ring that nothing holds turns, and moves: harmonics 0 and 1.
+RigidSides = tuple[NDArray[np.inexact], NDArray[np.inexact]]
 #: Inverses of this many complex numbers are held at once while the harmonics are summed.
 _BATCH = 2_000_000
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A condensed ring of z equal sectors with the bore held; E = 1, lengths in modules.
+    """A condensed ring of z equal sectors, its bore held or nothing held (`rim`); E = 1, lengths in modules.
 
     With row matrices A, B (how a port follows the polar motion of its sector's sides A and B) and G (ports' motion
     under forces on ports with the sides held), the response of sector k to forces f on sector 0 is
@@ -116,7 +120,9 @@ class Ring:
         """Number of unknowns of a sector."""
         return self.sector.size
 
-    def respond(self, loaded: Index, watch: Index, forces: Array | None = None) -> dict[int, Array]:
+    def respond(
+        self, loaded: Index, watch: Index, forces: Array | None = None, sectors: Sequence[int] | None = None
+    ) -> dict[int, Array]:
         """Displacements of watched ports on sectors -reach..reach under forces on sector 0.
 
         Parameters
@@ -127,6 +133,8 @@ class Ring:
             Unknowns of a sector whose displacement is wanted, in that sector's own frame; ports.
         forces : ndarray, shape (n, P), optional
             By default a unit force on each in turn.
+        sectors : sequence of int, optional
+            Some of those within the reach.
 
         Returns
         -------
@@ -139,7 +147,7 @@ class Ring:
             drive_a, drive_b, own = drive_a @ forces, drive_b @ forces, own @ forces
         both = np.hstack([self.follow_a[rows], self.follow_b[rows]])
         answer = {}
-        for k in range(-self.reach, self.reach + 1):
+        for k in range(-self.reach, self.reach + 1) if sectors is None else sectors:
             sides = [self.from_a[j] @ drive_a + self.from_b[j] @ drive_b for j in (k, k + 1)]
             answer[k] = both @ np.vstack(sides)
             if k % self.teeth == 0:
@@ -172,6 +180,7 @@ def close_ring(
     *,
     expandable: bool = False,
     sector_teeth: int = 0,
+    held: bool = True,
 ) -> Ring:
     """Condense a sector once and close the ring.
 
@@ -187,6 +196,8 @@ def close_ring(
         Whether `Ring.field` will be asked for.
     sector_teeth : int
         Leave the ring open: so many sectors in a row with free sides, the middle one loaded. 0 for the ring.
+    held : bool
+        Whether the bore is held; else rigid motions have a stiffness that is lent to them, for `rim` to take out.
 
     Returns
     -------
@@ -207,8 +218,8 @@ def close_ring(
 
     started = time.perf_counter()
     z = mesh.teeth
-    side_a, side_b, angle_a = _matching_sides(mesh, elasticity)
-    bore = np.unique(elasticity.edge_dofs["bore"])
+    side_a, side_b, angle_a, radius = _matching_sides(mesh, elasticity)
+    bore = np.unique(elasticity.edge_dofs["bore"]) if held else np.zeros(0, dtype=np.int64)
     free = ~np.isin(side_a, bore)
     side_a, side_b, angle_a = side_a[free], side_b[free], angle_a[free[::2]]
     sides = np.concatenate([side_a, side_b])
@@ -217,7 +228,8 @@ def close_ring(
     m, n = side_a.size, sides.size
     turn = np.zeros((n, n))
     turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
-    return closed_ring(sector, m, turn, z, reach, sector_teeth=sector_teeth, started=started)
+    rigid = None if held else (np.kron(radius, (0.0, 1.0)), np.tile((1.0, 1.0j), radius.size))
+    return closed_ring(sector, m, turn, z, reach, sector_teeth=sector_teeth, started=started, rigid=rigid)
 
 
 def closed_ring(
@@ -229,6 +241,7 @@ def closed_ring(
     *,
     sector_teeth: int = 0,
     started: float | None = None,
+    rigid: RigidSides | None = None,
 ) -> Ring:
     """Close a ring of condensed sectors.
 
@@ -246,6 +259,8 @@ def closed_ring(
         As for `close_ring`.
     started : float, optional
         Clock (`time.perf_counter`) when condensing began.
+    rigid : RigidSides, optional
+        Of a ring that nothing holds.
 
     Returns
     -------
@@ -269,7 +284,7 @@ def closed_ring(
     if sector_teeth:
         from_a, from_b = chain_coupling(held, sector_teeth, reach)
     else:
-        from_a = _coupling(held, teeth, reach + 1)
+        from_a = _coupling(held, teeth, reach + 1, rigid)
         from_b = {k: from_a[k - 1] for k in range(-reach, reach + 2)}
     return Ring(
         sector=sector,
@@ -287,14 +302,14 @@ def closed_ring(
     )
 
 
-def _coupling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+def _coupling(condensed: Array, z: int, reach: int, rigid: RigidSides | None) -> dict[int, Array]:
     """H_k for k = -reach..reach, by the cheaper way."""
-    if 2 * reach + 1 < z:
+    if 2 * reach + 1 < z and rigid is None:
         return coupling_by_doubling(condensed, z, reach)
-    return coupling_by_harmonics(condensed, z, reach)
+    return coupling_by_harmonics(condensed, z, reach, rigid)
 
 
-def coupling_by_harmonics(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+def coupling_by_harmonics(condensed: Array, z: int, reach: int, rigid: RigidSides | None = None) -> dict[int, Array]:
     """H_k = (1/z) sum_n exp(i k theta_n) / K_n for k = -reach..reach, shape (m, m) each.
 
     Parameters
@@ -302,18 +317,24 @@ def coupling_by_harmonics(condensed: Array, z: int, reach: int) -> dict[int, Arr
     condensed : ndarray, shape (2 m, 2 m)
         Stiffness of one sector between its sides A and B, in polar components.
     z, reach : int
+    rigid : RigidSides, optional
+        These motions are lent a stiffness.
     """
     m = condensed.shape[0] // 2
     diagonal = condensed[:m, :m] + condensed[m:, m:]
     ahead = condensed[:m, m:]
     harmonics = np.arange(z // 2 + 1)
     total = {k: np.zeros((m, m)) for k in range(reach + 1)}
-    step = max(1, _BATCH // (m * m))
+    step = max(2, _BATCH // (m * m))
     for first in range(0, harmonics.size, step):
         n = harmonics[first : first + step]
         theta = 2.0 * np.pi * n / z
         e = np.exp(1j * theta)[:, None, None]
-        inverse = np.linalg.inv(diagonal + e * ahead + np.conj(e) * ahead.T)
+        stiffness = diagonal + e * ahead + np.conj(e) * ahead.T
+        for i, motion in () if rigid is None or first else enumerate(rigid):
+            lent = motion / np.linalg.norm(motion)
+            stiffness[i] += diagonal.trace() / m * np.multiply.outer(lent, lent.conj())
+        inverse = np.linalg.inv(stiffness)
         # n = 0 and n = z/2 stand alone, every other harmonic stands for its conjugate as well
         weight = np.where((n == 0) | (2 * n == z), 1.0, 2.0) / z
         for k in total:
@@ -388,8 +409,8 @@ def _polar(angle: Array) -> Array:
     return matrix
 
 
-def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Index, Array]:
-    """Unknowns of both sides from the bore outward, and the clockwise angle of side A's nodes."""
+def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Index, Array, Array]:
+    """Unknowns of both sides, ascending from the axis, and the clockwise angles and radii of side A's nodes."""
     both = []
     for name in ("side_a", "side_b"):
         edges, dofs = mesh.edges[name], elasticity.edge_dofs[name]
@@ -418,4 +439,7 @@ def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Ind
         raise InputError(
             "mesh", f"{angle_b - angle_a:.8g} rad between the sides", f"must be one pitch, {pitch:.8g} rad"
         )
-    return dofs_a, dofs_b, np.full(dofs_a.size // 2, angle_a)
+    low, high = ends_a
+    steps = np.arange(1, elasticity.order + 1) / elasticity.order
+    radius = np.append(low[0], (low[:, None] + (high - low)[:, None] * steps).ravel())
+    return dofs_a, dofs_b, np.full(dofs_a.size // 2, angle_a), radius

@@ -21,12 +21,14 @@ from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.rim import PinForces
 from fegear.fem.plane.root_stress import FilletStrain
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import FINEST_LEVEL, LEVEL_RATIO, MeshSettings, level_for, settings_at
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rim_support import RimSupport
 
 Progress = Callable[[str], None]
 
@@ -70,6 +72,7 @@ def influence_of_shape(
     cache: SolutionCache | None = None,
     *,
     two_orders: bool = False,
+    support: RimSupport | None = None,
 ) -> Influence:
     """Solve one gear shape (lengths in modules), or recall it from a cache."""
 
@@ -83,9 +86,10 @@ def influence_of_shape(
             reach=reach,
             corner_distance=settings.corner_distance,
             two_orders=two_orders,
+            support=support,
         )
 
-    what = (bore_radius, poisson_ratio, plane, settings, reach, two_orders)
+    what = (bore_radius, poisson_ratio, plane, settings, reach, two_orders, support)
     return solve() if cache is None else known_or_solved(cache, tooth, what, solve)
 
 
@@ -151,7 +155,9 @@ def solve_gear(
     else:
         check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
-        fine = influence_of_shape(*shape, settings, reach, cache, two_orders=estimate_error)
+        fine = influence_of_shape(
+            *shape, settings, reach, cache, two_orders=estimate_error, support=gear.support_in_modules
+        )
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
     estimate: Estimate | None = None
     if fine.lower is not None:
@@ -194,7 +200,9 @@ def solve_to_tolerance(
         started = time.perf_counter()
         settings = settings_at(level)
         known = solve_gear(gear, settings, reach=reach, progress=progress, cache=cache)
-        known = _with_errors(known, content_key("largest errors", _shape(gear), settings, reach), cache)
+        known = _with_errors(
+            known, content_key("largest errors", _shape(gear), gear.support_in_modules, settings, reach), cache
+        )
         errors = known.largest_errors()
         rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
         if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
@@ -221,7 +229,7 @@ Shape = TypeVar("Shape")
 
 
 #: What a solved plane shape consists of.
-_PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain)
+_PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain, PinForces, RimSupport)
 
 
 def known_or_solved(

@@ -209,6 +209,11 @@ def loaded_gear(
     radius : float, optional
         Load radius [m]; by default the pitch radius, or the flank's end nearest to it.
     """
+    if gear.support is not None:
+        raise InputError(
+            "rim_support", "pins or a spline", "is not known to fields of the whole gear, whose rim is held",
+            'write rim_support = { kind = "held" }',
+        )  # fmt: skip
     if settings.order > _FIELD_ORDER:
         settings = replace(settings.scaled(_SIX_NODE_EDGES), order=_FIELD_ORDER)
     shape = mesh or mesh_sector(gear.tooth, gear.bore_radius / gear.module, settings)

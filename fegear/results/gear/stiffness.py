@@ -101,7 +101,7 @@ def _remarks(asked: StiffnessInputs, t: StiffnessTable) -> tuple[str, ...]:
         ("root tension", t.root_tension, t.errors["root_tension"]),
         ("root compression", t.root_compression, t.errors["root_compression"]),
     ):
-        relative = np.abs(error / value)
+        relative = np.abs(error) / np.maximum(np.abs(value), 0.1 * np.abs(value).max())
         remarks += tolerance_remarks(f"Gear {asked.name}", label, relative, t.radius, asked.tolerance, "positions")
     return (*remarks, *asked.assumed)
 

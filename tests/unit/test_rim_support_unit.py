@@ -1,0 +1,266 @@
+"""Ring gears on pins and in a spline, compared with the whole ring solved at once, and their limits and laws."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from fegear.base.errors import FegearError
+from fegear.case.reading import read_scene
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.rim import rigid_motions
+from fegear.fem.plane.ring import _matching_sides
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_on_pins import over_the_teeth, tooth_on_pins
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.rim_support import RimSupport
+
+pytestmark = pytest.mark.last_bit
+
+NU, TEETH = 0.3, 24
+COARSE = MeshSettings(
+    root_edge_length=0.3, root_fraction=0.8, flank_edge_length=0.4, tip_edge_length=0.2, junction_edge_length=0.2,
+    back_edge_length=0.8, growth=0.6, tip_growth=0.6, side_growth=0.8, order=3,
+)  # fmt: skip
+TOOTH = InternalTooth(TEETH, PinionCutter(12, 0.0, 1.2, tip_radius=0.2), profile_shift=0.0, tip_radius=11.5)
+MESHES = {rim: mesh_sector(TOOTH, TOOTH.root_radius + rim, COARSE) for rim in (0.3, 1.0, 4.0)}
+
+
+def solved(support, rim=1.0, reach=2):
+    return solve_influence(TOOTH, MESHES[rim], NU, "strain", order=3, reach=reach, support=support)
+
+
+def to_sector(k):
+    """From components of the ring to those of sector k, clockwise from sector 0."""
+    a = 2.0 * math.pi * k / TEETH
+    return np.array([[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]])
+
+
+def mean_over_arcs(places, support, radius):
+    """Nodes on the outer circle of all sectors, at places (edges, nodes, 2), and their weights in each pin's mean.
+
+    By a fine sum over each pin's arc with shape functions written down here: nothing of `rim` is used.
+    """
+    found = []
+    for pin in range(support.pins):
+        middle = support.angle + 2.0 * math.pi * pin / support.pins
+        half, n = 0.5 * support.width / radius, 1000
+        row = np.zeros(places.shape[:2])
+        for angle in middle - half + (np.arange(n) + 0.5) * 2.0 * half / n:
+            ends = np.arctan2(places[:, [0, -1], 0], places[:, [0, -1], 1])
+            into = np.mod(angle - ends[:, 0] + math.pi, 2.0 * math.pi) - math.pi
+            span = np.mod(ends[:, 1] - ends[:, 0] + math.pi, 2.0 * math.pi) - math.pi
+            (edge,) = np.flatnonzero((into / span >= 0.0) & (into / span < 1.0))[:1]
+            xi, nodes = into[edge] / span[edge], np.linspace(0.0, 1.0, places.shape[1])
+            for i, at in enumerate(nodes):
+                others = np.delete(nodes, i)
+                row[edge, i] += np.prod((xi - others) / (at - others)) / n
+        found.append(row)
+    return found
+
+
+def whole_ring(support, rim, tooth, loads, dofs, watched):
+    """Displacements of watched unknowns on the neighbours of a tooth, the whole ring assembled and solved at once."""
+    mesh = MESHES[rim]
+    known = assemble(mesh, NU, "strain", 3)
+    side_a, side_b = _matching_sides(mesh, known)[:2]
+    number, count = np.full((TEETH, known.size), -1), 0
+    own = np.setdiff1d(np.arange(known.size), side_a)
+    for k in range(TEETH):
+        number[k, own] = count + np.arange(own.size)
+        count += own.size
+    for k in range(TEETH):
+        number[k, side_a] = number[k - 1, side_b]
+    n = known.stiffness.shape[1]
+    rows, columns, entries = [], [], []
+    for k in range(TEETH):
+        turn = np.kron(np.eye(n // 2), to_sector(k))
+        at = number[k][known.element_dofs]
+        rows.append(np.repeat(at, n, axis=1).ravel())
+        columns.append(np.tile(at, (1, n)).ravel())
+        entries.append((turn.T @ known.stiffness @ turn).ravel())
+    matrix = csc_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (count, count))
+    held = supports(support, known, number, count)
+    forces = np.zeros((count, loads.shape[1]))
+    for x in range(0, known.size, 2):
+        here = [np.flatnonzero(dofs == x + c) for c in range(2)]
+        if here[0].size:
+            forces[number[tooth, [x, x + 1]]] += to_sector(tooth).T @ loads[[here[0][0], here[1][0]]]
+    # A stiffness lent to what the support holds, which then is made to vanish: both are exact.
+    lent = (matrix + csc_array(held) @ csc_array(held).T).tocsc()
+    both = splu(lent, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(np.hstack([forces, held]))
+    free, by_support = both[:, : loads.shape[1]], both[:, loads.shape[1] :]
+    moved = free - by_support @ np.linalg.solve(held.T @ by_support, held.T @ free)
+    found = {}
+    for k in (-1, 0, 1):
+        there = moved[number[(tooth + k) % TEETH]].reshape(-1, 2, loads.shape[1])
+        found[k] = np.einsum("cd,ndp->ncp", to_sector(tooth + k), there).reshape(-1, loads.shape[1])[watched]
+    return found
+
+
+def supports(support, known, number, count):
+    """Weights of the ring's unknowns in what the support holds: means over pins, or over the whole circle."""
+    edges, motion = known.edge_dofs["bore"], rigid_motions(known)
+    radius = float(np.hypot(*known.edge_places["bore"][:, 0, 0]))
+    nodes, places = [], []
+    for k in range(TEETH):
+        for edge in np.moveaxis(edges, 2, 0):
+            nodes.append(number[k][edge])
+            local = np.stack([motion[edge[1], 2], -motion[edge[0], 2]])  # a turn moves (x, y) by (-y, x)
+            places.append((to_sector(k).T @ local).T)
+    nodes, places = np.array(nodes), np.array(places)
+    if support.pins:
+        held = np.zeros((count, 2 * support.pins))
+        for pin, weight in enumerate(mean_over_arcs(places, support, radius)):
+            for c in range(2):
+                np.add.at(held[:, 2 * pin + c], nodes[:, c], weight)
+    else:
+        held = np.zeros((count, 3))
+        xi, share = np.polynomial.legendre.leggauss(8)
+        shapes = np.array([
+            np.prod([(0.5 + 0.5 * xi - j / 3.0) / (i / 3.0 - j / 3.0) for j in range(4) if j != i], axis=0)
+            for i in range(4)
+        ])  # fmt: skip
+        even = np.einsum("iq,q,jq->ij", shapes, share, shapes)  # edges are alike
+        for c in range(2):
+            np.add.at(held[:, c], nodes[:, c], np.tile(even.sum(axis=1), (len(nodes), 1)))
+            turned = -places[:, :, 1] if c == 0 else places[:, :, 0]
+            np.add.at(held[:, 2], nodes[:, c], turned @ even)
+    return held
+
+
+@pytest.mark.parametrize(
+    ("support", "rim", "tooth"),
+    [
+        (RimSupport(), 1.0, 0),
+        pytest.param(RimSupport(), 0.3, 0, marks=pytest.mark.long),
+        (RimSupport(5, 2.0, 0.3), 1.0, 7),
+        (RimSupport(8, 1.1, -0.2), 4.0, 1),
+    ],
+)
+def test_rings_answer_as_the_whole_ring_solved_at_once(support, rim, tooth):
+    known = tooth_on_pins(solved(support, rim), tooth)
+    loads = np.random.default_rng(1).normal(size=(known.flank.dofs.size, 2))
+    fillet = known.fillets["tension"]
+    watched = np.concatenate([known.flank.dofs, fillet.dofs])
+    found = whole_ring(support, rim, tooth, loads, known.flank.dofs, watched)
+    n, close = known.flank.dofs.size, 1e-9
+    if (
+        support.pins or rim < 1.0
+    ):  # the arcs' sum is good to that; digits of a thin ring, which gives way 100 times as much
+        close = 1e-5 if support.pins else 1e-6
+    for k, moved in found.items():
+        size = np.abs(found[0]).max()
+        np.testing.assert_allclose(known.compliance[k] @ loads, moved[:n], atol=close * size)
+        stress = fillet.strain @ moved[n:] / (1.0 - NU**2)
+        np.testing.assert_allclose(known.stress[k, "tension"] @ loads, stress, atol=10.0 * close * np.abs(stress).max())
+
+
+def test_pins_all_over_the_circle_are_the_held_circle():
+    radius = TOOTH.root_radius + 4.0
+    every = solved(RimSupport(TEETH, 2.0 * math.pi * radius / TEETH), 4.0)
+    held = solve_influence(TOOTH, MESHES[4.0], NU, "strain", order=3, reach=2)
+    size = np.abs(held.compliance[0]).max()
+    np.testing.assert_allclose(every.compliance[0], held.compliance[0], atol=2e-2 * size)
+    assert every.pins is not None
+    assert every.pins.teeth == 1
+
+
+def test_the_mean_over_the_teeth_is_that_of_each_and_answers_both_ways():
+    known = solved(RimSupport(9, 1.5, 0.1))
+    each = [tooth_on_pins(known, tooth) for tooth in range(known.pins.teeth)]
+    assert len(each) == 8
+    size = np.abs(known.compliance[0]).max()
+    for k, mean in known.compliance.items():
+        np.testing.assert_allclose(np.mean([one.compliance[k] for one in each], axis=0), mean, atol=1e-11 * size)
+        np.testing.assert_allclose(known.compliance[-k].T, mean, atol=1e-9 * size)
+    least, most = TOOTH.involute_radii
+    radius, width = np.linspace(least + 0.2, most - 0.2, 3), np.full(3, 0.02)
+    spread = over_the_teeth(known, radius, 0.18, width)
+    for tooth, one in enumerate(each):
+        np.testing.assert_allclose(spread["c_self"][tooth], one.self_compliance(radius, 0.18, width), rtol=2e-3)
+        for side in ("tension", "compression"):
+            wanted = one.largest_root_stress(0, side, radius, width)[0]
+            np.testing.assert_allclose(spread[f"root_{side}"][tooth], wanted, rtol=1e-9, atol=1e-9)
+    assert np.ptp(spread["c_self"], axis=0).min() > 0.01 * spread["c_self"].min()
+
+
+def test_a_ring_turned_by_a_pitch_under_its_pins_is_the_next_tooth():
+    pitch = 2.0 * math.pi / TEETH
+    one, other = solved(RimSupport(5, 2.0, 0.1)), solved(RimSupport(5, 2.0, 0.1 - pitch))
+    size = np.abs(one.compliance[0]).max()
+    there, here = tooth_on_pins(one, 3), tooth_on_pins(other, 2)
+    for k in one.compliance:
+        np.testing.assert_allclose(there.compliance[k], here.compliance[k], atol=1e-9 * size)
+
+
+def thin_ring(harmonics, r, k, teeth):
+    """c_k of a thin inextensible ring under forces at its teeth but for a factor; r is the neutral radius.
+
+    Bending of harmonic n by q_n is q_n / (n^2 - 1)^2 (Timoshenko, Strength of Materials II, thin rings); n >= 2, what
+    is left is the motion as a body. Of a force along the line of action: radial, tangential, and its moment.
+    """
+    base = 0.5 * teeth * math.cos(math.radians(20.0))
+    at = math.radians(20.0)
+    radial, tangential, arm = math.sin(at), math.cos(at), r * math.cos(at) - base
+    n = np.arange(2, harmonics)
+    across = -tangential / n + arm * (n - 1.0 / n) / r
+    return float(np.sum((radial**2 + across**2) * np.cos(2.0 * math.pi * k * n / teeth) / (n**2 - 1.0) ** 2))
+
+
+def test_far_teeth_of_a_thin_splined_ring_move_as_a_thin_ring_bends():
+    teeth = 100
+    tooth = InternalTooth(teeth, PinionCutter(25, 0.1, 1.25, tip_radius=0.2), tip_radius=49.2)
+    mesh = mesh_sector(tooth, tooth.root_radius + 1.2, COARSE)
+    known = solve_influence(tooth, mesh, NU, "strain", order=3, reach=49, support=RimSupport())
+    radius, far = np.array([0.5 * teeth]), [20, 25, 30, 40, 49]
+    found = np.array([known.neighbour(k, radius, radius, 0.18)[0, 0] for k in far])
+    wanted = np.array([thin_ring(60, tooth.root_radius + 0.5, k, teeth) for k in far])
+    ratio = found / wanted
+    np.testing.assert_allclose(ratio / ratio[-1], 1.0, atol=0.03)
+
+
+CASE = """
+results = ["stiffness"]
+[gear.r]
+internal = true
+teeth = 60
+module = "4 mm"
+profile_shift = 0.2
+cutter = { teeth = 20, profile_shift = 0.1, addendum = 1.25, tip_radius = 0.25 }
+rim_thickness = "12 mm"
+rim_support = SUPPORT
+"""
+
+
+@pytest.mark.parametrize(
+    ("support", "words"),
+    [
+        ('{ kind = "pins" }', "pins"),
+        ('{ kind = "pins", pins = 0, width = "12 mm" }', "at least 2"),
+        ('{ kind = "pins", pins = 61, width = "3 mm" }', "between 2 and the number of teeth, 60"),
+        ('{ kind = "pins", pins = 6, width = "500 mm" }', "from pin to pin"),
+        ('{ kind = "pins", pins = 6, width = "1 um" }', "0.02 modules"),
+        ('{ kind = "splined", pins = 6 }', "only for a rim on pins"),
+        ('{ kind = "glued" }', "pins"),
+    ],
+)
+def test_supports_that_hold_no_ring_are_refused_in_words(tmp_path, support, words):
+    path = tmp_path / "ring.toml"
+    path.write_text(CASE.replace("SUPPORT", support))
+    with pytest.raises(FegearError, match=words) as refused:
+        read_scene(path)
+    assert "gear.r.rim_support" in str(refused.value)
+
+
+def test_external_gears_have_no_rim_support(tmp_path):
+    path = tmp_path / "gear.toml"
+    path.write_text(
+        'results = ["stiffness"]\n[gear.a]\nteeth = 30\nmodule = "2 mm"\nrim_support = { kind = "splined" }'
+    )
+    with pytest.raises(FegearError, match="internal"):
+        read_scene(path)
