@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes.util
+import math
 import os
 import sys
 from collections.abc import Sequence
@@ -105,7 +106,7 @@ def draw_space(
     if not bare:
         plotter.show_bounds(
             grid="back", location="outer", xtitle="x [mm]", ytitle="y [mm]", ztitle="z [mm]", n_xlabels=4, n_ylabels=4,
-            n_zlabels=3, font_size=22, fmt="%.3g", use_3d_text=False,
+            n_zlabels=3, font_size=22, fmt=_labels(plotter.bounds), use_3d_text=False,
         )  # fmt: skip
     plotter.camera.position, plotter.camera.focal_point, plotter.camera.up = camera
     plotter.reset_camera()  # keeps the direction, and everything in the picture
@@ -116,6 +117,12 @@ def draw_space(
     image = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
     return _trimmed(image) if bare else image
+
+
+def _labels(bounds: Sequence[float]) -> str:
+    """Format of the numbers along the axes: decimals for three digits of the longest side, so that zero reads so."""
+    longest = max(high - low for low, high in zip(bounds[::2], bounds[1::2], strict=True))
+    return f"%.{max(0, 2 - math.floor(math.log10(longest))) if longest > 0.0 else 0}f"
 
 
 def _trimmed(image: NDArray[np.uint8]) -> NDArray[np.uint8]:

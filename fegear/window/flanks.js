@@ -46,7 +46,7 @@ const fegearFlanks = (() => {
     const side = member === "driver" ? 0 : 1, [form, tip] = sent.ends[member], base = data[`${member}_base`] * 1e3;
     const alpha = involute(data[`${member}_radius`] * 1e3, base), twist = data.twist / base, middle = 0.5 * (form + tip), scale = fegearLayers.shades("pressure");
     const [cy, sy, cp, sp] = [cos(turned.yaw), sin(turned.yaw), cos(turned.pitch), sin(turned.pitch)];
-    const reach = 0.5 * hypot(sent.high - sent.low, 1.8 * (tip - form)), zoom = 0.44 * min(box.w, 1.5 * box.h) / reach;
+    const reach = 0.5 * hypot(sent.high - sent.low, 1.8 * (tip - form)), zoom = 0.42 * min(box.w, 1.5 * box.h) / reach;
     const seen = (r, angle, z) => { // on the page, and how near
       const turn = angle - z * twist, x = r * sin(turn), y = r * cos(turn) - middle;
       const across = -x * sy + z * cy, off = x * cy + z * sy;
@@ -69,6 +69,10 @@ const fegearFlanks = (() => {
     patches.sort((a, b) => a[0] - b[0]);
     context.lineWidth = 0.8;
     context.lineJoin = "round";
+    context.save();
+    context.beginPath();
+    context.rect(box.x, box.y, box.w, box.h);
+    context.clip(); // what sticks out is not drawn over the other tooth
     const path = (corners) => { context.beginPath(); corners.forEach(([x, y], i) => i ? context.lineTo(x, y) : context.moveTo(x, y)); };
     for (const [, corners, fill] of patches) {
       path(corners);
@@ -103,7 +107,11 @@ const fegearFlanks = (() => {
     context.fillText(member, box.x + 10, box.y + 18);
     context.fillStyle = ink;
     context.textAlign = "center";
-    for (const z of [sent.low, sent.high]) { const [x, y] = onFlank(form, z); context.fillText(`z ${z.toFixed(1)}`, x, y + 15); }
+    for (const z of [sent.low, sent.high]) {
+      const [x, y] = onFlank(form, z), words = `z = ${z.toFixed(1)} mm`.replace("-", "−"), room = context.measureText(words).width / 2 + 4;
+      context.fillText(words, max(box.x + room, min(box.x + box.w - room, x)), min(box.y + box.h - 5, y + 15));
+    }
+    context.restore();
     return max(0, ...sent.positions[p].flatMap((line) => line[4]));
   }
   const kept = new WeakMap(); // what was sent -> what is drawn of it

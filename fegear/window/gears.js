@@ -141,10 +141,10 @@ const fegearGears = (() => {
           const look = beside ? " beside" : "";
           svg("line", { x1: px, y1: py, x2: qx, y2: qy, class: `load${look}` }, kept.arrows);
           svg("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: `load-tip${look}` }, kept.arrows);
-          found.push(`${digits(load, 4)} N at x = ${(x * 1e3).toFixed(3)} mm${beside ? " (pale: not in this section)" : ""}`);
+          found.push(`${digits(load, 4)} N at x = ${(x * 1e3).toFixed(2)} mm${beside ? " (pale: not in this section)" : ""}`);
         }
       }
-      told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
+      told.title = told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
     }
     new ResizeObserver(() => draw()).observe(stage);
     let due = 0; // at most once in a frame

@@ -2,7 +2,7 @@
 // One glance: small pictures on the right that follow what is moved, the numbers below with their errors and what they
 // differ from A, and what of it is kept: which pictures, which stress, whether the form is folded away.
 const fegearGlance = (() => {
-  const { plot, plain } = fegearPlots;
+  const { plot, plain, ofPanel, numbers: numbersOf } = fegearPlots;
   const $ = (id) => document.getElementById(id);
   const RATIOS = { transverse: "contact ratio", overlap: "overlap ratio" };
   let told = null, view = {}, pair = null, pairs = {}, kind = "pair"; // the pair, or the set, that is shown
@@ -56,9 +56,10 @@ const fegearGlance = (() => {
       figure.dataset.picture = name;
       const body = made("div", "small-body"), empty = made("p", "quiet", "comes with the next results that have it");
       body.append(empty);
-      figure.append(title, body);
+      const legend = made("p", "small-legend");
+      figure.append(title, legend, body);
       host.append(figure);
-      const kept = { ...plot(body), figure, title, empty, key: `${one.key}${pair}`, panel: one.panel, name };
+      const kept = { ...plot(body), figure, title, legend, empty, key: `${one.key}${pair}`, panel: one.panel, name };
       title.onclick = body.onclick = () => fegear.enlarge(kept.key, one.words);
       plots.set(name, kept);
       watch.observe(body);
@@ -82,6 +83,23 @@ const fegearGlance = (() => {
     }
     host.append(choice);
   }
+  const STYLES = { dash: "dashed", dashdot: "dashed", dot: "dotted" };
+  /** Says what the curves of a small picture are, where there are several; what has no room is on pointing at it. */
+  function name(legend, traces, darker) {
+    const named = [...new Map(traces.filter(({ name: words, showlegend }) => words && showlegend !== false).map((one) => [one.name, one])).values()];
+    const top = ({ y }) => numbersOf(y).reduce((most, one) => Math.max(most, Number.isFinite(one) ? one : most), -Infinity);
+    const said = JSON.stringify([fegearFigure.theme(), named.map(({ name: words, line }) => [words, line?.color])]);
+    if (legend.dataset.said === said) return;
+    legend.dataset.said = said;
+    legend.hidden = named.length < 2;
+    legend.title = named.map((one) => plain(one.name)).join(", ");
+    legend.replaceChildren(...named.sort((one, other) => top(other) - top(one)).map((one) => { // as they stand below each other
+      const entry = made("span"), key = made("i"), colour = one.line?.color ?? one.marker?.color;
+      key.style.borderTop = `${one.type === "bar" ? 7 : 2}px ${STYLES[one.line?.dash] ?? "solid"} ${fegearFigure.theme() === "dark" ? darker[colour] ?? colour : colour}`;
+      entry.append(key, plain(one.name));
+      return entry;
+    }));
+  }
   function drawAll() {
     due = 0;
     lay();
@@ -97,6 +115,7 @@ const fegearGlance = (() => {
       Object.assign(kept, { shown: spec, theme: fegearFigure.theme(), at: kept.size, against: pinned });
       const unit = /\[[^\]]*\]\s*$/.exec(plain(y))?.[0] ?? "", words = `${told.pictures[kept.name].words} ${unit}`;
       if (kept.title.textContent !== words) kept.title.textContent = words;
+      name(kept.legend, ofPanel(spec, kept.panel), darker);
       kept.figure.dataset.count = Number(kept.figure.dataset.count ?? 0) + 1; // how often it was drawn
     }
     strip();
@@ -123,7 +142,8 @@ const fegearGlance = (() => {
     if (!host || !told) return;
     const wanted = told.numbers.map((name) => numbers.get(`${pair}.${name}`)).filter(Boolean);
     const ratios = kind === "set" ? [] : Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
-    const all = [...wanted, ...ratios], laid = JSON.stringify([kind, pair, all.map((one) => one.name)]);
+    const several = kind === "set" || Object.keys(pairs).length > 1; // then it is said whose numbers and pictures these are
+    const all = [...wanted, ...ratios], laid = JSON.stringify([kind, pair, several, all.map((one) => one.name)]);
     if (host.dataset.laid !== laid) {
       host.dataset.laid = laid;
       cells.clear();
@@ -134,6 +154,11 @@ const fegearGlance = (() => {
         cells.set(one.name, parts);
         return cell;
       }));
+      if (several) {
+        const cell = made("div", "cell subject");
+        cell.append(made("span", "label", "shown"), made("b", "", `${kind} ${pair}`));
+        host.prepend(cell);
+      }
     }
     for (const one of all) {
       const [, value, error, from] = cells.get(one.name), before = pinned?.numbers.get(`${pair}.${one.name}`);

@@ -404,6 +404,12 @@ def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves
         told = browser.run(f"document.querySelector('[data-number=\"{member}.largest_root_tension\"] b').textContent")
         assert browser.run(f"{INSIDE}('{member}')") == pytest.approx(float(told.split()[0]), rel=0.015)
 
+    # What the curves of a small picture are is said above it, the highest first.
+    legend = browser.run("document.querySelector('[data-picture=root] .small-legend').textContent")
+    assert legend.index("tension") < legend.index("compression")
+    assert "driver pinion, tension" in legend
+    assert "driven wheel, tension" in legend
+
     # The gears stand where one pair touches within the relief, beside another.
     browser.run("(one => { one.value = 300; one.oninput(); })(document.querySelector('.mesh-tools input'))")
 
@@ -563,6 +569,8 @@ def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(bro
     browser.until(f"{IDLE} && document.querySelector('[data-set=P] .mesh-scale i') !== null")
     browser.until("document.querySelector('[data-number=K_gamma] b') !== null")
     browser.until("document.querySelector('[data-picture=planet-loads] .small-plot path') !== null")
+    subject = "document.querySelector('#strip .subject b').textContent"  # several are there: whose numbers these are
+    assert browser.run(subject) == "set P"
     at_rest = browser.run(f"{canvas}.toDataURL()")
     browser.run("(one => { one.value = 40; one.oninput(); })(document.querySelector('[data-set=P] input[type=range]'))")
     assert browser.run(f"{canvas}.toDataURL()") != at_rest  # 2 degrees on
@@ -594,6 +602,7 @@ def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(bro
     browser.until("document.querySelector('.hand:not([hidden])').dataset.pair === 'I'")
     browser.until("document.querySelector('[data-picture=te] .small-plot path') !== null")
     assert browser.run("fegearGlance.pair()") == "I"
+    assert browser.run(subject) == "pair I"
     go(browser, served.address)  # it is the window's to remember
     browser.until("document.querySelector('.hand:not([hidden])')?.dataset.pair === 'I'")
     browser.size(1300, 900)

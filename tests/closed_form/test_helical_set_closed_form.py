@@ -15,6 +15,7 @@ from fegear.dynamics.planetary.phases import mesh_phases
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
+from fegear.results.pair.flank_surface_tables import flank_pressure_figure
 
 TEETH = {"sun": 22, "planet": 20, "ring": 62}
 CACHE = SolutionCache()
@@ -186,3 +187,16 @@ def test_planets_are_bent_to_either_side():
 def test_offset_faces_are_refused():
     with pytest.raises(FegearError, match="moves the phase of one mesh"):
         run("planet-set", pair={"axial_offset": "1 mm"})
+
+
+def test_the_pressure_on_the_tooth_of_a_ring_is_drawn_on_its_flank():
+    """Both teeth of the drawing carry the pressure of the same contact; that of the ring was bare."""
+    _, found = run("planet-load-sharing")
+    flanks = data(found, "loaded-flanks", "P_ring")
+    figure = flank_pressure_figure("P_ring", flanks.over.found, 0)
+    (skin,) = figure.panels[0].items
+    z = np.asarray(skin.points)[2]
+    sides = [np.asarray(skin.values)[where] for where in (z > 0.0, z < 0.0)]  # the driver's tooth, the ring's
+    covered = [np.nanpercentile(one, 75.0) for one in sides]  # peaks at the tips' edges stand between other points
+    assert covered[0] == pytest.approx(covered[1], rel=0.05)
+    assert covered[1] > 100.0

@@ -65,6 +65,15 @@ def test_the_case_gives_what_the_mechanics_does(ran):
                                                     "planet_vibration_P", "planet_sidebands_P"}  # fmt: skip
 
 
+def test_what_phases_and_equal_planets_cancel_is_drawn_as_nothing(ran):
+    """Round-off was drawn as a curve of 1e-13 micrometres; a picture without bars now says why."""
+    equal = {one.key: one for one in run(changed(pin_errors=None)).figures}
+    across = [np.asarray(curve.y) for curve in equal["planet_vibration_P"].panels[1].items]
+    assert all(not one.any() or one.max() > 1e-6 for one in across)
+    bars = equal["planet_forces_P"].panels[0]
+    assert ("cancel" in bars.title) == (not any(np.any(one.y) for one in bars.items))
+
+
 def test_each_arrangement_runs_and_shares_alike():
     """Fixed ring, sun or carrier, driven from either side, either way round: loads follow the torque on the sun."""
     for fixed, driving in (("ring", "carrier"), ("carrier", "sun"), ("sun", "ring"), ("sun", "carrier")):

@@ -208,7 +208,7 @@ def _figure(asked: FlanksToEvaluate, traces: Traces) -> Figure:
     if asked.design[traces.kind].any():
         curves.append(Curve(x, asked.design[traces.kind] * 1e6, "design", "series:1", markers=False))
     marks = tuple(Mark("x", end * 1e3, word) for end, word in zip(traces.ends, ("from", "to"), strict=True))
-    panel = Panel(Axis(f"{along} [mm]"), Axis("deviation [um]"), tuple(curves), marks)
+    panel = Panel(Axis(along, "mm"), Axis("deviation", "um"), tuple(curves), marks)
     return Figure(
         f"measured_{called}_{asked.name}", f"Measured {called} of gear {asked.name}",
         f"Gear {asked.name}: {called} traces, filtered; marked is the evaluation range.", (panel,),

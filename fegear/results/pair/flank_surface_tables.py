@@ -444,11 +444,13 @@ def _on_flank(found: LoadedFlanks, pair: GearPair, member: Member, section: Arra
     """Pressure at the points of the section at all stations, shape (stations, N)."""
     radius = np.hypot(*section)
     reach = np.sort(pair.radius(np.array([pair.x_start, pair.x_end]), member))
-    corner = int(np.flatnonzero(radius >= radius.max() * (1.0 - 1e-9))[-1])  # the outline goes on down the flank
-    on = corner + np.flatnonzero((radius[corner:] >= reach[0]) & (radius[corner:] <= reach[1] * (1.0 + 1e-9)))
+    tip = radius.min() if pair.gear(member).tooth.internal else radius.max()
+    corner = int(np.flatnonzero(np.isclose(radius, tip, rtol=1e-9, atol=0.0))[-1])  # the outline goes on down the flank
+    low, high = reach * np.array([1.0 - 1e-9, 1.0 + 1e-9])
+    on = corner + np.flatnonzero((radius[corner:] >= low) & (radius[corner:] <= high))
     on = on[section[0, on] > 0.0]
     value = np.full((stations.size, radius.size), np.nan)  # nothing presses on the rest of the tooth
-    x = pair.x_of_radius(np.minimum(radius[on], reach[1]), member)
+    x = pair.x_of_radius(np.clip(radius[on], *reach), member)
     order = np.argsort(x)
     value[:, on[order]] = found.spread(x[order], stations, found.pressure[:, :, case])
     return value

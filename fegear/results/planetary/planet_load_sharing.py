@@ -307,11 +307,17 @@ def _harmonics(name: str, data: PlanetLoads, inputs: LoadInputs) -> Figure:
         Bars(order, np.hypot(*_size(data, force_on(data, member), order)), member, f"series:{k}")
         for k, member in enumerate(CENTRALS)
     )
+    none = not any(np.any(bar.y) for bar in bars)
     return Figure(
         f"planet_forces_{name}", f"Forces across the axis of set {name}",
         f"Set {name}: harmonics of the forces of the planets on sun, ring and carrier, 0-peak; a member that floats "
         "feels none.",
-        (Panel(Axis("mesh harmonic", whole=True), Axis("force", "N"), bars),),
+        (
+            Panel(
+                Axis("mesh harmonic", whole=True), Axis("force", "N", limits=(0.0, 1.0) if none else None), bars,
+                title="none: the forces of the planets cancel each other" if none else "",
+            ),
+        ),
     )  # fmt: skip
 
 

@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.set_response import ForcedResponse, LinearSet
     from fegear.engine.stage import Upstream, Work
 
+#: Of the largest motion about the axes: what moves less across them is drawn as standing still.
+_ROUND_OFF = 1e-9
+
+
 #: Coordinates of a central body.
 _ALONG = ("x", "y", "turn")
 
@@ -222,23 +226,21 @@ def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
         Curve(rpm, force, f"mesh with the {one}", role, markers=False)
         for force, one, role in ((data.sun_force, "sun", "series:0"), (data.ring_force, "ring", "series:1"))
     )
+    across = [np.hypot(data.amplitude(member, 0), data.amplitude(member, 1)) for member in CENTRALS]
+    around = max(float(data.amplitude(member, 2).max()) for member in CENTRALS)
     moves = tuple(
-        Curve(
-            rpm,
-            np.hypot(data.amplitude(member, 0), data.amplitude(member, 1)) * 1e6,
-            member,
-            f"series:{k}",
-            markers=False,
-        )
-        for k, member in enumerate(CENTRALS)
+        Curve(rpm, np.where(size < _ROUND_OFF * around, 0.0, size) * 1e6, member, f"series:{k}", markers=False)
+        for k, (member, size) in enumerate(zip(CENTRALS, across, strict=True))
     )
     return Figure(
         f"planet_vibration_{name}", f"Vibration of set {name} over speed",
         f"Set {name}: largest dynamic force in the meshes over their mean force of {data.mean_force:.5g} N, and motion "
         "of sun, ring and carrier across the axis (0-peak), excited by the transmission errors of the meshes with "
         "their phases.",
-        (Panel(x, Axis("dynamic mesh force", "N", zero=True), forces), Panel(x, Axis("motion across the axis", "um"),
-                                                                             moves)),
+        (
+            Panel(x, Axis("dynamic mesh force", "N", zero=True), forces),
+            Panel(x, Axis("motion across the axis", "um", zero=True), moves),
+        ),
     )  # fmt: skip
 
 

@@ -169,15 +169,16 @@ def _power_figure(data: SpectrumData, rpm: float) -> Figure:
     order = (data.mesh, *(j for j in range(len(train.names)) if j != data.mesh))
     whole, top = found.orders % 1.0 == 0.0, float(found.frequencies[:, -1, 0].max())
     between = "" if whole.all() else " Rotational harmonics between them, which spacing errors cause, are in the table."
-    ends = (-0.02 * top, 1.02 * top)  # the mean stands on the ordinate
+    ends = (-0.02e-3 * top, 1.02e-3 * top)  # the mean stands on the ordinate
     for j in order:
         shown = found.present[j] & (power[j] > _NO_FORCE**2) & whole
-        lines = Stems(found.frequencies[j, shown, 0], power[j, shown], f"from mesh {train.names[j]}", f"series:{j}",
+        kilohertz = found.frequencies[j, shown, 0] * 1e-3
+        lines = Stems(kilohertz, power[j, shown], f"from mesh {train.names[j]}", f"series:{j}",
                       tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))  # fmt: skip
         steady = Points([0.0], [mean], "mean force", "ink", "x", notes=("mean force squared",))
         items = (lines, steady) if j == data.mesh else (lines,)
-        hertz = axis_of(found, "frequencies", limits=ends)
-        panels.append(Panel(hertz, axis_of(found, "power_lines", log=True), items, title=f"From mesh {train.names[j]}"))
+        x = Axis("frequency", "kHz", limits=ends)
+        panels.append(Panel(x, axis_of(found, "power_lines", log=True), items, title=f"From mesh {train.names[j]}"))
     return Figure(
         f"mesh_force_power_{name}",
         f"Power of the lines of the force in mesh {name}",
