@@ -23,10 +23,12 @@ DOCS = ROOT / "docs"
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
     "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export", "fem",
-    "gear-with-its-width", "helical", "helical-misalignment", "load-over-the-face", "mesh-as-fmu", "mesh-in-adams",
+    "gear-with-its-width", "helical", "helical-misalignment", "design",
+    "load-over-the-face", "mesh-as-fmu", "mesh-in-adams",
     "mesh-in-openmodelica", "mesh-in-ross", "mesh-in-simulink", "proofs", "python",
     "python-mechanics", "several-meshes",
-    "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table", "sweep-on-a-cluster",
+    "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table", "studies-and-output",
+    "sweep-on-a-cluster",
     "sweeps", "tutorial",
     "rate-a-pair", "tolerances", "use-my-own-compliance", "use-my-own-mesh", "validate-root-stress-formula",
 }  # fmt: skip
@@ -450,12 +452,74 @@ def _functions(name):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["top", "geometry", "fem", "formulas"])
-def test_every_function_of_the_reference_stands_in_a_program_that_is_run(name):
-    documented = re.findall(r"^::: (\S+)", (DOCS / "reference" / f"{name}.md").read_text("utf-8"), re.MULTILINE)
+#: Public functions that have no example yet. None is added here: a new function brings its example along.
+WITHOUT_EXAMPLE = {
+    "base.solution_cache.cache_on_disk",
+    "case.built.loaded_pair.build_loaded_pair",
+    "case.built.loaded_pair.compliance_sources",
+    "case.built.pair_inputs.pair_inputs",
+    "case.built.tooth_influence.solve_influence_functions",
+    "case.built.train.assemble",
+    "case.built.train.build_train",
+    "case.built.train.motion_inputs",
+    "case.built.train.motion_model",
+    "case.built.train.steady_motions",
+    "case.built.train.train_inputs",
+    "case.drafts.text.draft",
+    "contact.compared.crosscheck.pair_reference",
+    "contact.compared.crosscheck.rated_helical_pair",
+    "contact.compared.crosscheck.rated_spur_pair",
+    "contact.compared.crosscheck.virtual_root_stress",
+    "contact.compared.root_stress_study.root_stress_study",
+    "contact.plane.mark_series.reciprocal_series",
+    "contact.plane.moved_outlines.moved_outline",
+    "contact.plane.shifted_compliance.neighbours_shifted_by_error",
+    "contact.wide.complementarity.solve_contact",
+    "contact.wide.compliance.flank_compliance",
+    "contact.wide.error.flank_error",
+    "contact.wide.gaps.touching_gaps",
+    "contact.wide.mesh_matrix.mesh_stiffness",
+    "dynamics.helical_pair.mesh_parameters.mesh_parameters",
+    "dynamics.helical_pair.modal_indices.mode_table",
+    "dynamics.helical_pair.modal_indices.rank_modes",
+    "dynamics.helical_pair.mode_following.follow_modes",
+    "dynamics.helical_pair.transmissibility.pair_forces",
+    "dynamics.helical_pair.transmissibility.reduced_transmissibility",
+    "dynamics.helical_pair.transmissibility.transmissibility",
+    "dynamics.motion.steady_state.speed_sweep",
+    "dynamics.motion.steady_state.steady_state",
+    "dynamics.planetary.planet_loads.planet_loads",
+    "dynamics.planetary.set_modes.set_modes",
+    "dynamics.planetary.set_response.forced_response",
+    "dynamics.train.charts.chart_point",
+    "dynamics.train.charts.speed_chart",
+    "dynamics.train.dynamic_factor.linear_chart",
+    "dynamics.train.flank_excitation.flank_excitation",
+    "dynamics.train.friction.friction_over_path",
+    "dynamics.train.friction.with_friction",
+    "dynamics.train.single_tooth.force_at",
+    "dynamics.train.tooth_force.largest_pull",
+    "output.comparison.read_side",
+    "output.comparison.write_comparison",
+    "output.cost.write_cost",
+    "output.draw_plotly.layout.plotly_json",
+    "output.draw_png.draw_pictures",
+    "output.effects.write_effects",
+    "output.export.export_gears",
+    "output.folder.write_results",
+    "studies.comparison.compare.compare",
+    "studies.comparison.joined.join",
+    "studies.effects.effect_study",
+}
+
+
+@pytest.mark.parametrize("page", sorted((DOCS / "reference").glob("*.md")), ids=lambda page: page.stem)
+def test_every_function_of_the_reference_stands_in_a_program_that_is_run(page):
+    documented = re.findall(r"^::: (\S+)", page.read_text("utf-8"), re.MULTILINE)
     asked = set().union(*map(_functions, documented))
-    assert len(asked) > 5
-    assert asked - set().union(*map(_called, PAGES)) == set()
+    lacking = asked - set().union(*map(_called, PAGES))
+    known = {f"fegear.{name}" for name in WITHOUT_EXAMPLE}
+    assert lacking == asked & known, "one has no example, or has one now and is to be taken from WITHOUT_EXAMPLE"
 
 
 def test_equations_are_numbered_page_by_page_and_can_be_linked_to():
