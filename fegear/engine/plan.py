@@ -278,8 +278,9 @@ def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> N
     for key in (*(f"pair.{name}" for name in pairs), *(f"gear.{name}" for name in gears)):
         named = result or (stage.results[0] if stage.results else stage.name)
         wide = " where gears are helical or have a width" if subject in scene.wide_pairs else ""
+        why = f" ({stage.why_external})" if stage.why_external else ""
         raise InputError(
-            key, "internal", f'is not taken by "{named}", which is computed for external gears alone{wide}',
+            key, "internal", f'is not taken by "{named}", which is computed for external gears alone{wide}{why}',
             "do not ask for it, or describe the external gears in a case of their own",
         )  # fmt: skip
 

@@ -181,6 +181,8 @@ class Stage:
         ``cites(scene, subject)`` -> what the result rests on.
     internal : bool
         Whether it takes internal gears and pairs; a plan refuses those of other stages.
+    why_external : str
+        Why it does not.
     in_points : bool
         Whether it consists of points that other processes, or a cluster, can compute.
     name, title, results, about, extra : str, str, tuple of str, str, str
@@ -199,6 +201,7 @@ class Stage:
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
     internal: bool = False
+    why_external: str = ""
     in_points: bool = False
     name: str = ""
     title: str = ""

@@ -228,6 +228,7 @@ def test_reliefs_and_spacing_errors_of_a_ring_hold_its_flanks_back(cache):
         (['results=["rating"]'], "gear.p.strength = (not given): is missing"),
         (['results=["mesh-stiffness-matrix"]', 'pair.I.width="solid"'], "is computed for external gears alone"),
         (['results=["crosscheck"]'], "is computed for external gears alone"),
+        (['results=["flank-fracture"]'], "alone (ISO/TS 6336-4 is written for external teeth)"),
         (['pair.I.compliance={ source = "cornell" }', "effects.neighbour_coupling=false"], "and r is internal"),
         (['pair.I.root_stress={ source = "heywood" }', 'results=["root-stress-history"]'], "and r is internal"),
         (['pair.I.width="slices"'], "is not known to slices, whose laws were fitted to external gears"),

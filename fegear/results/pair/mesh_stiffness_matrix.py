@@ -356,4 +356,5 @@ MESH_STIFFNESS_MATRIX = Stage(
     effects=WIDE_EFFECTS,
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
     forecast=lambda _scene, _name: Forecast({}, 0.1),
+    why_external="its signs of rotations and tilts are those of axes on either side of the pitch point",
 )

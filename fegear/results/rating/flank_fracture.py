@@ -439,4 +439,5 @@ FLANK_FRACTURE = Stage(
         Citation("agma-2101", "least effective case depth"),
     ),
     forecast=lambda _scene, _name: Forecast({"places": _PLACES, "depths": _DEPTHS}, 0.05),
+    why_external="ISO/TS 6336-4 is written for external teeth",
 )
