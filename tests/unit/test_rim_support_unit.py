@@ -198,6 +198,17 @@ def test_a_ring_turned_by_a_pitch_under_its_pins_is_the_next_tooth():
         np.testing.assert_allclose(there.compliance[k], here.compliance[k], atol=1e-9 * size)
 
 
+@pytest.mark.parametrize("support", [RimSupport(), RimSupport(2, 2.0, 0.3)])
+def test_thin_rims_do_not_hang_on_the_last_bit(support):
+    """A rim of .3 modules, which gives way 1e4 times as much as a tooth: no stiffness against rigid motion is left."""
+    other = mesh_sector(TOOTH, (TOOTH.root_radius + 0.3) * (1.0 + 1e-13), COARSE)
+    one, two = (solve_influence(TOOTH, mesh, NU, "strain", order=3, support=support) for mesh in (MESHES[0.3], other))
+    radius = np.linspace(*TOOTH.involute_radii, 5)[1:-1]
+    width = np.full(3, 0.02)
+    first, second = (x.self_compliance(radius, 0.18, width) for x in (one, two))
+    np.testing.assert_allclose(first, second, rtol=1e-6)
+
+
 def thin_ring(harmonics, r, k, teeth):
     """c_k of a thin inextensible ring under forces at its teeth but for a factor; r is the neutral radius.
 

@@ -158,8 +158,8 @@ def supported_response(
     ring : Ring
         That nothing holds.
     """
-    z, outer = mesh.teeth, _outer(elasticity)
-    ring = close_ring(mesh, elasticity, np.append(watch, outer.dofs), z // 2, held=False)
+    z, outer, motions = mesh.teeth, _outer(elasticity), rigid_motions(elasticity)
+    ring = close_ring(mesh, elasticity, np.append(watch, outer.dofs), z // 2, motions=motions)
     angle = 2.0 * np.pi * np.arange(z) / z
     turn = np.zeros((z, 3, 3))  # from rigid motions of the ring to those in the frame of a sector
     turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
@@ -167,7 +167,7 @@ def supported_response(
     turn[:, 0, 1] = -turn[:, 1, 0]
     every = [k if 2 * k <= z else k - z for k in range(z)]
     ports = np.concatenate([watch, outer.dofs])
-    motion = np.vstack([rigid_motions(elasticity)[watch], outer.motion])
+    motion = np.vstack([motions[watch], outer.motion])
     far = ring.respond(ports, outer.dofs, sectors=every)
     lent = np.stack([far[k] for k in every])  # (z, outer, ports)
     mean = np.einsum("kab,oa,kop->bp", turn, outer.traction, lent, optimize=True)

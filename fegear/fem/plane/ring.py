@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -180,7 +180,7 @@ def close_ring(
     *,
     expandable: bool = False,
     sector_teeth: int = 0,
-    held: bool = True,
+    motions: Array | None = None,
 ) -> Ring:
     """Condense a sector once and close the ring.
 
@@ -196,8 +196,10 @@ def close_ring(
         Whether `Ring.field` will be asked for.
     sector_teeth : int
         Leave the ring open: so many sectors in a row with free sides, the middle one loaded. 0 for the ring.
-    held : bool
-        Whether the bore is held; else rigid motions have a stiffness that is lent to them, for `rim` to take out.
+    motions : ndarray, shape (size, 3), optional
+        Rigid motions at unknowns on the boundary. If given the bore is not held: what round-off leaves of the sector's
+        stiffness against them is taken out, for a thin ring bends with hardly more, and in the ring a stiffness is lent
+        to them, for `rim` to take out.
 
     Returns
     -------
@@ -219,16 +221,21 @@ def close_ring(
     started = time.perf_counter()
     z = mesh.teeth
     side_a, side_b, angle_a, radius = _matching_sides(mesh, elasticity)
-    bore = np.unique(elasticity.edge_dofs["bore"]) if held else np.zeros(0, dtype=np.int64)
+    bore = np.unique(elasticity.edge_dofs["bore"]) if motions is None else np.zeros(0, dtype=np.int64)
     free = ~np.isin(side_a, bore)
     side_a, side_b, angle_a = side_a[free], side_b[free], angle_a[free[::2]]
     sides = np.concatenate([side_a, side_b])
     inner = np.setdiff1d(ports, np.concatenate([bore, sides]))
     sector = condense(elasticity, np.concatenate([sides, inner]), bore, expandable=expandable)
+    if motions is not None:
+        q = np.linalg.qr(motions[sector.kept])[0]
+        off = sector.stiffness @ q
+        stiffness = sector.stiffness - off @ q.T - q @ off.T + q @ (q.T @ off) @ q.T
+        sector = replace(sector, stiffness=0.5 * (stiffness + stiffness.T))
     m, n = side_a.size, sides.size
     turn = np.zeros((n, n))
     turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
-    rigid = None if held else (np.kron(radius, (0.0, 1.0)), np.tile((1.0, 1.0j), radius.size))
+    rigid = None if motions is None else (np.kron(radius, (0.0, 1.0)), np.tile((1.0, 1.0j), radius.size))
     return closed_ring(sector, m, turn, z, reach, sector_teeth=sector_teeth, started=started, rigid=rigid)
 
 
