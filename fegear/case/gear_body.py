@@ -21,7 +21,9 @@ class GearBodyPart(Part):
         description="Thickness b_s of the web between rim and hub, along the axis; for C_R of the ratings too."
     )
     web_offset: Length = Field(
-        default=0.0, description="How far the middle of the web lies from the middle of the face, toward end II."
+        default=0.0,
+        description="How far the middle of the web lies from the middle of the face, toward end II. An idler "
+        "has end II at opposite ends in the mesh that drives it and in the one that it drives: both are refused.",
     )
     hub_radius: PositiveLength | None = Field(
         default=None, description="Outside of the hub; without it the web goes down to the bore and is held there."

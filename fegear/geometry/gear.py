@@ -316,8 +316,10 @@ class Gear:
 
     @property
     def body_in_modules(self) -> GearBody | None:
-        """Rim, web and hub in normal modules, as finite elements take them."""
-        return None if self.body is None else self.body.scaled(1.0 / self.module)
+        """Rim, web and hub in normal modules, as finite elements take them; None of a disc."""
+        if self.body is None or self.body.is_disc(self.face_width):
+            return None
+        return self.body.scaled(1.0 / self.module)
 
     @property
     def support_in_modules(self) -> RimSupport | None:

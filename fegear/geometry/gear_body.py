@@ -44,6 +44,15 @@ class GearBody:
         """Places along the face where web and hub end."""
         return *self.web, *self.hub
 
+    @property
+    def even(self) -> bool:
+        """Whether it is alike to both sides of the middle of the face."""
+        return all(abs(low + high) <= _ROUND_OFF * (high - low) for low, high in (self.web, self.hub))
+
+    def is_disc(self, width: float) -> bool:
+        """Whether web and hub fill a face, so that the gear is a disc."""
+        return all(high - low >= (1.0 - _ROUND_OFF) * width for low, high in (self.web, self.hub))
+
     def scaled(self, factor: float) -> GearBody:
         """The same in other units."""
         (a, b), (c, d) = self.web, self.hub

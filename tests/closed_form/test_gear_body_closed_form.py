@@ -61,6 +61,14 @@ def test_a_web_as_wide_as_the_face_is_a_disc(tau):
     assert own == pytest.approx(deflections(solved(None, tau)), rel=0.03)
 
 
+def test_a_body_that_fills_the_face_is_solved_as_a_disc():
+    """So that both agree to the last digit; rim and hub are radii without a meaning then."""
+    m = 2e-3
+    gear = Gear(TOOTH, m, BORE * m, WIDTH * m, body=body(FACE).scaled(m))
+    assert gear.body_in_modules is None
+    assert replace(gear, body=body((-2.0, 1.9)).scaled(m)).body_in_modules is not None
+
+
 def test_symmetries():
     """What moves here under a force there moves there under it here; a web on the other side is the mirrored gear."""
     one, other = solved(body((-1.6, -0.6))), solved(body((0.6, 1.6)))

@@ -142,6 +142,17 @@ def check_solid_gear(scene: Scene, name: str) -> None:
             f"gear.{name}.rim_support", "pins or a spline", "is known to plane gears alone so far",
             'leave the pair\'s width = "solid" and helix angles out, or write rim_support = { kind = "held" }',
         )  # fmt: skip
+    if (body := scene.gears[name].body) is not None and not body.even:
+        meshes = [(key, scene.case.pair[key]) for key in flank_pairs(scene)]
+        driven = next((key for key, one in meshes if one.driven == name), None)
+        drives = next((key for key, one in meshes if one.driver == name), None)
+        if driven is not None and drives is not None:
+            raise InputError(
+                f"gear.{name}.body", "off the middle of the face",
+                f"counts toward end II, which pairs {driven} and {drives} have at opposite ends of gear {name}: "
+                "it is driven in one and drives in the other",
+                "load each pair in a case of its own, web_offset and hub_offset with the other sign in one of them",
+            )  # fmt: skip
     if part.face_width is None:
         raise InputError(
             f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",

@@ -1,0 +1,31 @@
+"""An idler's end II is at one end in the mesh that drives it and at the other in the mesh that it drives."""
+
+from pathlib import Path
+
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case.built.solid_influence import check_solid_gear
+from fegear.case.reading import build_scene
+
+
+def idler(offset, second):
+    body = {"rim_thickness": "3 mm", "web_thickness": "3 mm", "web_offset": offset, "hub_radius": "11 mm"}
+    gear = {"teeth": 24, "module": "2 mm", "bore_radius": "7 mm", "face_width": "8 mm"}
+    pairs = {"I": {"driver": "a", "driven": "b", "torque": "20 N*m"}, "II": second | {"torque": "20 N*m"}}
+    case = {
+        "results": ["load-distribution"],
+        "gear": {"a": gear, "b": gear | {"body": body}, "c": gear},
+        "pair": {key: one | {"width": "solid"} for key, one in pairs.items()},
+    }
+    return build_scene(case, "case", Path())
+
+
+def test_a_web_off_the_middle_of_an_idler_is_refused():
+    with pytest.raises(InputError, match="opposite ends of gear b"):
+        check_solid_gear(idler("1.5 mm", {"driver": "b", "driven": "c"}), "b")
+
+
+def test_webs_in_the_middle_and_wheels_of_two_pinions_are_solved():
+    check_solid_gear(idler("0 mm", {"driver": "b", "driven": "c"}), "b")
+    check_solid_gear(idler("1.5 mm", {"driver": "c", "driven": "b"}), "b")
