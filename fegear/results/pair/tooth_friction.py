@@ -10,7 +10,7 @@ import numpy as np
 from fegear.case.built.train import friction_coefficient
 from fegear.contact.plane.pair_history import PairHistory
 from fegear.engine.citation import Citation
-from fegear.engine.declared import axis_of, column_of, column_over, value_of
+from fegear.engine.declared import axis_of, column_of, column_over, columns_of, stacked, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, few, ramp
 from fegear.engine.outcome import Outcome
@@ -118,20 +118,20 @@ def _present(data: FrictionData, asked: FrictionInputs) -> Outcome:
     if not found:
         return Outcome(data, remarks=(f"Mesh {name} carries no mean force, so it has no friction.",))
 
-    def all_speeds(key: str, meaning: str = "") -> Column:
-        return column_of(found[0], key, np.concatenate([getattr(one, key) for one in found]), meaning=meaning)
+    def over_path(one: FrictionOverPath) -> tuple[Column, ...]:
+        return (
+            column_of(one, "x"),
+            column_of(PairHistory, "driver_roll_angle", data.mesh.pair.roll_angle(one.x, "driver")),
+            *columns_of(one, "load", "sliding", "rolling"),
+            column_of(one, "coefficient", meaning=f"law {asked.law.law}"),
+            *columns_of(one, "torque_driver", "torque_driven", "total_driver", "total_driven"),
+        )
 
-    rows = [one.x.size for one in found]
-    roll = np.concatenate([data.mesh.pair.roll_angle(one.x, "driver") for one in found])
     along = Table(
         f"tooth_friction_{name}",
         (
-            Column("speed", np.repeat(data.speeds, rows), "rpm", of),
-            all_speeds("x"),
-            column_of(PairHistory, "driver_roll_angle", roll),
-            *map(all_speeds, ("load", "sliding", "rolling")),
-            all_speeds("coefficient", f"law {asked.law.law}"),
-            *map(all_speeds, ("torque_driver", "torque_driven", "total_driver", "total_driven")),
+            Column("speed", np.repeat(data.speeds, [one.x.size for one in found]), "rpm", of),
+            *stacked([over_path(one) for one in found]),
         ),
         f"Tooth friction of mesh {name} over the path of contact",
     )

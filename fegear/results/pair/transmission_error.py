@@ -8,7 +8,7 @@ even steps and repeat it. What even steps lose is said: their means are compared
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -21,7 +21,7 @@ from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, dra
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
 from fegear.engine.figure.items import Bars, Stems
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Upstream, Work
+from fegear.engine.stage import Forecast, Reads, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import (
@@ -107,19 +107,7 @@ class TransmissionErrorData:
     by_mark: MarkData | None
 
 
-@dataclass(frozen=True)
-class TransmissionErrorInputs:
-    """What is read of the case besides the loaded pair."""
-
-    part: TransmissionErrorPart
-    name: str = field(compare=False)
-
-
-def _inputs(scene: Scene, name: str) -> TransmissionErrorInputs:
-    return TransmissionErrorInputs(scene.case.transmission_error, name)
-
-
-def _compute(asked: TransmissionErrorInputs, upstream: Upstream, work: Work) -> TransmissionErrorData:
+def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work) -> TransmissionErrorData:
     teeth = loaded_teeth(upstream, asked.name)
     found, by_mark = teeth.transmission_error(work.progress), None
     if asked.part.method == "mark-series":
@@ -129,7 +117,7 @@ def _compute(asked: TransmissionErrorInputs, upstream: Upstream, work: Work) -> 
     return TransmissionErrorData(found, by_mark)
 
 
-def _present(data: TransmissionErrorData, inputs: TransmissionErrorInputs) -> Outcome:
+def _present(data: TransmissionErrorData, inputs: Reads[TransmissionErrorPart]) -> Outcome:
     name, e = inputs.name, data.found
     tables, values, remarks = _tables(name, e), _values(name, e), _remarks(name, e)
     settings: dict[str, object] = {"harmonics": e.series[e.at].amplitude.size, "positions": e.positions}
@@ -339,7 +327,7 @@ def _check(scene: Scene, name: str) -> None:
 
 
 TRANSMISSION_ERROR = teeth_stage(
-    inputs=_inputs,
+    inputs=Reads.of(lambda scene: scene.case.transmission_error),
     compute=_compute,
     present=_present,
     check=_check,

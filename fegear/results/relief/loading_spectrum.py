@@ -16,7 +16,7 @@ from fegear.case.loading import LoadingPart
 from fegear.case.reading import Scene
 from fegear.design.loading import LoadingFunction, SlopeTradeOff, ToothResponse
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, column_over, repeated, tiled, value_of
+from fegear.engine.declared import axis_of, column_of, column_over, columns_of, repeated, stacked, tiled, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark, few, ramp
 from fegear.engine.outcome import Outcome, Value
@@ -226,12 +226,6 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
     def all_of(*attributes: str) -> tuple[Column, ...]:
         return tuple(column_of(data, key, getattr(data, key).ravel()) for key in attributes)
 
-    def answers(*attributes: str) -> tuple[Column, ...]:
-        return tuple(
-            column_of(data.response[0], key, np.concatenate([getattr(r, key) for r in data.response]))
-            for key in attributes
-        )
-
     tables = [
         _long(
             data, f"loading_families{end}", "Loading of a ramp, from -1 to 1",
@@ -253,7 +247,8 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
         ),
         _long(
             data, f"loading_tooth_response{end}", "Answer of a tooth by itself, over its deflection at rest",
-            column_of(OwnVibration, "order", data.order), *answers("residual", "envelope", "largest"),
+            column_of(OwnVibration, "order", data.order),
+            *stacked([columns_of(one, "residual", "envelope", "largest") for one in data.response]),
         ),
         _trade_off_table(f"loading_trade_off{end}", data, asked, length),
         *_own_table(f"loading_tooth_vibration{end}", data),

@@ -11,7 +11,7 @@ from fegear.case.built.shafts import mesh_places
 from fegear.case.reading import Scene
 from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, value_of
+from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, stacked, value_of
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Outcome, Value
@@ -86,7 +86,6 @@ def _by_cause(data: MisalignmentData) -> Table:
     rows = [(mesh, scale, shares) for n, mesh in enumerate(meshes)
             for scale, shares in zip(scales, (state[n][0] for state in data.states), strict=True)]  # fmt: skip
     keys = tuple(MeshMisalignment.__dataclass_fields__)
-    all_of = MeshMisalignment(*(np.concatenate([getattr(shares, key) for *_, shares in rows]) for key in keys))
     times = 1 + len(CAUSES)
     return Table(
         "misalignment",
@@ -94,7 +93,7 @@ def _by_cause(data: MisalignmentData) -> Table:
          Column("load", np.repeat([scale * mesh.load for mesh, scale, _ in rows], times), "N",
                 "along the transverse line of action"),
          Column("cause", np.tile(("all", *CAUSES), len(rows)), "", "what misaligns the mesh"),
-         *columns_of(all_of, *keys),
+         *stacked([columns_of(shares, *keys) for *_, shares in rows]),
          Column("end_II", np.repeat(["left" if mesh.sense > 0 else "right" for mesh, *_ in rows], times), "",
                 "end of the shafts toward which it lies")),
         "Misalignment of the meshes by cause",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_of, curve_of
+from fegear.engine.declared import axis_of, columns_of, curve_of, stacked
 from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage
@@ -66,13 +66,12 @@ def _present(data: LoadedShafts, inputs: DeflectionInputs) -> Outcome:
 
 def _bearings(data: LoadedShafts, inputs: DeflectionInputs, loads: list[BearingLoads]) -> Table:
     keys = tuple(BearingLoads.__dataclass_fields__)
-    all_of = BearingLoads(*(np.concatenate([getattr(one, key) for one in loads]) for key in keys))
     on = [name for name, row in zip(data.gearbox.names, inputs.bearings, strict=True) for _ in row]
     return Table(
         "bearing_forces",
         (Column("shaft", np.array(on), "", "name of the shaft"),
          Column("bearing", np.array([name for row in inputs.bearings for name in row]), "", "its name"),
-         *columns_of(all_of, *keys)),
+         *stacked([columns_of(one, *keys) for one in loads])),
         "Forces and lives of the bearings",
     )  # fmt: skip
 
