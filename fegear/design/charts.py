@@ -59,18 +59,19 @@ class ReliefChart:
     loads: Array = shown("N", "total load along the line of action", name="total_load")
     unit_length: float = shown("mm", "length 1 of the chart on the line of action")
     effective_error: Array = shown(
-        "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}"
-    )
-    peak_to_peak: Array = shown("um", "peak to peak", name="te_peak_to_peak")
+        "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}",
+        table="chart",
+    )  # fmt: skip
+    peak_to_peak: Array = shown("um", "peak to peak", name="te_peak_to_peak", table="chart")
 
     @property
-    @shows("", "length with the least A_e")
+    @shows("", "length with the least A_e", table="optimum")
     def length_effective(self) -> Array:
         """For each amount and load, shape (A, L)."""
         return self.optimum_lengths("effective_error")
 
     @property
-    @shows("", "length with the least peak to peak")
+    @shows("", "length with the least peak to peak", table="optimum")
     def length_peak_to_peak(self) -> Array:
         """For each amount and load, shape (A, L)."""
         return self.optimum_lengths("peak_to_peak")

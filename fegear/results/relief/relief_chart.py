@@ -92,12 +92,12 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
     tables = (
         Table(
             f"relief_chart_{name}",
-            columns_on_grid(chart, ("amounts", "lengths", "loads"), "effective_error", "peak_to_peak"),
+            columns_on_grid(chart, ("amounts", "lengths", "loads"), table="chart"),
             f"Excitation of {name} over amount, length and load",
         ),
         Table(
             f"relief_optimum_{name}",
-            columns_on_grid(chart, ("amounts", "loads"), "length_effective", "length_peak_to_peak"),
+            columns_on_grid(chart, ("amounts", "loads"), table="optimum"),
             f"Optimum lengths of tip relief of {name}",
         ),
     )
