@@ -5,9 +5,11 @@ Changes of a case's text by the hands on its reliefs: parts that move, gears tha
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Literal
 
+from fegear.base.errors import InputError
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
 from fegear.window.case_text import literal, value_at, with_value, with_values
@@ -107,6 +109,9 @@ def moved_relief(desk: Desk, gear: str, end: str, start: float, amount: float, i
         If the text cannot be changed there.
     """
     table: Path = ("gear", gear, "relief", end)
+    for key, value in (("start", start), ("amount", amount)):
+        if not isinstance(value, int | float) or not math.isfinite(value):  # a page without room for its axes
+            raise InputError(".".join((*table, key)), str(value), "must be a finite number")
     if isinstance(value_at(desk.document, table), list):
         table = (*table, str(index))
     given = value_at(desk.document, table) or {}

@@ -484,6 +484,17 @@ def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves
     served.end()
 
 
+def test_names_of_any_length_leave_the_page_its_width(browser, serve, tmp_path):
+    path = tmp_path / "named.toml"
+    path.write_text(TEXT.replace("gear.a]", f"gear.{'g' * 300}]").replace('"a"', f'"{"g" * 300}"'))
+    browser.size(1300, 900)
+    served = serve(str(path))
+    go(browser, served.address)
+    browser.until(DRAWN)
+    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    served.end()
+
+
 @pytest.mark.long
 def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser, serve, tmp_path):
     path = tmp_path / "drive.toml"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import json
+import math
 import os
 import queue
 import signal
@@ -563,6 +564,16 @@ def test_every_part_of_a_relief_has_its_handle_and_moves_alone(tmp_path, several
         )
         bench.drop_relief("a")
         assert desk.text.rstrip() == TWO.rstrip()
+
+
+@pytest.mark.parametrize(("start", "amount"), [(28.0, None), (None, 5.0), (28.0, math.inf), (math.nan, 5.0)])
+def test_a_relief_moved_to_no_number_is_refused_and_changes_nothing(tmp_path, start, amount):
+    """JSON has no infinity: what a page without room for its axes sends arrives as None."""
+    bench = Bench(None)
+    bench.lay(Desk(TWO, "c", tmp_path))
+    with pytest.raises(InputError, match="must be a finite number"):
+        bench.move_relief("a", "tip", start, amount, moving=True)
+    assert bench.desk.text == TWO
 
 
 @pytest.mark.parametrize(
