@@ -21,7 +21,9 @@ TEETH = {"sun": 22, "planet": 20, "ring": 62}
 CACHE = SolutionCache()
 
 
-def scene(degrees=12.0, results=("planet-set",), hand="right", effects=None, pair=None, width="solid", **keys):
+def scene(
+    degrees=12.0, results=("planet-set",), hand="right", effects=None, pair=None, width="solid", tolerance=0.05, **keys
+):  # fmt: skip
     """A set with profile shifts; a spur one is loaded with its width, too."""
     other = {"right": "left", "left": "right"}[hand]
     helix = {"helix_angle": f"{degrees} deg"} if degrees else {}
@@ -40,7 +42,7 @@ def scene(degrees=12.0, results=("planet-set",), hand="right", effects=None, pai
     part = {"sun": "sun", "planet": "planet", "ring": "ring", "planets": 4, "torque": "250 N*m",
             "floating": [], "stiffness": {"pin": "300 N/um"}} | keys  # fmt: skip
     case = {
-        "results": list(results), "gear": gears, "planetary": {"P": part}, "accuracy": {"tolerance": 0.05},
+        "results": list(results), "gear": gears, "planetary": {"P": part}, "accuracy": {"tolerance": tolerance},
         "pair": {f"P_{mesh}": {"driver": roles[0], "driven": roles[1], "width": width} | (pair or {}) for mesh, roles in
                  (("sun", ("sun", "planet")), ("ring", ("planet", "ring")))},
         "effects": {"hertz": "load-dependent", "neighbour_coupling": True} | (effects or {}),
@@ -137,7 +139,8 @@ def test_a_set_of_one_planet_gives_way_as_its_two_pairs_do():
 def test_a_helix_that_vanishes_leaves_the_spur_set():
     errors = {"tangential": ["25 um", "0 um", "-8 um", "0 um"]}
     spur, small = (
-        data(run("planet-load-sharing", degrees=d, pin_errors=errors)[1], "planet-load-sharing") for d in (0.0, 0.01)
+        data(run("planet-load-sharing", degrees=d, pin_errors=errors, tolerance=0.1)[1], "planet-load-sharing")
+        for d in (0.0, 0.01)
     )
     assert small.mesh_load_factor == pytest.approx(spur.mesh_load_factor, rel=1e-3)
     assert small.te_mean == pytest.approx(spur.te_mean, rel=3e-3)

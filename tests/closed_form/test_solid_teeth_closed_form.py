@@ -315,3 +315,15 @@ def test_functions_along_the_face_are_lagrange_s_polynomials_in_other_words():
     z = np.linspace(-1.5, 1.5, 50)
     coefficients = np.linalg.inv(face.at(nodes)[0])
     np.testing.assert_allclose(coefficients @ face.at(z)[0], lagrange(6, (z + 1.5) / 3.0), atol=1e-12)
+
+
+@pytest.mark.parametrize("tooth", [TOOTH, RING], ids=["external", "ring"])
+def test_motions_that_mirror_at_the_middle_of_the_face_and_the_others_are_all_that_a_spur_disc_does(tooth):
+    """Without a twist both are solved apart; with one of no size they are not."""
+    bore, settings = (BORE, COARSE) if tooth is TOOTH else (OUTSIDE, COARSE)
+    apart, whole = (solve_solid(tooth, tau, 4.0, NU, bore, settings, reach=1) for tau in (0.0, 1e-14))
+    for k in (-1, 0, 1):
+        assert np.allclose(apart.compliance[k], whole.compliance[k], rtol=0.0, atol=1e-10 * whole.compliance[0].max())
+        for side in ("tension", "compression"):
+            one, other = apart.displacement[k, side], whole.displacement[k, side]
+            assert np.allclose(one, other, rtol=0.0, atol=1e-10 * np.abs(other).max())

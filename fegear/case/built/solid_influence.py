@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 #: elements of order 4 are taken, as fine as a case asks for.
 _USUAL_TOLERANCE, _FOLLOWS, _COARSEST, _FINE_TOLERANCE = 1e-2, 0.25, 1.25, 3e-3
 #: Processor seconds of a solid gear with the usual settings and its error estimate: those of a narrow gear, what the
-#: third power of the width [modules] adds, and the power of one over the edge length, or of the elements' order, with
-#: which both grow.
-_SECONDS, _BY_WIDTH, _GROWTH = 2.5, 6e-3, 4.0
+#: width [modules] to a power adds, the power (measured from 10 to 45 modules), and that of one over the edge length, or
+#: of the elements' order, with which both grow.
+_SECONDS, _BY_WIDTH, _WIDER, _GROWTH = 2.0, 0.021, 2.4, 4.0
+#: The share of what the width adds that is left where motions that mirror at the middle of the face are solved apart.
+_APART = 0.35
 #: Of one in slices.
 _SECONDS_OF_SLICES = 0.6
 #: How many times as long one on a web takes.
@@ -193,13 +195,16 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     return found.with_error(cache)
 
 
-def seconds_of_solid_gear(settings: SolidSettings, width: float, *, on_a_web: bool = False) -> float:
+def seconds_of_solid_gear(
+    settings: SolidSettings, width: float, *, twisted: bool = True, on_a_web: bool = False
+) -> float:
     """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
     from fegear.fem.solid.settings import SolidSettings
 
     usual, section = SolidSettings().section, settings.section
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
-    alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + _BY_WIDTH * width**3
+    by_width = _BY_WIDTH * width**_WIDER * (1.0 if twisted or on_a_web else _APART)
+    alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + by_width
     return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else 1.0)
 
 

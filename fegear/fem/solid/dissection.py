@@ -44,6 +44,11 @@ class Unknowns:
         """Number of unknowns."""
         return int(self.number.max()) + 1
 
+    def split(self, mask: Mask) -> tuple[Unknowns, Unknowns]:
+        """Those within a mask of shape (size of the section, functions), and the others, each numbered anew."""
+        has = self.number >= 0
+        return unknowns(has & mask), unknowns(has & ~mask)
+
     def of(self, section_unknowns: Index) -> Index:
         """Unknowns of some of the section's, one after the other, short waves last."""
         found = self.number[section_unknowns]
@@ -194,34 +199,28 @@ def _smallest(
     local = local.reshape(dofs.shape)
     n = every.size
     place = local[:, :, None] * n + local[:, None, :]
-    # Of the functions that any of them has; those of highest number first, which are then the first so many.
     functions = np.flatnonzero((number[every] >= 0).any(axis=0))
-    own = number[every][:, functions]
-    used = functions.size
-    highest = (np.arange(1, used + 1) * (own >= 0)).max(axis=1, initial=0)
-    sequence = np.argsort(-highest, kind="stable")
-    reach = [int((highest > k).sum()) for k in range(used)]
-    start = np.concatenate([[0], np.cumsum(reach, dtype=np.int64)])
+    own = number[every][:, functions].T
+    rows = [np.flatnonzero(one >= 0) for one in own]  # unknowns that have a function
+    start = np.concatenate([[0], np.cumsum([row.size for row in rows], dtype=np.int64)])
     none = np.zeros(0, dtype=np.int64)
-    ids = np.concatenate([none, *(own[sequence[: reach[k]], k] for k in range(used))])
+    ids = np.concatenate([none, *(one[row] for one, row in zip(own, rows, strict=True))])
     matrix = np.zeros((ids.size, ids.size))
     for zone, product in enumerate(products):
         mine = section.zone[elements] == zone
         if not mine.any():
             continue
-        sums = []
-        for matrices in section.stiffness:
-            total = np.bincount(place[mine].ravel(), matrices[elements[mine]].ravel(), n * n).reshape(n, n)
-            sums.append(total[np.ix_(sequence, sequence)])
-        a00, a01, a11 = sums
+        a00, a01, a11 = (
+            np.bincount(place[mine].ravel(), matrices[elements[mine]].ravel(), n * n).reshape(n, n)
+            for matrices in section.stiffness
+        )
         a10 = np.ascontiguousarray(a01.T)
         m0, m1, m2 = (part[np.ix_(functions, functions)] for part in product)
         for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
-            rows, columns = slice(0, reach[k]), slice(0, reach[m])
+            both = np.ix_(rows[k], rows[m])
             block = matrix[start[k] : start[k + 1], start[m] : start[m + 1]]
             for a, factor in ((a00, m0[k, m]), (a01, m1[k, m]), (a10, m1[m, k]), (a11, m2[k, m])):
                 if factor != 0.0:
-                    block += factor * a[rows, columns]
+                    block += factor * a[both]
     sequence = np.argsort(ids)
-    sequence = sequence[ids[sequence] >= 0]
     return ids[sequence], matrix[np.ix_(sequence, sequence)]

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array, Index, Mask
 from fegear.fem.plane.elements import line_functions
 from fegear.fem.solid.dissection import Unknowns, unknowns
 from fegear.fem.solid.section import Section, upward
@@ -101,7 +101,14 @@ class FaceFunctions:
             values, _ = line_functions(degree, 0.5 + 0.5 * x)
             found = (values * w) @ np.polynomial.legendre.legvander(x, degree) * (np.arange(degree + 1) + 0.5)
             series.append(np.where(np.abs(found) > _NOISE * np.abs(found).max(axis=1, keepdims=True), found, 0.0))
+        if len(series) == 1:  # nothing to join: in place of one function for each end their mean and their difference
+            series[0][:2] = np.eye(2, self.degrees[0] + 1)
         return series
+
+    @cached_property
+    def odd(self) -> Mask:
+        """Which functions are odd about the middle of a face of one piece, shape (count,); all others are even."""
+        return np.arange(self.count) % 2 == 1
 
     def at(self, zeta: Array) -> tuple[Array, Array]:
         """Values and slopes of every function at places on the face, shape (count, P) each."""

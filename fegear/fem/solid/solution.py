@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array, Index, Mask
 from fegear.base.errors import RangeError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
@@ -269,35 +269,50 @@ def _solve(
     ports = 3 * flank_nodes(section)
     seen = [(3 * fillet.nodes[:, None] + every).ravel() for fillet in fillets.values()]
     inner = np.setdiff1d(np.concatenate([ports, *seen]), np.concatenate(sides))
-    condensed = condense_solid(section, joined, known, np.concatenate([*sides, inner]))
-    ring = closed_ring(
-        condensed, known.of(sides[0]).size, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=integrated
-    )
-    closed = time.perf_counter()
-    loaded = known.of(ports)
-    response = ring.respond(loaded, np.concatenate([loaded, *(known.of(part) for part in seen)]))
-    compliance: dict[int, Array] = {}
+    on_flank = known.number[ports] >= 0
+    size = int(on_flank.sum())
+    compliance = {k: np.zeros((size, size)) for k in range(-reach, reach + 1)}
+    local = {(k, side): np.zeros((part.size, own.count, size))
+             for k in compliance for side, part in zip(_FILLETS, seen, strict=True)}  # fmt: skip
+    seconds = {"section": integrated - started, "condensation": 0.0, "ring": 0.0, "influence": 0.0}
+    symmetric = tau == 0.0 and body is None and held is None
+    for alone in known.split(_mirrored(section, face)) if symmetric else (known,):
+        begun = time.perf_counter()
+        condensed = condense_solid(section, joined, alone, np.concatenate([*sides, inner]))
+        ring = closed_ring(
+            condensed, alone.of(sides[0]).size, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=begun
+        )
+        closed = time.perf_counter()
+        loaded = alone.of(ports)
+        mine = np.flatnonzero((alone.number[ports] >= 0)[on_flank])
+        for k, u in ring.respond(loaded, np.concatenate([loaded, *(alone.of(part) for part in seen)])).items():
+            compliance[k][np.ix_(mine, mine)] = u[: loaded.size]
+            row = loaded.size
+            for side, part in zip(_FILLETS, seen, strict=True):
+                node, function = np.nonzero(alone.number[part][:, columns] >= 0)
+                local[k, side][node[:, None], function[:, None], mine] = u[row : row + node.size]
+                row += node.size
+        for what, spent in {**ring.seconds, "influence": time.perf_counter() - closed}.items():
+            seconds[what] += spent
     displacement: dict[tuple[int, Side], Array] = {}
-    for k, u in response.items():
-        compliance[k] = np.ascontiguousarray(u[: loaded.size])
-        row = loaded.size
-        for side, part in zip(_FILLETS, seen, strict=True):
-            has = known.number[part][:, columns] >= 0
-            local = np.zeros((*has.shape, loaded.size))
-            local[has] = u[row : row + int(has.sum())]
-            row += int(has.sum())
-            axes = section.axes[fillets[side].nodes]
-            local = local.reshape(-1, 3, *local.shape[1:])
-            displacement[k, side] = np.einsum("ncd,ndkr->nckr", axes, local, optimize=True)
-    seconds = {
-        "section": integrated - started,
-        **ring.seconds,
-        "influence": time.perf_counter() - closed,
-    }
+    for (k, side), moved in local.items():
+        axes = section.axes[fillets[side].nodes]
+        of_nodes = moved.reshape(-1, 3, *moved.shape[1:])
+        displacement[k, side] = np.einsum("ncd,ndkr->nckr", axes, of_nodes, optimize=True)
     return SolidSolution(
         tooth, tau, width, bore_radius, held, body, nu, plane_strain, own, flank, compliance, fillets, displacement,
         reach, known.size, settings, seconds,
     )  # fmt: skip
+
+
+def _mirrored(section: Section, face: FaceFunctions) -> Mask:
+    """Unknowns of a motion that mirrors itself at the middle of the face, shape (size of the section, functions).
+
+    A body that does so and has no twist moves in such motions and in those of all other unknowns, each by itself:
+    an eighth of the work twice.
+    """
+    axial = np.arange(section.size) % 3 == 2
+    return axial[:, None] == face.odd
 
 
 def section_mesh(

@@ -96,7 +96,8 @@ def _present_solid(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outco
 
 def _forecast_solid(scene: Scene, name: str) -> Forecast:
     settings, gear = solid_settings_of(scene, name), scene.gears[name]
-    seconds = seconds_of_solid_gear(settings, gear.face_width / gear.module, on_a_web=gear.body is not None)
+    width, twisted = gear.face_width / gear.module, gear.flank_twist != 0.0
+    seconds = seconds_of_solid_gear(settings, width, twisted=twisted, on_a_web=gear.body is not None)
     return Forecast(asdict(settings), seconds)
 
 
