@@ -1,5 +1,6 @@
-"""An idler's end II is at one end in the mesh that drives it and at the other in the mesh that it drives."""
+"""End II of an idler, or of a planet, is at one end in the mesh that drives it and at the other where it drives."""
 
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,10 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.case.built.solid_influence import check_solid_gear
 from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
+
+SET = Path(__file__).parents[2] / "cases" / "helical_planetary_set.toml"
 
 
 def idler(offset, second):
@@ -29,3 +34,18 @@ def test_a_web_off_the_middle_of_an_idler_is_refused():
 def test_webs_in_the_middle_and_wheels_of_two_pinions_are_solved():
     check_solid_gear(idler("0 mm", {"driver": "b", "driven": "c"}), "b")
     check_solid_gear(idler("1.5 mm", {"driver": "c", "driven": "b"}), "b")
+
+
+def set_with_a_web(offset):
+    case = tomllib.loads(SET.read_text())
+    body = {"rim_thickness": "5 mm", "web_thickness": "5 mm", "web_offset": offset, "hub_radius": "17 mm"}
+    case["gear"]["planet"] |= {"body": body}
+    case["results"] = ["planet-load-sharing"]
+    return build_scene(case, "case", SET.parent)
+
+
+def test_a_web_off_the_middle_of_a_planet_is_refused():
+    """The sun drives it and it drives the ring: before anything is solved."""
+    with pytest.raises(InputError, match="opposite ends of gear planet"):
+        make_plan(set_with_a_web("2 mm"), STAGES)
+    assert make_plan(set_with_a_web("0 mm"), STAGES)
