@@ -1,6 +1,7 @@
 """Rings on pins and in a spline compared with CalculiX, all teeth explicit (`make_rim_calculix.py`).
 
-On 20,004 nodes CalculiX moves the loaded tooth by .1 % less, on the 35,533 of the kept numbers by .025 % less.
+On 20,004 nodes CalculiX moves the loaded tooth by .09 % less than fegear's level 1, on the 35,533 of the kept numbers
+by .025 % less.
 """
 
 import sys

@@ -22,6 +22,7 @@ from fegear.geometry.outline import gear_outline, relieved_outline, tool_in_spac
 from fegear.geometry.relief import CombinedRelief, tip_relief
 from fegear.output.dxf import write_dxf
 from fegear.results.catalogue import STAGES
+from fegear.results.gear import body_modes
 
 CASES = Path(__file__).parents[2] / "cases"
 CASE = {
@@ -268,6 +269,22 @@ def test_what_a_helical_internal_pair_is_not_computed_for_is_refused_by_its_name
         make_plan(build_scene(document, "pair", Path()), STAGES)
     told = 'is not taken by "mesh-stiffness-matrix", which is computed for external gears alone where gears'
     assert told in str(refused.value)
+
+
+def test_natural_frequencies_of_bodies_say_that_they_pass_ring_gears_over(monkeypatch):
+    """With coarse elements; rings alone are refused by name."""
+    document = copy.deepcopy(CASE) | {"results": ["body-modes"], "accuracy": {"tolerance": 0.1}}
+    document["gear"]["r"]["face_width"] = "8 mm"
+    with pytest.raises(InputError, match=r'gear\.r.* is not taken by "body-modes"'):
+        make_plan(build_scene(document, "ring", Path()), STAGES)
+    document["gear"]["p"] = {"teeth": 16, "module": "4 mm", "face_width": "4 mm", "bore_radius": "18 mm"}
+    monkeypatch.setattr(body_modes, "_COARSER", 8.0)
+    monkeypatch.setattr(body_modes, "_DIAMETERS", 1)
+    monkeypatch.setattr(body_modes, "_EACH", 1)
+    scene = build_scene(document, "ring", Path())
+    found = run_plan(scene, make_plan(scene, STAGES))
+    (said,) = (remark for remark in found.remarks if remark.startswith("Gear r"))
+    assert said == "Gear r: internal; natural frequencies of bodies are computed for external gears alone."
 
 
 def test_relief_of_a_ring_is_drawn_where_it_is_ground():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,11 +42,12 @@ _SECONDS = 25.0
 
 @dataclass(frozen=True)
 class BodyToSolve:
-    """A gear, and how finely its body is solved."""
+    """A gear, and how finely its body is solved; the ring gears of the case, which are passed over."""
 
     gear: Gear
     settings: SolidSettings
     name: str
+    rings: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,11 @@ class SolvedBody:
 def _inputs(scene: Scene, name: str) -> BodyToSolve:
     settings = solid_settings_of(scene, name)
     section = replace(settings.section.scaled(_COARSER), order=2)
-    return BodyToSolve(scene.gears[name], replace(settings, section=section), name)
+    return BodyToSolve(scene.gears[name], replace(settings, section=section), name, _gears(scene, internal=True))
+
+
+def _gears(scene: Scene, *, internal: bool) -> tuple[str, ...]:
+    return tuple(name for name, part in scene.case.gear.items() if part.internal is internal)
 
 
 def _compute(asked: BodyToSolve, _upstream: Upstream, work: Work) -> SolvedBody:
@@ -114,8 +119,12 @@ def _present(known: SolvedBody, asked: BodyToSolve) -> Outcome:
         "shaft and bearings. Up to "
         f"{modes[-1].diameters} nodal diameters, {_EACH} modes with each; those with some come in pairs."
     )
+    passed = tuple(
+        f"Gear {ring}: internal; natural frequencies of bodies are computed for external gears alone."
+        for ring in asked.rings
+    )
     return Outcome(
-        known, (table,), (value,), {"unknowns": known.found.unknowns}, (remark,), (_figure(known, asked, unit),)
+        known, (table,), (value,), {"unknowns": known.found.unknowns}, (remark, *passed), (_figure(known, asked, unit),)
     )
 
 
@@ -150,7 +159,7 @@ def _figure(known: SolvedBody, asked: BodyToSolve, unit: float) -> Figure:
 
 
 BODY_MODES = Stage(
-    subjects=lambda scene: tuple(name for name, part in scene.case.gear.items() if not part.internal),
+    subjects=lambda scene: _gears(scene, internal=False) or _gears(scene, internal=True),  # rings alone are refused
     inputs=_inputs,
     compute=_compute,
     present=_present,
