@@ -34,10 +34,9 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.set_response import ForcedResponse, LinearSet
     from fegear.engine.stage import Upstream, Work
 
-#: Of the largest motion about the axes: what moves less across them is drawn as standing still.
-_ROUND_OFF = 1e-9
-
-
+#: Of the largest motion about the axes, and in any case [m]: what moves less across them is drawn as standing still.
+#: Where nothing excites the set the motion about the axes is round-off too.
+_ROUND_OFF, _NO_MOTION = 1e-9, 1e-15
 #: Coordinates of a central body.
 _ALONG = ("x", "y", "turn")
 
@@ -228,8 +227,9 @@ def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
     )
     across = [np.hypot(data.amplitude(member, 0), data.amplitude(member, 1)) for member in CENTRALS]
     around = max(float(data.amplitude(member, 2).max()) for member in CENTRALS)
+    still = max(_ROUND_OFF * around, _NO_MOTION)
     moves = tuple(
-        Curve(rpm, np.where(size < _ROUND_OFF * around, 0.0, size) * 1e6, member, f"series:{k}", markers=False)
+        Curve(rpm, np.where(size < still, 0.0, size) * 1e6, member, f"series:{k}", markers=False)
         for k, (member, size) in enumerate(zip(CENTRALS, across, strict=True))
     )
     return Figure(
