@@ -21,7 +21,7 @@ _WHOLE = "CalculiX 2.21, frictionless contact of both whole gears"
 _PLANE = f"{_WHOLE}: 28/28 teeth, 66,000 nodes (119,000 change 3e-5)"
 _RING = f"{_WHOLE}: planet and ring, 23/60 teeth, 54,000 nodes"
 _SOLID = "CalculiX 2.21, a whole gear of ten teeth, 43,000 and 110,000 nodes, extrapolated"
-_WEB = "CalculiX 2.21, a whole gear of 16 teeth on a web, 160,000 nodes under load, 75,000 for modes"
+_WEB = "CalculiX 2.21, a whole gear of 16 teeth on a web, 160,000 nodes under load, 10,000 in a sector's modes"
 _FLANKS = f"{_WHOLE}: 18/18 teeth, 12 deg of helix, 42,000 nodes and more"
 
 
@@ -290,7 +290,7 @@ def calculix_web_root_tension() -> Iterator[Compared]:
 
 @ROWS.add("natural frequencies of a gear on a web", "program", _WEB)
 def calculix_web_frequencies() -> Iterator[Compared]:
-    """Both tilting modes of the rim and its umbrella mode, with coarse elements."""
+    """Umbrella and torsion of the rim, with coarse elements."""
     from dataclasses import replace
 
     from fegear.fem.solid.body_modes import body_modes
@@ -299,9 +299,9 @@ def calculix_web_frequencies() -> Iterator[Compared]:
     tooth, body = _web_gear("middle")
     settings = SolidSettings()
     settings = replace(settings, section=replace(settings.section.scaled(4.0), order=2))
-    modes = body_modes(tooth, 0.0, 4.0, 0.3, 2.0, settings, body, diameters=1, each=2, fineness=0.6).modes
-    found = sorted(mode.frequency for mode in modes for _ in range(1 if mode.diameters == 0 else 2))
-    yield from near(found[:3], kept("gear_body_calculix")["middle"]["frequencies"][:3], 0.01)
+    modes = body_modes(tooth, 0.0, 4.0, 0.3, 2.0, settings, body, diameters=0, each=2, fineness=0.6).modes
+    found = [mode.frequency for mode in modes]
+    yield from near(found, kept("gear_body_calculix")["middle"]["frequencies"][0], 0.005)
 
 
 # ---- loaded flanks ----------------------------------------------------------------------------------------------

@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 _DIAMETERS, _EACH = 3, 3
 #: Quadratic elements as many times as long as those of loaded teeth, and again for the solution that shows the error,
 #: in which layers and polynomials are as many times fewer.
-_COARSER, _AGAIN, _FEWER = 3.0, 1.35, 0.6
+_COARSER, _AGAIN, _FEWER = 2.0, 1.35, 0.6
 #: What is stated: so many times the difference of both, and a share of the frequency; the corners between rim, web and
 #: hub let frequencies converge slowly, and twice the layers on finer meshes moved them by .1 to .5 %.
 _TIMES, _FLOOR = 2.5, 3e-3
 #: Motion as drawn, in modules.
 _DRAWN = 1.0
 #: Processor seconds of a usual gear.
-_SECONDS = 25.0
+_SECONDS = 60.0
 
 
 @dataclass(frozen=True)
