@@ -40,14 +40,11 @@ def worst(which, settings):
     )
 
 
-@pytest.mark.parametrize(
-    ("waves", "deflection", "tension"), [(2.5, 0.008, 0.01), pytest.param(3.0, 0.006, 0.008, marks=pytest.mark.long)]
-)
-def test_load_on_a_web_off_the_middle(waves, deflection, tension):
+def test_load_on_a_web_off_the_middle():
     """With functions that resolve hats of half a module beside a web's end: deflection .4 %, root tension .5 %."""
-    moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=waves))
-    assert moved < deflection
-    assert stress < tension
+    moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=3.0))
+    assert moved < 0.006
+    assert stress < 0.008
 
 
 @pytest.mark.long  # the ordinary run has the web off the middle with coarser settings
