@@ -29,8 +29,9 @@ SEARCHED = re.compile(
     r"^grindable_\w+\.(?:(?:amount|start)_(?:from|to)|(?:amount|start_roll_angle|start_radius)(?=_error))(_error)?$"
 )
 SAME_SEARCHED = 1e-3
-#: The relief that leaves the least: the least is flat there, so that it is known to its stated error alone.
-OPTIMUM = re.compile(r"\.optimum_\w+$")
+#: The relief that leaves the least: the least is flat there, and it is known to its stated error alone; what is left
+#: has none, and is found again to the search's own digits.
+OPTIMUM, SAME_LEAST = re.compile(r"\.optimum_\w+$"), 1e-5
 #: Forces that phases cancel are zero, and their errors what round-off leaves.
 CANCELLED = re.compile(r"^planet_forces_\w+\.force_\w+_error$")
 #: An angle between two gears is a difference of angles of some radian: below this it has no digits left [rad].
@@ -110,7 +111,8 @@ def assert_same(one, other, scales=(1.0, 1.0, 1.0), names=lambda name: name):
             stated = [np.inf] if searched[1] else [a[f"{name}_error"][0], b[f"{name}_error"][0] / factor]
             most = np.maximum(SAME_SEARCHED, np.minimum.reduce(stated) / size)
         if OPTIMUM.search(name):
-            most = max(SAME, min(errors[0][name], errors[1][name] / factor) / size)
+            known = [errors[0][name], errors[1][name]]
+            most = SAME_LEAST if None in known else max(SAME, min(known[0], known[1] / factor) / size)
         if CANCELLED.search(name) and not a[name.removesuffix("_error")][0].any():
             continue
         if not (off <= most).all():

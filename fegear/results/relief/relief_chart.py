@@ -112,7 +112,7 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
     for member in MEMBERS:
         values += tip_values(f"{name}.{member}.optimum_", best, member)
     left = float(getattr(best, metric)[-1])
-    values.append(Value(f"{name}.optimum_{metric}", left, "um", best.least_error, "left at the largest load"))
+    values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "left at the largest load"))
     settings = {
         "shape": asked.shape, "metric": metric, "candidates": best.candidates, "starts": best.starts,
         "apart": f"two independent searches by {best.least_error * 1e6:.1g} um",
