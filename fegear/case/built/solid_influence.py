@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -12,11 +13,14 @@ from fegear.case.built.tooth_influence import given_settings
 from fegear.case.part import at
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.accuracy import AccuracyPart
     from fegear.case.reading import Scene
     from fegear.fem.solid.influence import SolidInfluence
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.gear import Gear
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Tolerance that the usual settings are for, how edges and wavelengths follow another and how far; from the last on
 #: elements of order 4 are taken, as fine as a case asks for.
@@ -165,6 +169,25 @@ def check_solid_gear(scene: Scene, name: str) -> None:
             f"gear.{name}.tooth_mesh", f'"{part.tooth_mesh}"', "is a plane mesh, and solid teeth are meshed by fegear",
             "leave tooth_mesh out, or leave face_positions out",
         )  # fmt: skip
+    from fegear.fem.solid.settings import check_solid
+
+    with _keys_of_the_case(name):
+        check_solid(*_in_modules(scene.gears[name]), solid_settings_of(scene, name), None, 0)
+
+
+def _in_modules(gear: Gear) -> tuple[InvoluteTooth, float, float, float]:
+    """Tooth, twist, width and Poisson's ratio of a gear of module 1, what its solid is made of."""
+    tau, width = gear.flank_twist * gear.module, gear.face_width / gear.module
+    return gear.tooth, tau, width, gear.material.poisson_ratio
+
+
+@contextmanager
+def _keys_of_the_case(name: str) -> Iterator[None]:
+    """What the solid of a gear refuses, under the gear's keys."""
+    try:
+        yield
+    except RangeError as error:
+        raise at(f"gear.{name}", error, {"poisson_ratio": "material.poisson_ratio"}) from None
 
 
 def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None = None) -> SolidInfluence:
@@ -178,20 +201,15 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     from fegear.fem.solid.influence import solid_influence
 
     gear, cache = asked.gear, cache or SolutionCache()
-    try:
+    with _keys_of_the_case(asked.name):
         found = solid_influence(
-            gear.tooth,
-            gear.flank_twist * gear.module,
-            gear.face_width / gear.module,
-            gear.material.poisson_ratio,
+            *_in_modules(gear),
             gear.bore_radius / gear.module,
             asked.settings,
             reach=asked.reach,
             body=gear.body_in_modules,
             cache=cache,
         )
-    except RangeError as error:
-        raise at(f"gear.{asked.name}", error, {"poisson_ratio": "material.poisson_ratio"}) from None
     return found.with_error(cache)
 
 

@@ -197,9 +197,10 @@ def check_solid(
         raise RangeError("poisson_ratio", poisson_ratio, "must lie between -1 and 0.5")
     if settings.degree(width) > _HIGHEST_DEGREE:
         raise RangeError(
-            "accuracy.waves_per_module", settings.waves_per_module,
-            f"asks for polynomials of degree {settings.degree(width)} along a face of {width:.6g} modules; "
-            f"{_HIGHEST_DEGREE} is what can be solved", "lower it, or shorten the face",
+            "face_width", f"{width:.6g} modules",
+            f"asks for polynomials of degree {settings.degree(width)} along it at {settings.waves_per_module:g} waves "
+            f"a module; {_HIGHEST_DEGREE} is what can be solved",
+            f"shorten it to {_HIGHEST_DEGREE / settings.degree(width):.0%}, or take a coarser tolerance",
         )  # fmt: skip
     if reach < 0:
         raise RangeError("reach", reach, "must be at least 0: so many teeth to either side are known")
