@@ -42,7 +42,7 @@ CAUSES = (
     "nothing: ISO 6336-1, closed formula",
     "c_gamma_beta of the standard, for the mean stiffness of thin slices",
     "a row of equal springs, for thin slices with their pairs, Hertz and ends of lines",
-    "slices that know nothing of each other, for one body along the face, held axially",
+    "uncoupled slices, for one body along the face, held axially",
     "no axial displacement, for free end faces and a body that bends",
     "tooth pairs that do not feel each other, for one body",
     "lines that end at the tips, for tip edges that bear",

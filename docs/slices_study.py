@@ -117,7 +117,7 @@ def figure() -> Figure:
     return Figure(
         PICTURE, "What slices get wrong",
         f"z = {TEETH[0]}/{TEETH[1]}, m_n = 3 mm, {LOAD * 1e-3:.0f} N/mm, no modifications. Above: thin slices, which "
-        "know nothing of each other. Below: slices coupled along the face.",
+        "uncoupled. Below: slices coupled along the face.",
         tuple(panels), columns=3,
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Run what a page of the docs asks its reader to type, and hold what is printed against what the page says.
+"""Run what a page of the docs asks its reader to type, and compare what is printed with what the page says.
 
 ``python docs/snippets.py PAGE FOLDER`` goes through the fenced blocks of the page in their order, in FOLDER:
 
@@ -314,7 +314,7 @@ def _accept(page: Path, number: int, printed: str) -> None:
 
 
 def _fill(page: Path, names: dict[str, object], everything: str, *, accept: bool) -> None:
-    """Hold the numbers of the prose against what the page's runs found, or write them anew."""
+    """Compare the numbers of the prose with what the page's runs found, or write them anew."""
 
     def of(run: str, name: str, what: str) -> float:
         return float(json.loads(Path("results", run, "summary.json").read_text("utf-8"))["results"][name][what])

@@ -45,7 +45,7 @@ ROWS: dict[str, str] = {
     "differs": "fegear reproduces nothing of what is printed, and says why",
     "words": "described in words, and fegear's numbers agree with the words",
     "input": "printed numbers that the cases take as they are",
-    "equation": "equations without a printed result; the tests named hold them against another method",
+    "equation": "equations without a printed result; the tests named compare them with another method",
     "regression": "nothing in print to compare with; fegear's own numbers are kept",
     "text lost": "the curve is in no text that we have: fegear draws it, and there is nothing to compare it with",
     "sketch": "a drawing without numbers: the row leads to what fegear draws of the same thing",

@@ -77,7 +77,7 @@ TEMPERATURES: dict[str, tuple[float, float]] = {
 _INCH, _LBF, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
 #: Everyday units and their size in SI, by dimension. A case file written in these is read without pint, whose import
-#: alone would take a quarter of a cold run; any other unit goes to pint. A test holds every entry against pint. The
+#: alone would take a quarter of a cold run; any other unit goes to pint. A test compares every entry with pint. The
 #: first four are named where a unit is missing or wrong.
 EVERYDAY: dict[str, dict[str, float]] = {
     "length": {"mm": 1e-3, "um": 1e-6, "m": 1.0, "inch": _INCH, "in": _INCH, "cm": 1e-2},

@@ -115,7 +115,7 @@ def plausible(number: float) -> bool:
 
 
 def quantity(dimension: str, *, positive: bool = False, not_negative: bool = False) -> BeforeValidator:
-    """Validator that reads a quantity of `dimension` into SI and holds it against its range."""
+    """Validator that reads a quantity of `dimension` into SI and checks its range."""
 
     def read(value: Any, info: ValidationInfo) -> float:
         try:

@@ -335,7 +335,7 @@ class Bench:
             self._done(moving=content["moving"])
 
     def _done(self, *, moving: bool) -> None:
-        """Hold what was found against A, or keep it as A's own."""
+        """Compare what was found with A, or keep it as A's own."""
         self._settled = None if moving else self.asked()
         if moving or self.pinned is None:
             return

@@ -229,7 +229,7 @@ class Export:
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """Hold a pinned case against another, as ``fegear compare`` does."""
+    """Compare a pinned case with another, as ``fegear compare`` does."""
 
     number: int
     first: Asked

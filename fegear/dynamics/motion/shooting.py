@@ -167,7 +167,7 @@ class Way:
 
 
 def way_beside(orbit: Orbit, x: Array, v: Array, step: float) -> Way:
-    """Follow a motion that stands at (x, v) over the periods of an orbit, and hold it against the multipliers."""
+    """Follow a motion that stands at (x, v) over the periods of an orbit, and compare it with the multipliers."""
     packed, use = orbit.packed, moving(orbit.packed)
     away = np.concatenate([x, v])[use] - orbit.state
     far = float(np.max(np.abs(away)))

@@ -1,6 +1,6 @@
 """Teeth with a width from slices: the plane section's flank, spread along the face by laws fitted to solid gears.
 
-Thin slices answer with the plane compliance of the section and know nothing of their neighbours. Here that compliance
+Thin slices answer with the plane compliance of the section without their neighbours. Here that compliance
 is split into its own shapes up the flank, from the bending of the tooth on its body down to dents as short as the mesh
 has them, and each shape spreads along the face by its own law (`slice_laws`). Where the laws have no reach, thin
 slices remain; a load that is even along a wide face meets plane strain.

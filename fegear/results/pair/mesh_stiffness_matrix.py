@@ -273,7 +273,7 @@ def _check(scene: Scene, name: str) -> None:
 
 
 def needs_wide_pair(scene: Scene, name: str, result: str) -> None:
-    """Refuse pairs of plane teeth, which know nothing of what happens along the face.
+    """Refuse pairs of plane teeth, whose load does not vary along the face.
 
     Raises
     ------

@@ -86,7 +86,7 @@ class Comparison:
 
 
 def compare(first: Side, second: Side, tolerance: float = 0.0) -> Comparison:
-    """Hold two runs against each other.
+    """Compare two runs.
 
     Parameters
     ----------

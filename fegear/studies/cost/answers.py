@@ -300,7 +300,7 @@ class Miss:
 
 
 def miss(quantity: str, values: Array, reference: Array) -> Miss:
-    """Hold an answer against the reference.
+    """Compare an answer with the reference.
 
     Parameters
     ----------
