@@ -116,7 +116,7 @@ def figure() -> Figure:
             panels.append(Panel(Axis("helix angle", "deg"), Axis(unit), curves, title=f"{body}: {title}"))
     return Figure(
         PICTURE, "What slices get wrong",
-        f"z = {TEETH[0]}/{TEETH[1]}, m_n = 3 mm, {LOAD * 1e-3:.0f} N/mm, no modifications. Above: thin slices, which "
+        f"z = {TEETH[0]}/{TEETH[1]}, m_n = 3 mm, {LOAD * 1e-3:.0f} N/mm, no modifications. Above: thin slices, "
         "uncoupled. Below: slices coupled along the face.",
         tuple(panels), columns=3,
     )  # fmt: skip

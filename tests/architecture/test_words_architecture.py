@@ -9,7 +9,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 #: What is read instead: compared with, is used instead of, not known, reported or distinguished.
 WORDS = re.compile(
-    r"\b(held against|hold(?:s|ing)? [^.|;\n]{0,40}\bagainst|stands? in for|nobody|told|knows? nothing of|given? way by|"
+    r"\b(held against|hold(?:s|ing)? [^.|;\n]{0,40}\bagainst|stands? in for|nobody|told|"
+    r"knows? nothing of|given? way by|"
     # what is compared or added is not beside: that is a place
     r"beside (?:finite|those of|usual|the (?:standards?|finite|formulas?|tolerances?|seconds|quadrature|exact)"
     r"|ISO|AGMA|CalculiX|[\d.]+ (?:and|um|MPa|%)))\b|^#+ Beside\b",
