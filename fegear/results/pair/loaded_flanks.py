@@ -219,7 +219,7 @@ def _beside(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     remark = (
         f"Pair {name}: where modifications or errors are steep the flanks touch beside the contact lines of "
         f"unmodified ones, which moves gaps by up to {data.beside * 1e6:.3g} um; the mean transmission error is "
-        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{name} knows it, loads do not."
+        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{name} contains it; loads neglect it."
     )
     return (remark,)
 
