@@ -219,6 +219,18 @@ def rows_of(table, sign):
     return {name: one[order] for name, one in found.items()}
 
 
+#: Of the largest number of the same unit in any table.
+ROUND_OFF = 1e-11
+
+
+def largest_by_unit(tables):
+    found = {}
+    for column in (c for table in tables for c in table.columns if c.si.dtype.kind in "fiu"):
+        finite = np.abs(column.si[np.isfinite(column.si)])
+        found[column.unit] = max(found.get(column.unit, 0.0), finite.max(initial=0.0))
+    return found
+
+
 def with_hands():
     """Cases that a mirror changes."""
     return [name for name in EVERY if ALONG_THE_FACE.search((CASES / f"{name}.toml").read_text("utf-8"))]
@@ -245,6 +257,7 @@ def test_gears_in_a_mirror_have_the_same_tables(name, monkeypatch, tmp_path):
     other = ran(seen_in_a_mirror(document, tmp_path, -1), monkeypatch)
     differing = {}
     assert [t.name for t in one.tables] == [t.name for t in other.tables]
+    largest = largest_by_unit(one.tables)
     for table, image in zip(one.tables, other.tables, strict=True):
         a, b = rows_of(table, 1), rows_of(image, -1)
         assert a.keys() == b.keys()
@@ -254,6 +267,8 @@ def test_gears_in_a_mirror_have_the_same_tables(name, monkeypatch, tmp_path):
             alike = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for k, v in a.items() if units[k] == units[key]]
             same = (x == b[key]) | (np.isnan(x) & np.isnan(b[key]))
             off = float(np.where(same, 0.0, np.abs(x - b[key])).max(initial=0.0)) / (max(alike) or 1.0)
+            if off * max(alike) <= ROUND_OFF * largest[units[key]]:
+                continue  # what rounding leaves of curves that are constant, as those of a pure profile error
             if not off <= SAME and not CANCELLED.match(f"{table.name}.{key}"):
                 differing[f"{table.name}.{key}"] = off
     values = {v.name: v for v in other.values}
