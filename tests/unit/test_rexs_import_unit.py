@@ -491,3 +491,17 @@ def test_a_number_of_hundreds_of_digits_is_no_number():
     said = SimpleNamespace(said="shaft 3")
     with pytest.raises(InputError, match="is no finite number in shaft 3"):
         _in_si(Attribute("u_axis_vector", "mm", (10**400, 0, 0)), 10**400, said, "length")
+
+
+def test_a_coupling_is_engaged_where_a_program_wrote_its_arrays_as_false():
+    """REXS has is_engaged as an array; FVA Workbench 5.5 wrote every array, so vectors too, as false into JSON."""
+    tree = values_of(planetary_set(), 7, is_engaged=False)
+    with pytest.raises(InputError, match="a coupling that is not engaged holds nothing"):
+        case(in_json(tree))
+    for one in tree["components"]:
+        for attribute in one["attributes"]:
+            if attribute["id"].endswith("_vector"):
+                attribute["value" if "value" in attribute else "float"] = False
+    text = case_of(model_of(in_json(tree), HERE))
+    assert "coupling 7: is_engaged is false as every array of this model" in text
+    assert tomllib.loads(text)["planetary"] == case(in_json(planetary_set()))["planetary"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, shown
@@ -45,6 +46,14 @@ class Said:
     notes: list[str] = field(default_factory=list)
     turn: Frame | None = None
     across: set[int] = field(default_factory=set)
+
+    @cached_property
+    def arrays_lost(self) -> bool:
+        """Whether a program wrote its arrays, so vectors too, as truth values."""
+        parts = self.model.components.values()
+        return any(
+            one.value is False for part in parts for one in part.attributes.values() if one.name.endswith("_vector")
+        )
 
     def attributes_of(self, component: Component) -> Mapping[str, Attribute]:
         """All that a component says under the load case, by names."""
@@ -111,8 +120,14 @@ class Said:
         return isinstance(one.value, bool)
 
     def yes(self, component: Component, name: str) -> bool | None:
-        """Whether something holds; None where nothing is said."""
+        """Whether something holds; None where nothing is said, or where a program wrote its arrays as false."""
         one = self.found(component, name)
+        if one is not None and one.value is False and self.arrays_lost:
+            self.used.discard((component.id, name))
+            self.notes.append(
+                f"{component.said}: {name} is false as every array of this model, the vectors too: not read."
+            )
+            return None
         # Of what differs between gears of a gearbox that shifts, the first counts.
         value = one.value[0] if one is not None and isinstance(one.value, tuple) and one.value else one and one.value
         return None if one is None else str(value).lower() == "true"
