@@ -140,6 +140,8 @@ def test_names_of_gears_change_nothing(name, monkeypatch):
 
     other = changed(document, lambda text: new.get(text, text), key)
     other |= {k: document[k] for k in ("title", "results") if k in document}
+    for name_of_set, part in document.get("planetary", {}).items():  # members of a set are no names of gears
+        other["planetary"][name_of_set] |= {k: part[k] for k in ("fixed", "input", "floating") if k in part}
 
     def names(one):
         for k, v in back.items():
