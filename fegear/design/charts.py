@@ -22,6 +22,7 @@ from fegear.contact.fourier import Panels, effective_error, fourier_series, pane
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
+from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import Relief, Shape, roll_of_radius
 
 Metric = Literal["effective_error", "peak_to_peak"]
@@ -166,6 +167,13 @@ def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: 
     perfect = Engagement(engagement.compliance)
     at = pair.x_hpstc - 1e-9 * pair.base_pitch
     return float(perfect.solve(perfect.grid([at]), [load]).transmission_error[0, 0]) + 2.0 * largest_spacing_error
+
+
+def meaning_of_unit(pair: GearPair) -> str:
+    """What `unit_amount` of a pair is."""
+    if 1.0 <= pair.contact_ratio < 2.0:
+        return "Welbourn's Delta, the deflection at the HPSTC"
+    return "largest transmission error without relief"
 
 
 def unit_amount(engagement: Engagement, load: float) -> float:

@@ -116,7 +116,7 @@ class Results(Alike):
     @property
     def values(self) -> Named[Value]:
         """All single values, in order and by name."""
-        return Named(value for outcome in self.outcomes.values() for value in outcome.values)
+        return Named({value.name: value for outcome in self.outcomes.values() for value in outcome.values}.values())
 
     @property
     def figures(self) -> Named[Figure | DeferredFigure]:
@@ -221,6 +221,8 @@ def _refuse_one_name_for_two(done: Mapping[Task, _Finished], task: Task) -> None
             ("value", new.values, outcome.values),
         ):
             same = {one.name for one in here} & {one.name for one in there}
+            if kind == "value" and other.subject == task.subject:  # two results of one pair may state one number
+                same -= {one.name for one in new.values for of in outcome.values if one.si == of.si}
             if other != task and same:
                 raise InputError(
                     "gear, pair", f"{other.subject}, {task.subject}", f"both have a {kind} {min(same)}",

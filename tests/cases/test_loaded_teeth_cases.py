@@ -166,6 +166,8 @@ def test_chart_and_curves_of_one_case_state_delta_once():
     few = ("design.chart.lengths=[0.5, 1.0]", "design.chart.amounts_over_delta=[1.0]")
     _, values, results = run("lin_tip_relief", 'results=["relief-chart", "relief-curves"]', *few)
     assert [one.name for one in results.values].count("I.delta") == 1
+    for outcome in (one for task, one in results.outcomes.items() if task.stage.startswith("relief-")):
+        assert "I.delta" in {one.name for one in outcome.values}, "what another result wants takes no value away"
     assert values["I.best_length"].value in (0.5, 1.0)
 
 

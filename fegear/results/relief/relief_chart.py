@@ -61,12 +61,11 @@ class ChartInputs:
     part: ChartPart
     metric: Metric
     name: str = field(compare=False)
-    delta_elsewhere: bool = field(compare=False)
 
 
 def _chart_inputs(scene: Scene, name: str) -> ChartInputs:
     part = design_part(scene)
-    return ChartInputs(part.chart, part.metric, name, "relief-curves" in scene.case.results)
+    return ChartInputs(part.chart, part.metric, name)
 
 
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
@@ -87,6 +86,8 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
 
 
 def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
+    from fegear.design.charts import meaning_of_unit
+
     name, metric, asked = inputs.name, inputs.metric, inputs.part
     chart, best, delta = data.chart, data.best, data.delta
     tables = (
@@ -102,9 +103,8 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
         ),
     )
     amount, length = chart.best()
-    said = Value(f"{name}.delta", delta, "um", None, "largest transmission error without relief (Welbourn's Delta)")
     values = [
-        *(() if inputs.delta_elsewhere else (said,)),
+        Value(f"{name}.delta", delta, "um", None, meaning_of_unit(data.pair.pair)),
         value_of(chart, "unit_length", name, 0.0),
         value_of(chart, "amounts", name, si=amount, name="best_amount", meaning=_BEST),
         value_of(chart, "lengths", name, si=length, name="best_length", meaning=_BEST),
@@ -194,6 +194,8 @@ def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outco
 
 def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
     """A_e over amount and length for every load with the best length; none without enough candidates."""
+    from fegear.design.charts import meaning_of_unit
+
     chart = data.chart
     if chart.amounts.size < 2 or chart.lengths.size < 3:
         return ()
@@ -215,8 +217,8 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
         f"relief_chart_{name}",
         f"Chart of tip reliefs of pair {name}",
         f"Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length with the "
-        f"least A_e for each amount. Dotted: Δ = {data.delta * 1e6:.4g} µm, the largest transmission error without "
-        f"relief at {data.pair.nominal:.5g} N.",
+        f"least A_e for each amount. Dotted: {meaning_of_unit(data.pair.pair)} at {data.pair.nominal:.5g} N, "
+        f"{data.delta * 1e6:.4g} µm.",
         views=tuple(views),
     )
     return (figure,)

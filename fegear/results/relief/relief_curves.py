@@ -120,7 +120,7 @@ def _along(history: PairHistory) -> tuple[Column, ...]:
 
 
 def _present(data: ReliefCurvesData, inputs: Reads[ChartPart]) -> Outcome:
-    from fegear.design.charts import ReliefChart
+    from fegear.design.charts import ReliefChart, meaning_of_unit
 
     name, curves = inputs.name, data.curves
     amounts, lengths = np.array([c.amount for c in curves]), np.array([c.length for c in curves])
@@ -145,7 +145,7 @@ def _present(data: ReliefCurvesData, inputs: Reads[ChartPart]) -> Outcome:
         ),
         f"Transmission error of {name}, relief by relief",
     )
-    value = Value(f"{name}.delta", data.delta, "um", None, "Welbourn's Delta: deflection at the HPSTC")
+    value = Value(f"{name}.delta", data.delta, "um", None, meaning_of_unit(data.pair.pair))
     return Outcome(data, (history, summary), (value,), {"reliefs": len(curves) - 1}, figures=(_figure(name, data),))
 
 
