@@ -157,7 +157,7 @@ def reversed_keys(node, path=()):
     Nor do bodies: the first is the one that speeds refer to where the case names none, as a remark says.
     """
     if isinstance(node, dict):
-        named = path in {("gear",), ("pair",), ("train", "body"), ("train", "mesh")}
+        named = path in {("gear",), ("pair",), ("shaft",), ("train", "body"), ("train", "mesh")}
         return {k: reversed_keys(v, (*path, k)) for k, v in (node.items() if named else reversed(node.items()))}
     return [reversed_keys(v) for v in node] if isinstance(node, list) else node
 
