@@ -11,6 +11,7 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrids
 from fegear.contact.plane.root_stress_history import StressRows, root_stress_history
+from fegear.contact.plane.transmission_error import transmission_error
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -151,3 +152,30 @@ def test_superposed_stress_is_the_sum_over_every_load_on_every_tooth(member, sid
     largest = wanted.max(axis=-1) if side == "tension" else wanted.min(axis=-1)
     found = root_stress_history(e, state, member, side, 1)
     assert found.stress == pytest.approx(largest, rel=1e-13)
+
+
+def test_stress_that_is_not_asked_for_changes_none_that_is():
+    e = Engagement(compliance(), corner_contact=True)
+    x = PAIR.x_start + PAIR.base_pitch * np.linspace(0.0, 1.0, 13)
+    state = e.solve(e.grid(x), [300.0, 3000.0])
+    whole = root_stress_history(e, state, "driven", "tension", 1)
+    within = PAIR.x_start - PAIR.base_pitch, PAIR.x_end
+    part = root_stress_history(e, state, "driven", "tension", 1, within=within).stress
+    asked = (whole.x > within[0]) & (whole.x < within[1])
+    assert np.array_equal(part[asked], whole.stress[asked])
+    assert np.isnan(part[~asked]).all()
+    assert not asked.all()
+
+
+def test_a_transmission_error_in_the_hand_keeps_its_points_and_is_near_that_at_rest():
+    e = Engagement(compliance(hertz="load-dependent"), corner_contact=True)
+    known = None
+    for amount in (2e-6, 5e-6, 9e-6):
+        relieved = replace(e, driver_relief=tip_relief(PAIR.driver, amount, length=0.6e-3))
+        for load in (300.0, 3000.0):
+            moving, rest = (transmission_error(relieved, load, exact=exact) for exact in (False, True))
+            assert known is None or moving.loaded.grid is known
+            known = moving.loaded.grid
+            assert moving.mean == pytest.approx(rest.mean, rel=1e-4)
+            assert moving.peak_to_peak == pytest.approx(rest.peak_to_peak, rel=1e-2)
+            assert rest.loaded.grid is not known  # contact changes between the geometric jumps, so the two differ

@@ -60,6 +60,8 @@ class LoadedPair:
         How the compliance sources describe themselves.
     neglected : Neglected
         What the effects that are off would change.
+    exact : bool
+        Whether the transmission error is integrated between changes of contact, too: not while a value is being moved.
     """
 
     engagement: Engagement
@@ -68,6 +70,7 @@ class LoadedPair:
     nominal: float
     sources: tuple[str, ...]
     neglected: Neglected = field(default_factory=Neglected, compare=False)
+    exact: bool = True
 
     @property
     def pair(self) -> GearPair:
@@ -100,7 +103,7 @@ class LoadedPair:
         e, i = self.engagement, self._at
         exact = []
         for number, load in enumerate(self.loads):
-            exact.append(transmission_error(e, load, HARMONICS))
+            exact.append(transmission_error(e, load, HARMONICS, exact=self.exact))
             progress((number + 1) / (len(self.loads) + 2))
         curve = e.solve(e.grid(roll_positions(e, POSITIONS)), self.loads)
         bridged = e.pair.contact_ratio >= 1.0  # else perfect flanks have positions without any pair on the path
@@ -113,7 +116,7 @@ class LoadedPair:
             self.loads,
             i,
             POSITIONS,
-            "integrated exactly between its jumps",
+            "integrated exactly between its jumps" if self.exact else "integrated between its geometric jumps",
             tuple(te.series for te in exact),
             transmission_error_shift(exact[i], self.shifted),
             x=curve.x,

@@ -58,6 +58,7 @@ def root_stress_history(
     side: Side = "tension",
     beyond: int = 0,
     source: RootStressInfluence | None = None,
+    within: tuple[float, float] | None = None,
 ) -> RootStressHistory:
     """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
 
@@ -74,6 +75,8 @@ def root_stress_history(
         Teeth before the first and after the last pair that can touch, in addition: they feel their neighbours' loads.
     source : RootStressInfluence, optional
         Where this gear's root stress comes from; by default where its compliance does.
+    within : (float, float), optional
+        Stress is looked for where x lies between these [m], and is NaN elsewhere; by default everywhere.
 
     Raises
     ------
@@ -83,11 +86,16 @@ def root_stress_history(
     known = source or engagement.compliance.source(member)
     along = np.stack(list(superposed_stress(engagement, loaded, member, side, beyond, known)))  # (teeth, P, L, points)
     touching = np.broadcast_to(touching_radius(loaded, member, beyond)[:, :, None], along.shape[:3])
-    flat = along.reshape(-1, along.shape[3]).T
-    stress = largest_stress(known.fillet_curve(side), flat, side, touching.ravel()).reshape(touching.shape)
     contacts = loaded.grid.contacts
     teeth = np.arange(-beyond, contacts.x.shape[0] + beyond)
-    return RootStressHistory(member, side, contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch, stress)
+    x = contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch
+    low, high = within or (-np.inf, np.inf)
+    asked = (x > low) & (x < high)
+    stress = np.full(touching.shape, np.nan)
+    flat = along[asked].reshape(-1, along.shape[3]).T
+    found = largest_stress(known.fillet_curve(side), flat, side, touching[asked].ravel())
+    stress[asked] = found.reshape(-1, touching.shape[2])
+    return RootStressHistory(member, side, x, stress)
 
 
 def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:

@@ -223,11 +223,17 @@ def tooth_stress(
         parts.append([values[row] for values in known[id(state)]])
     x, *stresses = (np.concatenate(one) for one in zip(*parts, strict=True))
     order = np.argsort(x)
-    pitch = e.pair.base_pitch
-    order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
+    low, high = _within(e)
+    order = order[(x[order] > low) & (x[order] < high)]
     tension, error, *other = (one[order] for one in stresses)
     compression, pressed_error = other or (None, None)
     return ToothStress(x[order], tension, compression, error, pressed_error)
+
+
+def _within(e: Engagement) -> tuple[float, float]:
+    """From a base pitch before the path of contact to one after it [m]."""
+    pitch = e.pair.base_pitch
+    return e.pair.x_start - pitch, e.pair.x_end + pitch
 
 
 def _with_error(
@@ -240,13 +246,14 @@ def _with_error(
     *,
     estimates: bool,
 ) -> tuple[RootStressHistory, Array]:
-    """Stress of one fillet in every row of a state, and its estimated error, shape (n, P, L) [Pa]."""
-    found = root_stress_history(e, state, member, side, 1, source)
+    """Stress of one fillet in every row of a state, and its estimated error, shape (n, P, L) [Pa]; NaN out of reach."""
+    within = _within(e)
+    found = root_stress_history(e, state, member, side, 1, source, within)
     if not estimates:
         return found, np.full_like(found.stress, np.nan)
     off = np.zeros_like(found.stress)
     for again in shifted:
-        off += np.abs(root_stress_history(e, again, member, side, 1, source).stress - found.stress)
+        off += np.abs(root_stress_history(e, again, member, side, 1, source, within).stress - found.stress)
     off[1:-1] += _own_error(e, member, side, state, source)
     # where a tooth carries next to nothing its stress comes from its neighbours, and is as exact as theirs
     return found, np.maximum(off, _share_left(e, member, side, source) * np.abs(found.stress))

@@ -112,7 +112,7 @@ def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> Loaded
     shifted = shifted_sources(asked, (at_rest.compliance.driver, at_rest.compliance.driven)) if inputs.estimates else ()
     pair = build_loaded_pair(asked, at_rest, shifted)
     if not inputs.estimates:
-        return pair
+        return replace(pair, exact=False)
     return replace(pair, neglected=neglected_effects(asked, pair, inputs.answers, inputs.loads))
 
 
