@@ -134,10 +134,22 @@ def _one_pitch(
             known[key] = _by_slot(state, s, slots, pitch)
         return known[key]
 
+    def solve_at_once(places: list[Array]) -> None:
+        """`solved` of many pieces, which costs little more than one; with spacing errors each is in its own cycle."""
+        new = [s for s in places if s.tobytes() not in known]
+        if not new or engagement.cycles > 1:
+            return
+        every = np.concatenate(new)
+        state = engagement.solve(engagement.grid(every * pitch, again=False), [load])
+        ends = np.cumsum([s.size for s in new])[:-1]
+        found = (np.split(one, ends, axis=1) for one in _by_slot(state, every, slots, pitch))
+        known.update((s.tobytes(), pair) for s, pair in zip(new, zip(*found, strict=True), strict=True))
+
     def fit(quantity: int, slot: int, scale: float) -> Periodic:
         return Periodic.fit(
-            lambda s: solved(s)[quantity][slot], cuts, tolerance=FIT_SHARED, shortest=SHORTEST, scale=scale
-        )
+            lambda s: solved(s)[quantity][slot], cuts, tolerance=FIT_SHARED, shortest=SHORTEST, scale=scale,
+            ahead=solve_at_once,
+        )  # fmt: skip
 
     # Of perfect flanks that deflect in proportion to their load no separation is left but round-off.
     few = (np.arange(8) + 0.5) / 8

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -69,6 +70,7 @@ class Periodic:
         pitches: int = 1,
         shortest: float = 0.0,
         scale: float = 0.0,
+        ahead: Callable[[list[Array]], None] | None = None,
     ) -> Periodic:
         """Fit a vectorised function of the period fraction s, smooth between `breaks`, halving pieces as needed.
 
@@ -88,6 +90,8 @@ class Periodic:
             Pieces of at most this length [periods] are taken as they are (a square root's tip, a clipped logarithm).
         scale : float
             Size relative to which errors count where the function itself is smaller: a difference of things so large.
+        ahead : callable, optional
+            Takes the places of all pieces that the function is asked for next, to compute them at once.
 
         Raises
         ------
@@ -101,29 +105,34 @@ class Periodic:
         cuts = [c for n, c in enumerate(cuts) if n == 0 or c - cuts[n - 1] > 1e-12 or c == 1.0]
         if len(cuts) > 2 and cuts[-1] - cuts[-2] <= 1e-12:
             del cuts[-2]
-        waiting = list(zip(cuts[-2::-1], cuts[:0:-1], strict=True))
-        starts, rows = [], []
-        while waiting:
-            a, b = waiting.pop()
-            h = b - a
-            values = np.asarray(function(0.5 * (a + b) + 0.5 * h * np.concatenate([nodes, probe])), dtype=float)
-            scale = max(scale, float(np.max(np.abs(values))))
-            row = to_power @ values[: degree + 1]
-            error = np.max(np.abs(np.polynomial.polynomial.polyval(probe, row) - values[degree + 1 :]))
-            # Between break points that all but coincide a place is known to 1e-7 of the piece only.
-            narrow = h < 1e-9 and error <= 1e-8 * scale
-            if error > tolerance * scale and h > shortest and not narrow:
+        places = np.concatenate([nodes, probe])
+        waiting = list(pairwise(cuts))
+        rows: dict[float, Array] = {}
+        while waiting:  # all pieces of one length, more or less: halves of those before
+            at = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b in waiting]
+            if ahead is not None:
+                ahead(at)
+            found = [np.asarray(function(s), dtype=float) for s in at]
+            scale = max(scale, *(float(np.max(np.abs(values))) for values in found))
+            halves: list[tuple[float, float]] = []
+            for (a, b), values in zip(waiting, found, strict=True):
+                row, h = to_power @ values[: degree + 1], b - a
+                error = np.max(np.abs(np.polynomial.polynomial.polyval(probe, row) - values[degree + 1 :]))
+                # Between break points that all but coincide a place is known to 1e-7 of the piece only.
+                narrow = h < 1e-9 and error <= 1e-8 * scale
+                if not error > tolerance * scale or h <= shortest or narrow:
+                    rows[a] = row
+                    continue
                 if h < 1e-9:
                     raise ConvergenceError(
                         f"A periodic function cannot be fitted near s = {a:.9g}: error {error:.3g} of {scale:.3g}. "
                         "Name its jump among the break points."
                     )
                 middle = 0.5 * (a + b)
-                waiting += [(middle, b), (a, middle)]
-                continue
-            starts.append(a)
-            rows.append(row)
-        return cls(np.array([*starts, 1.0]), np.array(rows), pitches)
+                halves += [(a, middle), (middle, b)]
+            waiting = halves
+        starts = sorted(rows)
+        return cls(np.array([*starts, 1.0]), np.array([rows[a] for a in starts]), pitches)
 
     @classmethod
     def through_points(cls, s: ArrayLike, values: ArrayLike, *, pitches: int = 1) -> Periodic:
