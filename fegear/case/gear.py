@@ -290,7 +290,7 @@ class GearPart(Part):
                     raise refuse("has a meaning only for internal gears", "write internal = true", key=key)
             return
         for key, remedy in _EXTERNAL_ONLY.items():
-            if key in self.model_fields_set:
+            if key in self.given:
                 raise refuse("has no meaning for an internal gear", remedy, key=key)
         if self.cutter is None:
             raise refuse(

@@ -59,6 +59,12 @@ class Part(BaseModel):
         """The table from what the case has for it."""
         return cls.model_validate(value, context=info.context)
 
+    @property
+    def given(self) -> set[str]:
+        """Keys that say more than nothing: a plain default that is written out contradicts no other key."""
+        fields = type(self).model_fields
+        return {key for key in self.model_fields_set if getattr(self, key) != fields[key].default}
+
 
 class OnDemand:
     """Marks a table whose rules are compiled when the first case has it, not with every case.

@@ -185,7 +185,7 @@ class BearingPart(Part):
     def _one_way(self) -> Self:
         stiffness = {"radial", "axial", "tilting", "fixed", "radial_clearance", "axial_clearance"}
         ways = [key for key in ("matrix", "elements") if getattr(self, key) is not None]
-        if len(ways) + bool(stiffness & self.model_fields_set) > 1:
+        if len(ways) + bool(stiffness & self.given) > 1:
             raise refuse("contradicts other keys", "give stiffness, a matrix, or elements", key=ways[0])
         if self.matrix is not None and any(len(row) != 5 for row in self.matrix):
             raise refuse("has rows of other lengths than 5", "write five numbers a row", key="matrix", value="(rows)")
