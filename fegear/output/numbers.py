@@ -100,10 +100,16 @@ def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
     found = [(share, one) for share, one in found if share > max(tolerance, _MISLEADING)]
     if not found:
         return ""
-    named = "; ".join(f"{one!r} ({plain_number(100.0 * share, 3)} %)" for share, one in found[:_NAMED])
+    named = "; ".join(f"{_in_a_line(one)} ({plain_number(100.0 * share, 3)} %)" for share, one in found[:_NAMED])
     more = f"; and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
     beyond = f"the tolerance of {tolerance:g}" if tolerance >= _MISLEADING else f"1 % (the tolerance is {tolerance:g})"
     return f"Errors beyond {beyond}: {named}{more}."
+
+
+def _in_a_line(one: Value) -> str:
+    """A value with no more digits than its error leaves."""
+    value, error = with_error(one.value, one.error or 0.0)
+    return f"{one.name} = {value} +- {error} {one.unit}".rstrip()
 
 
 #: Okabe and Ito's palette, and lighter shades of it on dark ground.

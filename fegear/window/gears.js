@@ -180,6 +180,7 @@ const fegearGears = (() => {
     which.value = fegearGlance.view().measure ?? "mises";
     which.onchange = () => { fegearGlance.keep({ measure: which.value }); rest(); };
     whichLabel.append(which);
+    whichLabel.hidden = which.value !== "none"; // teeth by formulas have no stress inside
     let limit = 0;
     const measure = () => (which.value === "none" ? "mises" : which.value);
     function rest() { // the scale of the field, which stays while a value moves
@@ -187,6 +188,7 @@ const fegearGears = (() => {
       const wanted = shown ? fegearField.limitOf(field, kept.data, kept.loadAt, measure()) : 0;
       if (wanted !== limit || !shown) limit = wanted;
       fieldScale.hidden = !(limit > 0);
+      if (field) whichLabel.hidden = false;
       if (limit > 0) {
         const title = document.createElement("span"), [words, signed] = fegearField.MEASURES[measure()], number = digits(limit, 3);
         title.textContent = `${words}:`;

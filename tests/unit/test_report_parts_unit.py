@@ -78,8 +78,8 @@ def test_values_that_are_known_less_well_than_asked_are_named_the_worst_first():
         Value("I.largest_line_load", 406.9e3, "N/mm", 740e3),
     ]
     assert beyond_tolerance(values, 0.02) == (
-        "Errors beyond the tolerance of 0.02: I.largest_line_load = 406.9 +- 7.4e+02 N/mm (182 %); "
-        "I.te_peak_to_peak = 1.221 +- 0.26 um (21.3 %)."
+        "Errors beyond the tolerance of 0.02: I.largest_line_load = 407 +- 740 N/mm (182 %); "
+        "I.te_peak_to_peak = 1.22 +- 0.26 um (21.3 %)."
     )
     several = beyond_tolerance(values[:2] + values[:1] * 5, 0.001)
     assert several.startswith("Errors beyond 1 % (the tolerance is 0.001): I.te_peak_to_peak")
