@@ -454,18 +454,6 @@ def _functions(name):
 
 #: Public functions that have no example yet. None is added here: a new function brings its example along.
 WITHOUT_EXAMPLE = {
-    "base.solution_cache.cache_on_disk",
-    "case.built.loaded_pair.build_loaded_pair",
-    "case.built.loaded_pair.compliance_sources",
-    "case.built.pair_inputs.pair_inputs",
-    "case.built.tooth_influence.solve_influence_functions",
-    "case.built.train.assemble",
-    "case.built.train.build_train",
-    "case.built.train.motion_inputs",
-    "case.built.train.motion_model",
-    "case.built.train.steady_motions",
-    "case.built.train.train_inputs",
-    "case.drafts.text.draft",
     "contact.compared.crosscheck.pair_reference",
     "contact.compared.crosscheck.rated_helical_pair",
     "contact.compared.crosscheck.rated_spur_pair",
