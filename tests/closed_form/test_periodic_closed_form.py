@@ -152,3 +152,36 @@ def test_perfect_flanks_that_deflect_in_proportion_leave_no_separation():
     assert np.abs(found.separation[0](np.linspace(0, 1, 50))).max() < 1e-15
     noise = np.random.default_rng(1)
     assert np.abs(Periodic.fit(lambda s: 1e-19 * noise.standard_normal(s.size), scale=1e-6).mean) < 1e-16
+
+
+def test_what_is_rough_everywhere_is_refused_before_there_are_many_pieces():
+    calls = []
+
+    def rough(s):
+        calls.append(s.size)
+        return np.modf(1e7 * np.sin(1e7 * s))[0]
+
+    with pytest.raises(ConvergenceError):
+        Periodic.fit(rough, np.linspace(0.1, 0.9, 9))
+    assert len(calls) < 64 * 40
+
+
+def test_values_computed_at_once_ahead_are_those_that_are_asked_for():
+    cuts, ahead, asked = [0.3, 0.31, 0.8], [], []
+
+    def function(s):
+        asked.append(s.tobytes())
+        return np.sqrt(s + 1e-4) * (1.0 + (s > 0.3))
+
+    alone = Periodic.fit(function, cuts, tolerance=1e-9)
+    once = asked.copy()
+    asked.clear()
+    found = Periodic.fit(
+        function, cuts, tolerance=1e-9, ahead=lambda places: ahead.extend(one.tobytes() for one in places)
+    )
+    assert asked == ahead == once
+    assert len(asked) > 2 * len(cuts)
+    assert np.array_equal(found.breaks, alone.breaks)
+    assert np.array_equal(found.coefficients, alone.coefficients)
+    s = np.linspace(0.301, 0.999, 500)
+    assert np.max(np.abs(found(s) - 2.0 * np.sqrt(s + 1e-4))) < 1e-8

@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array, Complex
 from fegear.base.errors import ConvergenceError, InputError
 
+#: Most pieces whose values are asked for at once.
+_AT_ONCE = 64
+
 
 @dataclass(frozen=True)
 class Periodic:
@@ -108,14 +111,14 @@ class Periodic:
         places = np.concatenate([nodes, probe])
         waiting = list(pairwise(cuts))
         rows: dict[float, Array] = {}
-        while waiting:  # all pieces of one length, more or less: halves of those before
-            at = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b in waiting]
+        while waiting:  # the halves made last come first: what is rough everywhere is refused before there are many
+            pieces, waiting = waiting[-_AT_ONCE:], waiting[:-_AT_ONCE]
+            at = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b in pieces]
             if ahead is not None:
                 ahead(at)
             found = [np.asarray(function(s), dtype=float) for s in at]
             scale = max(scale, *(float(np.max(np.abs(values))) for values in found))
-            halves: list[tuple[float, float]] = []
-            for (a, b), values in zip(waiting, found, strict=True):
+            for (a, b), values in zip(pieces, found, strict=True):
                 row, h = to_power @ values[: degree + 1], b - a
                 error = np.max(np.abs(np.polynomial.polynomial.polyval(probe, row) - values[degree + 1 :]))
                 # Between break points that all but coincide a place is known to 1e-7 of the piece only.
@@ -129,8 +132,7 @@ class Periodic:
                         "Name its jump among the break points."
                     )
                 middle = 0.5 * (a + b)
-                halves += [(a, middle), (middle, b)]
-            waiting = halves
+                waiting += [(a, middle), (middle, b)]
         starts = sorted(rows)
         return cls(np.array([*starts, 1.0]), np.array([rows[a] for a in starts]), pitches)
 
