@@ -2,6 +2,8 @@
 
 import itertools
 import math
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -203,3 +205,24 @@ def test_the_pressure_on_the_tooth_of_a_ring_is_drawn_on_its_flank():
     covered = [np.nanpercentile(one, 75.0) for one in sides]  # peaks at the tips' edges stand between other points
     assert covered[0] == pytest.approx(covered[1], rel=0.05)
     assert covered[1] > 100.0
+
+
+@pytest.mark.long
+def test_a_set_of_spur_teeth_with_a_width_moves_as_the_plane_one_where_corners_touch():
+    """Phases of three planets leave every third harmonic alone: those that corner contact makes, over short ways.
+
+    Coupled slices are as stiff as plane teeth within 1.5 %; with half as many roll positions the set's peak to peak was
+    6 % off.
+    """
+    text = tomllib.loads((Path(__file__).parents[2] / "cases" / "planets_in_ring_gear.toml").read_text())
+    text["results"] = ["planet-load-sharing"]
+    text["planetary"]["P"]["pin_errors"] = {}
+    text["accuracy"] = {"tolerance": 0.01}
+
+    def moves(**more):
+        what = build_scene(text | more, "case", None)
+        found = run_plan(what, make_plan(what, STAGES), cache=CACHE)
+        return next(value for value in found.values if value.name == "P.te_peak_to_peak").si
+
+    wide = {"driver": "sun", "driven": "planet", "width": "slices"}
+    assert moves(pair={"P_sun": wide}) == pytest.approx(moves(), rel=0.025)

@@ -7,7 +7,7 @@ on the way.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from fegear.base.arrays import Array, Mask
 from fegear.base.errors import InputError
 from fegear.contact.fourier import Panels
-from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.over_pitch import every_second
 from fegear.contact.wide.transmission_error import curve_through
@@ -23,6 +23,9 @@ from fegear.dynamics.planetary.mesh_law import MeshSprings, forces, springs
 
 #: Forces from this share of the mean one on tell where a curve has corners; below it flanks touch in spots.
 _TELLS = 0.3
+#: Roll positions of a law: corner contact bends the curve over a twentieth of a base pitch, and phases of a set leave
+#: the harmonics that come of it alone. With half as many a set's peak to peak is 7 % off, with twice as many .04 %.
+_POSITIONS = 96
 #: What half of the roll positions change of straight lines is three times what all of them miss.
 _OF_HALF = 1.0 / 3.0
 
@@ -52,12 +55,18 @@ class FlankSprings:
     @cached_property
     def solved(self) -> LoadedFlanks:
         """The flanks under every force of the law."""
-        known = self.teeth.over.found.known
-        return self.teeth.flanks.solve(forces(self.load, self.planets)[0], self.teeth.gaps, known)
+        return self._flanks.solve(
+            forces(self.load, self.planets)[0], self.teeth.gaps, self._flanks.compliance(self.load)
+        )
+
+    @property
+    def _flanks(self) -> FlankPair:
+        flanks = self.teeth.flanks
+        return replace(flanks, positions=max(flanks.positions, _POSITIONS))
 
     @property
     def _points(self) -> Panels:
-        return self.teeth.over.points
+        return self._flanks.points
 
     @cached_property
     def _straight(self) -> Mask:
