@@ -331,3 +331,17 @@ def test_more_stages_than_any_gearbox_has_are_refused_at_once() -> None:
                   link(5000 + n, "stage", stage=3000 + n, gear_1=2000 + n, gear_2=2000 + (n + 1) % 201)]  # fmt: skip
     with pytest.raises(InputError, match="201 of them: are more than the 200"):
         text_of({**two_stages(), "components": parts, "relations": links})
+
+
+def test_modules_and_stiffnesses_that_are_none_are_refused() -> None:
+    """A helical gear with a module of zero ended in a traceback; a stiffness below zero counted as rigid."""
+    with pytest.raises(InputError, match=r"normal_module = 0 mm: of cylindrical_gear 11 must be positive"):
+        case(put(two_stages(), 11, normal_module=(0.0, "mm")))
+    with pytest.raises(InputError, match=r"radial_stiffness = -4e\+08 N/m: of concept_bearing 51 must not be negative"):
+        case(put(two_stages(), 51, radial_stiffness=(-4e5, "N/mm")))
+
+
+def test_of_torques_at_two_places_the_model_leaves_open_one_is_taken_and_told() -> None:
+    tree = more(two_stages(), part(35, "external_load", u_coordinate_on_shaft=(5.0, "mm"), transmits_torque="true"),
+                relations=(link(900, "assembly", assembly=5, part=35),))  # fmt: skip
+    assert "shaft 5: of its torque nothing says what enters at 5 mm; all of it is taken to at 120 mm" in text_of(tree)

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, inline, listed, number, quantity, text
 from fegear.exchange.rexs.places import BEARINGS
 from fegear.exchange.rexs.said import RIGID
@@ -241,6 +242,8 @@ def _stiffness(said: Said, one: Component, *, fixed: bool) -> list[Key]:
         keys.append(Key("radial", quantity(0.0, "N/um"), "radial_force_absorption"))
     elif soft:
         keys.append(Key("radial", quantity(radial or 0.0, "N/um"), "radial_stiffness"))
+    elif radial is not None and radial < 0.0:
+        raise InputError("radial_stiffness", f"{radial:g} N/m", f"of {one.said} must not be negative", "correct it")
     else:
         said.notes.append(f"{one.said}: neither what rolls in it nor a stiffness is said; it is rigid across the axis.")
     if fixed and axial is not None and 0.0 < axial < RIGID:
@@ -288,7 +291,10 @@ def _rows(said: Said, one: Component) -> Rows | None:
             f"{one.said} slides in its seat: its contact angle of {math.degrees(angle):g} deg is not used."
         )
         angle = 0.0
-    races = [said.number(row, "length", f"raceway_radius_of_{ring}_ring") for ring in ("inner", "outer")]
+    races = [
+        said.number(row, "length", f"raceway_radius_of_{ring}_ring", f"running_path_radius_of_{ring}_ring")
+        for ring in ("inner", "outer")
+    ]  # the latter in version 1.0
     grooves = None if roller or not all(races) else ((races[0] or 0.0) / diameter, (races[1] or 0.0) / diameter)
     return Rows(
         count, diameter, pitch, angle, length, grooves, _ways(said, one, rows, angle), f"{row.said}, {rolls[0].said}"

@@ -18,7 +18,6 @@ from fegear.exchange.rexs.places import (
     bevels_of,
     direction,
     distance_of,
-    joints_of,
     middle_on_shaft,
     places_of,
     shaft_of,
@@ -27,7 +26,7 @@ from fegear.exchange.rexs.places import (
 )
 from fegear.exchange.rexs.said import Said
 from fegear.exchange.rexs.sets import planetary_of, set_table
-from fegear.exchange.rexs.shafts import OnShaft, diameter_below, sections_of, shaft_table
+from fegear.exchange.rexs.shafts import OnShaft, coupling_of, diameter_below, sections_of, shaft_table
 from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift, refuse_equal_hands, teeth_of
 from fegear.geometry.involute import inv
 
@@ -320,13 +319,9 @@ def _shafts(
     for n, shaft in shafts.items():
         gears = _standing(every, on, shaft)
         mine = tuple((names[one.id], middles[one.id]) for one in gears)
-        ends = tuple(
-            said.needed(one, "length", "u_coordinate_on_shaft")
-            for one in said.linked(shaft, "assembly", "assembly", "part", "external_load")
-            if said.yes(one, "transmits_torque") or said.number(one, "torque", "torque_around_u_axis")
-        ) + joints_of(said, shaft)
-        if not ends and flow.left_by(stages, gears):
-            ends = (sections_of(said, shaft)[-1].end,)
+        coupling, twisting = coupling_of(said, shaft)
+        if coupling is None and flow.left_by(stages, gears):
+            coupling = sections_of(said, shaft)[-1].end
             said.notes.append(f"{shaft.said}: nothing says where its torque enters or leaves: its end is assumed.")
         bearings = [
             replace(one, stopped=one.component.id in stopped)
@@ -337,7 +332,7 @@ def _shafts(
                 seats.setdefault(table.name, table)
         clockwise = flow.driven.speed[flow.bodies[n]] < 0.0
         around = {one.name: called[one.joins.id] for one in bearings if one.joins is not None}
-        on_it = OnShaft(mine, ends, around)
+        on_it = OnShaft(mine, coupling, twisting, around)
         made.append(shaft_table(said, shaft, called[n], places[n], on_it, bearings, origin, clockwise=clockwise))
     return [*made, *seats.values()]
 

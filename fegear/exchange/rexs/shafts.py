@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, inline, listed, quantity, text
-from fegear.exchange.rexs.places import own_axes
+from fegear.exchange.rexs.places import joints_of, own_axes
 from fegear.exchange.rexs.teeth import elasticity
 
 if TYPE_CHECKING:
@@ -48,14 +48,17 @@ class OnShaft:
     ----------
     gears : tuple of (str, float)
         Names and middles of faces.
-    torque_at : tuple of float
-        Where torque enters or leaves.
+    coupling : float, optional
+        Where the torque enters or leaves that balances the others.
+    twisting : frozenset of int
+        Loads whose torque acts where they stand.
     around : dict of str to str
         Shafts in which the outer rings of its bearings sit, by bearing.
     """
 
     gears: tuple[tuple[str, float], ...]
-    torque_at: tuple[float, ...] = ()
+    coupling: float | None = None
+    twisting: frozenset[int] = frozenset()
     around: dict[str, str] = field(default_factory=dict)
 
 
@@ -160,9 +163,9 @@ def shaft_table(
         for name, back, turns in one.seats
     )
     keys.append(Key("bearings", seats, "u_coordinate_on_shaft"))
-    if on.torque_at:
-        keys.append(Key("coupling", along(on.torque_at[0]), "external_load that transmits torque"))
-    loads = _loads(said, shaft, along)
+    if on.coupling is not None:
+        keys.append(Key("coupling", along(on.coupling), "external_load that transmits torque"))
+    loads = _loads(said, shaft, along, on.twisting)
     keys += [Key("loads", loads, "forces of external_load")] if loads else []
     keys += [Key("clockwise", "true", "rotational_speed below zero")] if clockwise else []
     return Table(f"shaft.{name}", tuple(keys), f"{shaft.said} {shaft.name}".strip())
@@ -192,13 +195,42 @@ def _section(one: Section, *, flipped: bool) -> str:
     )
 
 
-def _loads(said: Said, shaft: Component, along: Callable[[float], str]) -> str | None:
-    """Forces and bending moments from outside, along x, y and z; the torque about the axis is the coupling's."""
+def coupling_of(said: Said, shaft: Component) -> tuple[float | None, frozenset[int]]:
+    """Where the torque of a shaft enters that balances the rest [m], and the loads whose own torque acts beside it.
+
+    A case has one such place. It is where the model leaves the torque open, so that what it gives elsewhere stands.
+    """
+    given: dict[int, float] = {}
+    places: list[tuple[bool, float, Component | None]] = []
+    for one in said.linked(shaft, "assembly", "assembly", "part", "external_load"):
+        torque = said.number(one, "torque", "torque_around_u_axis")
+        if torque or said.yes(one, "transmits_torque"):
+            at = said.needed(one, "length", "u_coordinate_on_shaft")
+            balances = not torque or (said.yes(one, "transmits_torque") and not said.yes(one, "defines_torque"))
+            places.append((not balances, at, one))
+            given.update({one.id: at} if torque else {})
+    places += [(False, at, None) for at in joints_of(said, shaft)]
+    if not places:
+        return None, frozenset()
+    _, coupling, chosen = min(places, key=lambda one: one[0])
+    twisting = frozenset(given) - ({chosen.id} if chosen is not None else set())
+    for _, at, other in places:
+        if at != coupling and (other is None or other.id not in given):
+            said.notes.append(
+                f"{shaft.said}: of its torque nothing says what enters at {at * 1e3:.4g} mm; all of it is taken to at "
+                f"{coupling * 1e3:.4g} mm."
+            )
+    return coupling, twisting
+
+
+def _loads(said: Said, shaft: Component, along: Callable[[float], str], twisting: frozenset[int]) -> str | None:
+    """Forces and moments from outside, along x, y and z; torques about the axis that the coupling does not take."""
     found = []
     axes = own_axes(said, shaft)
     for one in said.linked(shaft, "assembly", "assembly", "part", "external_load"):
         force = [said.number(one, "force", f"force_{axis}_direction") or 0.0 for axis in "uvw"]
-        moment = [0.0, *(said.number(one, "torque", f"torque_around_{axis}_axis") or 0.0 for axis in "vw")]
+        moment = [said.number(one, "torque", f"torque_around_{axis}_axis") or 0.0 for axis in "uvw"]
+        moment[0] *= one.id in twisting
         if not any((*force, *moment)):
             continue
         # Loads are given along the shaft's own axes; x is v, y is w and z is u of the gearbox.

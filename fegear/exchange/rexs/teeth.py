@@ -126,11 +126,15 @@ def teeth_of(said: Said, gear: Component) -> int:
 def module_of(said: Said, gear: Component) -> float:
     """Normal module [m], from the transverse one where that is given alone."""
     normal = said.number(gear, "length", "normal_module")
-    if normal is not None:
-        return normal
-    helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
-    transverse = said.number(gear, "length", "transverse_module")
-    return said.needed(gear, "length", "normal_module") if transverse is None else transverse * math.cos(helix)
+    transverse = said.number(gear, "length", "transverse_module") if normal is None else None
+    if transverse is not None:
+        helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
+        normal = transverse * math.cos(helix)
+    if normal is None:
+        normal = said.needed(gear, "length", "normal_module")
+    if not normal > 0.0:
+        raise InputError("normal_module", f"{normal * 1e3:g} mm", f"of {gear.said} must be positive", "correct it")
+    return normal
 
 
 def refuse_equal_hands(said: Said, stages: list[Stage]) -> None:
