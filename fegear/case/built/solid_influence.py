@@ -35,6 +35,8 @@ _APART = 0.35
 _SECONDS_OF_SLICES = 0.6
 #: How many times as long one on a web takes.
 _ON_A_WEB = 3.0
+#: And a ring whose rim is not held.
+_RIM_FREE = 1.8
 
 
 @dataclass(frozen=True)
@@ -143,10 +145,10 @@ def check_solid_gear(scene: Scene, name: str) -> None:
             f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
             'solve the gear as a solid: write "solid" for "slices"',
         )  # fmt: skip
-    if scene.gears[name].support is not None:
+    if (support := scene.gears[name].support) is not None and support.pins:
         raise InputError(
-            f"gear.{name}.rim_support", "pins or a spline", "is known to plane gears alone so far",
-            'leave the pair\'s width = "solid" and helix angles out, or write rim_support = { kind = "held" }',
+            f"gear.{name}.rim_support.kind", '"pins"', "is known to plane gears alone so far",
+            'leave the pair\'s width = "solid" and helix angles out, or write "held" or "splined"',
         )  # fmt: skip
     if (body := scene.gears[name].body) is not None and not body.even:
         meshes = [(key, scene.case.pair[key]) for key in flank_pairs(scene)]
@@ -208,13 +210,14 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
             asked.settings,
             reach=asked.reach,
             body=gear.body_in_modules,
+            support=gear.support_in_modules,
             cache=cache,
         )
     return found.with_error(cache)
 
 
 def seconds_of_solid_gear(
-    settings: SolidSettings, width: float, *, twisted: bool = True, on_a_web: bool = False
+    settings: SolidSettings, width: float, *, twisted: bool = True, on_a_web: bool = False, rim_free: bool = False
 ) -> float:
     """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
     from fegear.fem.solid.settings import SolidSettings
@@ -223,7 +226,7 @@ def seconds_of_solid_gear(
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
     by_width = _BY_WIDTH * width**_WIDER * (1.0 if twisted or on_a_web else _APART)
     alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + by_width
-    return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else 1.0)
+    return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else _RIM_FREE if rim_free else 1.0)
 
 
 def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:

@@ -155,10 +155,7 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
     support = influence.gear.support
     if support is None:
         return ()
-    apart = (
-        f"Gear {name}: its rim gives way as a whole; planets of a set are each taken alone with the ring, and what one "
-        "planet's load does to the rim below another is neglected."
-    )
+    apart = planets_taken_alone(name)
     if influence.fine.pins is None:
         return (apart,)
     low, high = influence.gear.involute_radii
@@ -171,6 +168,14 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
         "and sets take the mean compliance and stress of all teeth."
     )
     return spread, apart
+
+
+def planets_taken_alone(name: str) -> str:
+    """What a ring that is not held all round leaves out."""
+    return (
+        f"Gear {name}: its rim gives way as a whole; planets of a set are each taken alone with the ring, and what one "
+        "planet's load does to the rim below another is neglected."
+    )
 
 
 def _tolerance_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:

@@ -28,10 +28,12 @@ from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions, JoinedFunctions, face_functions, own_of_teeth, solid_unknowns
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
 from fegear.fem.solid.flank_body import TwistedFlank
+from fegear.fem.solid.rim import solid_rim, splined_response
 from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rim_support import RimSupport
 
 #: How far below the edge of a pressed band root tension begins [modules].
 _CLEARANCE = 0.25
@@ -70,6 +72,8 @@ class SolidSolution(TwistedFlank):
         K: neighbours -K..K are known; size of the sector's system.
     settings : SolidSettings
     seconds : mapping of str to float
+    support : RimSupport or None
+        Of a ring gear's rim; None of an outer cylinder that is held, and of external gears.
     """
 
     tooth: InvoluteTooth
@@ -89,6 +93,7 @@ class SolidSolution(TwistedFlank):
     unknowns: int
     settings: SolidSettings
     seconds: Mapping[str, float]
+    support: RimSupport | None = None
 
     def deflection(self, k: int, watched: Bands, pressed: Bands) -> Array:
         """c_k: mean approach of bands on tooth k under a unit force on bands of tooth 0, shape (P, Q) [1/(E module)].
@@ -203,6 +208,7 @@ def solve_solid(
     mesh: SectorMesh | None = None,
     sector_teeth: int = 0,
     plane_strain: bool = False,
+    support: RimSupport | None = None,
 ) -> SolidSolution:
     """Solve one solid ring for all that can be asked of its teeth.
 
@@ -231,22 +237,32 @@ def solve_solid(
         Solve a row of so many teeth with free sides, loaded in the middle, instead of the ring.
     plane_strain : bool
         Nothing moves along the axis: a check, which without a twist is the plane problem.
+    support : RimSupport, optional
+        Of a ring gear's rim, a spline; by default its whole outer cylinder is held.
 
     Returns
     -------
     SolidSolution
+
+    Raises
+    ------
+    RangeError
+        If a rim stands on pins, or has another support than a whole ring alone can have.
     """
     settings = settings or SolidSettings()
+    if support is not None:
+        _check_support(support, tooth, alone=held is None and body is None and not sector_teeth)
     with one_thread():
         return _solve(
-            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, body, mesh, sector_teeth, plane_strain
-        )
+            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, body, mesh, sector_teeth,
+            plane_strain, support,
+        )  # fmt: skip
 
 
 def _solve(
     tooth: InvoluteTooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
     held: tuple[float, float] | None, body: GearBody | None, mesh: SectorMesh | None, sector_teeth: int,
-    plane_strain: bool,
+    plane_strain: bool, support: RimSupport | None,
 ) -> SolidSolution:  # fmt: skip
     started = time.perf_counter()
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
@@ -259,7 +275,13 @@ def _solve(
     own = face_functions(width, settings.degree(width)) if math.isfinite(beyond) else face
     joined, columns = (face, slice(None)) if own is face else (JoinedFunctions(face, own), slice(face.count, None))
     known = solid_unknowns(
-        section, face, settings, held, plane_strain=plane_strain, teeth=None if own is face else (own, beyond)
+        section,
+        face,
+        settings,
+        held,
+        plane_strain=plane_strain,
+        teeth=None if own is face else (own, beyond),
+        bore_held=support is None,
     )
     flank = section_flank(mesh, section, tooth)
     fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
@@ -268,7 +290,11 @@ def _solve(
     sides = [(3 * nodes[:, None] + every).ravel() for nodes in (section.side_a, section.side_b)]
     ports = 3 * flank_nodes(section)
     seen = [(3 * fillet.nodes[:, None] + every).ravel() for fillet in fillets.values()]
-    inner = np.setdiff1d(np.concatenate([ports, *seen]), np.concatenate(sides))
+    rim = None if support is None else solid_rim(
+        section, face, (known.number[::3] >= 0).sum(axis=1), plane_strain=plane_strain
+    )  # fmt: skip
+    outer = np.zeros(0, np.int64) if rim is None else (3 * section.nodes_of("bore")[:, None] + every).ravel()
+    inner = np.setdiff1d(np.concatenate([ports, *seen, outer]), np.concatenate(sides))
     on_flank = known.number[ports] >= 0
     size = int(on_flank.sum())
     compliance = {k: np.zeros((size, size)) for k in range(-reach, reach + 1)}
@@ -279,20 +305,25 @@ def _solve(
     for alone in known.split(_mirrored(section, face)) if symmetric else (known,):
         begun = time.perf_counter()
         condensed = condense_solid(section, joined, alone, np.concatenate([*sides, inner]))
-        ring = closed_ring(
-            condensed, alone.of(sides[0]).size, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=begun
-        )
-        closed = time.perf_counter()
-        loaded = alone.of(ports)
+        joint, loaded = alone.of(sides[0]).size, alone.of(ports)
+        watch = np.concatenate([loaded, *(alone.of(part) for part in seen)])
+        if rim is None:
+            ring = closed_ring(condensed, joint, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=begun)
+            response = ring.respond(loaded, watch)
+        else:
+            response, ring = splined_response(
+                condensed, joint, rim, alone, tooth.teeth, reach, loaded, watch, begun
+            )  # fmt: skip
         mine = np.flatnonzero((alone.number[ports] >= 0)[on_flank])
-        for k, u in ring.respond(loaded, np.concatenate([loaded, *(alone.of(part) for part in seen)])).items():
+        for k, u in response.items():
             compliance[k][np.ix_(mine, mine)] = u[: loaded.size]
             row = loaded.size
             for side, part in zip(_FILLETS, seen, strict=True):
                 node, function = np.nonzero(alone.number[part][:, columns] >= 0)
                 local[k, side][node[:, None], function[:, None], mine] = u[row : row + node.size]
                 row += node.size
-        for what, spent in {**ring.seconds, "influence": time.perf_counter() - closed}.items():
+        after = time.perf_counter() - begun - sum(ring.seconds.values())
+        for what, spent in {**ring.seconds, "influence": after}.items():
             seconds[what] += spent
     displacement: dict[tuple[int, Side], Array] = {}
     for (k, side), moved in local.items():
@@ -301,8 +332,19 @@ def _solve(
         displacement[k, side] = np.einsum("ncd,ndkr->nckr", axes, of_nodes, optimize=True)
     return SolidSolution(
         tooth, tau, width, bore_radius, held, body, nu, plane_strain, own, flank, compliance, fillets, displacement,
-        reach, known.size, settings, seconds,
+        reach, known.size, settings, seconds, support,
     )  # fmt: skip
+
+
+def _check_support(support: RimSupport, tooth: InvoluteTooth, *, alone: bool) -> None:
+    if support.pins:
+        raise RangeError(
+            "rim_support.kind", '"pins"', "is known to plane rings alone", 'hold the rim all round, or write "splined"'
+        )
+    if not (tooth.internal and alone):
+        raise RangeError(
+            "rim_support.kind", '"splined"', "is known to whole internal rings alone, without a body or a held part"
+        )
 
 
 def _mirrored(section: Section, face: FaceFunctions) -> Mask:
