@@ -13,9 +13,10 @@ import time
 
 import in_process
 import pytest
+import typer
 
 from fegear.base.errors import lacks_memory
-from fegear.cli import _NO_MEMORY
+from fegear.cli import _NO_MEMORY, COMMANDS, app
 
 CASE = """
 title = "One gear"
@@ -212,6 +213,22 @@ def test_a_terminal_gets_a_bar(case, tmp_path):
     assert "Geometry" in text
     assert "━" in text
     assert b"Wrote" in done.stdout
+
+
+def test_a_command_is_read_alone_and_is_that_of_the_whole_program(capsys, monkeypatch):
+    whole = typer.main.get_command(app)
+    read, plain = [], typer.main.get_command_from_info
+    monkeypatch.setattr(
+        typer.main, "get_command_from_info", lambda command_info, **how: read.append(0) or plain(command_info, **how)
+    )
+    assert len(whole.commands) == len(COMMANDS)
+    for name in whole.commands:
+        whole([name, "--help"], prog_name="fegear", standalone_mode=False)
+        expected = capsys.readouterr().out
+        assert "--help" in expected
+        app([name, "--help"], prog_name="fegear", standalone_mode=False)
+        assert capsys.readouterr().out == expected
+    assert len(read) == len(COMMANDS)  # one each
 
 
 def test_version(tmp_path):
