@@ -12,6 +12,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from solved_once import CACHE
 
 from fegear.base.errors import MissingLibraryError
 from fegear.case.reading import read_scene
@@ -35,7 +36,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 def made(folder: Path, name: str, *overrides: str) -> Path:
     scene = read_scene(CASES / f"{name}.toml", overrides)
-    write_results(run_plan(scene, make_plan(scene, STAGES)), folder, Silence(), plots=False)
+    write_results(run_plan(scene, make_plan(scene, STAGES), cache=CACHE), folder, Silence(), plots=False)
     return folder
 
 

@@ -27,7 +27,7 @@ TOOTH = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.1)
 WIDTH, BORE, NU = 4.0, 3.0, 0.3
 RIM, HUB = 6.6, 4.2
 FACE = (-0.5 * WIDTH, 0.5 * WIDTH)
-COARSE = replace(SolidSettings().scaled(2.5), least_degree=6)
+COARSE = replace(SolidSettings().scaled(3.0), least_degree=5)
 PLACES = (-2.0, -1.0, 0.0, 1.0, 2.0)
 
 
@@ -119,6 +119,7 @@ def test_teeth_of_a_deep_rim_feel_no_breaks(monkeypatch):
 @pytest.mark.long  # the ordinary run has three webs
 def test_no_random_body_is_stiffer_with_a_thinner_web():
     """Coarse settings: at seven places along the face, under the load there and under an even one."""
+    settings = replace(SolidSettings().scaled(2.5), least_degree=6)
     rng = np.random.default_rng(29)
     for i in range(27):
         teeth, width, nu = int(rng.integers(16, 30)), rng.uniform(2.0, 8.0), rng.choice([0.2, 0.3, 0.45])
@@ -130,7 +131,7 @@ def test_no_random_body_is_stiffer_with_a_thinner_web():
         places, found = np.linspace(-0.5 * width, 0.5 * width, 7), []
         for span in ((low, low + web), (first, last)):
             given = GearBody(rim, hub, span, (-0.5 * width, 0.5 * width))
-            gear = solve_solid(tooth, 0.0, width, nu, bore, COARSE, reach=0, body=given)
+            gear = solve_solid(tooth, 0.0, width, nu, bore, settings, reach=0, body=given)
             compliance = line_compliance(gear, contact_line(gear, np.full(7, tooth.tip_radius - 1.0), places), 0.02)
             found.append(np.concatenate([np.diag(compliance), compliance.sum(axis=1)]))
         assert (found[1] > found[0]).all(), i
