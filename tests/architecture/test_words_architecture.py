@@ -7,10 +7,10 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-#: What is read instead: compared with, is used instead of, not known, reported or distinguished.
+#: What is read instead: compared with, is used instead of, not known, reported or distinguished, deflects, excites.
 WORDS = re.compile(
     r"\b(held against|hold(?:s|ing)? [^.|;\n]{0,40}\bagainst|stands? in for|nobody|told|"
-    r"knows? nothing of|given? way by|"
+    r"knows? nothing of|given? way|gives way|giving way|tells?|foretells?|shak(?:e|es|en|ing)|"
     # what is compared or added is not beside: that is a place
     r"beside (?:finite|those of|usual|the (?:standards?|finite|formulas?|tolerances?|seconds|quadrature|exact)"
     r"|ISO|AGMA|CalculiX|[\d.]+ (?:and|um|MPa|%)))\b|^#+ Beside\b",

@@ -34,6 +34,11 @@ COSTLY = {
 }  # fmt: skip
 
 
+#: Programs of the tree.
+FILES = [path.relative_to(ROOT).as_posix() for top in ("fegear", "docs", "tests", "benchmarks", "cases")
+         for path in sorted((ROOT / top).rglob("*.py"))]  # fmt: skip
+
+
 def _snippets():
     spec = importlib.util.spec_from_file_location("docs_snippets", DOCS / "snippets.py")
     module = importlib.util.module_from_spec(spec)
@@ -322,6 +327,38 @@ def test_what_a_failing_page_leaves_running_ends_with_it(tmp_path):
 )
 def test_a_page_does_what_it_says(page, tmp_path):
     assert snippets.execute(page, tmp_path / "run") == ""
+
+
+#: Names that a page gives as an example, or that stand for one.
+EXAMPLES = {"script.py", "fegear.NAME"}
+
+
+@pytest.mark.parametrize("page", [*sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("*.md"))], ids=lambda page: page.stem)
+def test_files_and_names_of_python_that_a_page_mentions_exist(page):
+    text = page.read_text("utf-8")
+    made = set(re.findall(r"^# ([\w.-]+\.py)", text, re.MULTILINE)) | EXAMPLES
+    files = [*FILES, *("/".join(path.split("/")[1:]) for path in FILES)]
+    named = set(re.findall(r"(?<![\w/.<>*-])((?:[\w.-]+/)*[\w-]+\.py)\b", text)) - made
+    assert sorted(one for one in named if not any(f"/{path}".endswith(f"/{one}") for path in files)) == []
+    dotted = set(re.findall(r"\bfegear(?:\.[A-Za-z_]\w*)+(?!\w*[/-])", text)) - made
+    dotted = {one for one in dotted if not one.endswith((".schema", ".schema.json", ".py", ".files"))}
+    assert sorted(one for one in dotted if not _there(one)) == []
+
+
+def _there(name):
+    parts = name.split(".")
+    for count in range(len(parts), 0, -1):
+        try:
+            found = importlib.import_module(".".join(parts[:count]))
+        except ModuleNotFoundError:
+            continue
+        try:
+            for part in parts[count:]:
+                found = getattr(found, part)
+        except AttributeError:
+            return False
+        return True
+    return False
 
 
 def test_the_everyday_tasks_take_at_most_six_lines():

@@ -173,7 +173,7 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
 def planets_taken_alone(name: str) -> str:
     """What a ring that is not held all round leaves out."""
     return (
-        f"Gear {name}: its rim gives way as a whole; planets of a set are each taken alone with the ring, and what one "
+        f"Gear {name}: its rim deflects as a whole; planets of a set are each taken alone with the ring, and what one "
         "planet's load does to the rim below another is neglected."
     )
 
