@@ -154,12 +154,21 @@ def test_symbols_of_the_prose_have_greek_letters_and_nothing_else_has(spelled, l
     assert _hook("greek").with_letters(spelled) == (letters or spelled)
 
 
+_SPELLED_OTHERWISE = re.compile(r"(?:^|[\s(|~+-])\.\d|\bum\b|\d%|\d(?:µm|mm|MPa)\b")
+
+
+@pytest.mark.parametrize("spelled", [".5 of", "is -.5", "(.5)", "3 um", "5% of", "5mm", "5 um/N"])
+def test_other_ways_of_decimals_and_units_are_found(spelled):
+    assert _SPELLED_OTHERWISE.search(spelled)
+    assert not _SPELLED_OTHERWISE.search("0.5 of 3 µm, 5 % and 5 mm; a sum")
+
+
 def test_prose_has_one_way_of_decimals_and_of_micrometres():
     """On the site, whatever the files have; a decimal comma is nowhere in them."""
     greek = _hook("greek")
     for page in (*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CHANGELOG.md"):
         prose = greek._OTHER.sub(" ", greek.with_letters(page.read_text("utf-8")))
-        found = re.findall(r"(?:^|[\s(|~+-])\.\d.*|.*\bum\b.*|.*\d%.*|.*\d(?:µm|mm|MPa)\b.*", prose, re.MULTILINE)
+        found = [line for line in prose.splitlines() if _SPELLED_OTHERWISE.search(line)]
         assert found == [], page
 
 
