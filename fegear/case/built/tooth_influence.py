@@ -42,8 +42,7 @@ def needed_reach(scene: Scene, name: str) -> int:
             # A corner in contact before and after the path adds a pair at either end.
             extra = 1 if scene.case.effects.corner_contact else 0
             # A root's stress is followed from a base pitch before contact to one after it.
-            extra += 1 if "root-stress-history" in scene.case.results else 0
-            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) - 1 + extra, scene.gears[name].teeth // 2 - 1))
+            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) + extra, scene.gears[name].teeth // 2 - 1))
     return reach
 
 
