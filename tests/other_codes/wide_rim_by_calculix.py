@@ -1,7 +1,8 @@
-"""A whole ring gear with its width in a spline, one tooth loaded, by CalculiX: quadratic solids of all teeth.
+"""A whole ring gear with its width in a spline or on pins by CalculiX: quadratic solids of all teeth, one loaded.
 
 Nothing of fegear's solution is used but the section's nodes (`solid_by_calculix.solid`): the tractions of the spline,
-the mean motion of the outer cylinder and the fillet's stress are summed here. Module and modulus are one.
+the mean motion of the outer cylinder, what pins hold and the fillet's stress are summed here.
+Module and modulus are one.
 """
 
 import os
@@ -61,8 +62,64 @@ def even_tractions(mesh):
     return found
 
 
-def solve(folder, mesh, forces, ccx="ccx"):
-    """Displacements (3, P) of a ring whose outer cylinder does not move on average, in units of force / (E module)."""
+def held_by_pins(mesh, support, heights):
+    """Weights of nodes in what each pin holds: over its arc in space outward and along the circle, in so many
+    polynomials along the face, and the mean along the axis; shape (pins (2 heights + 1), 3, nodes).
+    """
+    faces = mesh.faces(mesh.section.edges("bore")).reshape(8, -1)
+    at, half = mesh.points[:, faces], 0.5 * support.width / RING.bore
+    middle = support.angle + 2.0 * np.pi * np.arange(support.pins) / support.pins
+    found = np.zeros((support.pins, 2 * heights + 1, 3, mesh.points.shape[1]))
+    steps = 24
+    places = (2.0 * np.arange(steps) + 1.0) / steps - 1.0
+    for xi in places:
+        for eta in places:
+            value, slope = _shapes(xi, eta)
+            one, other = np.einsum("dk,ckf->dcf", slope, at)
+            area = (2.0 / steps) ** 2 * np.linalg.norm(np.cross(one, other, axis=0), axis=0)
+            x, y, z = np.einsum("k,ckf->cf", value, at)
+            along = np.polynomial.legendre.legvander(2.0 * z / calculix.FACE, heights - 1).T
+            off = np.mod(np.arctan2(x, y) - middle[:, None] + np.pi, 2.0 * np.pi) - np.pi
+            for pin, angle in enumerate(middle):
+                on = np.flatnonzero(np.abs(off[pin]) < half)
+                if not on.size:
+                    continue
+                share = area[on] / (support.width * calculix.FACE)
+                ways = np.array([[np.sin(angle), np.cos(angle), 0.0], [np.cos(angle), -np.sin(angle), 0.0]])
+                for k in range(8):
+                    nodes, weight = faces[k, on], value[k] * share
+                    for j in range(heights):
+                        for i, way in enumerate(ways):
+                            for c in range(2):
+                                np.add.at(found[pin, i * heights + j, c], nodes, weight * along[j, on] * way[c])
+                    np.add.at(found[pin, 2 * heights, 2], nodes, weight)
+    return found.reshape(-1, 3, mesh.points.shape[1])
+
+
+def equations(held):
+    """*EQUATION cards that keep weighted sums at zero, each with an unknown of its own that no other has."""
+    from scipy.linalg import qr
+
+    rows = held.transpose(0, 2, 1).reshape(held.shape[0], -1)
+    used = np.flatnonzero(np.abs(rows).max(axis=0) > 0.0)
+    part = rows[:, used]
+    own = qr(part, mode="r", pivoting=True)[1][: rows.shape[0]]
+    solved = np.linalg.solve(part[:, own], part)
+    deck = []
+    for i, mine in enumerate(own):
+        row = solved[i]
+        row[own] = 0.0
+        others = np.flatnonzero(np.abs(row) > 1e-13 * np.abs(row).max())
+        terms = [(used[mine], 1.0), *((used[j], row[j]) for j in others)]
+        deck += ["*EQUATION", f"{len(terms)}"]
+        deck += [f"{dof // 3 + 1}, {dof % 3 + 1}, {weight:.12e}" for dof, weight in terms]
+    return deck
+
+
+def solve(folder, mesh, forces, ccx="ccx", held=None):
+    """Displacements (3, P) in units of force / (E module) of a ring on pins, of which `held_by_pins` says what is held,
+    or of one whose outer cylinder does not move on average.
+    """
     tractions, motions = even_tractions(mesh), rigid(mesh.points)
     inverse = np.linalg.inv(np.einsum("rcn,scn->rs", motions, tractions))
     applied = forces - np.tensordot(inverse @ np.tensordot(motions, forces, 2), tractions, 1)
@@ -79,7 +136,10 @@ def solve(folder, mesh, forces, ccx="ccx"):
             row = list(map(str, [i, *nodes]))
             deck += [", ".join(row[:12]) + ",", ", ".join(row[12:])]
         number += cells.shape[1]
-    deck += ["*BOUNDARY", f"{top + 1}, 1, 3", f"{side + 1}, 2, 3", f"{far + 1}, 1, 1"]
+    if held is None:
+        deck += ["*BOUNDARY", f"{top + 1}, 1, 3", f"{side + 1}, 2, 3", f"{far + 1}, 1, 1"]
+    else:
+        deck, applied = deck + equations(held), forces
     deck += ["*MATERIAL, NAME=ONE", "*ELASTIC", f"1.0, {calculix.NU}", "*SOLID SECTION, ELSET=EALL, MATERIAL=ONE"]
     deck += ["*STEP", "*STATIC", "*CLOAD"]
     deck += [f"{n + 1}, {c + 1}, {applied[c, n]:.12e}" for c in range(3) for n in np.flatnonzero(applied[c])]
@@ -91,4 +151,5 @@ def solve(folder, mesh, forces, ccx="ccx"):
     for line in (folder / "ring.dat").read_text().splitlines():
         if row := re.match(r"\s*(\d+)\s+(\S+E\S+)\s+(\S+E\S+)\s+(\S+E\S+)\s*$", line):
             moved[:, int(row[1]) - 1] = float(row[2]), float(row[3]), float(row[4])
-    return moved - np.tensordot(inverse.T @ np.tensordot(tractions, moved, 2), motions, 1)
+    mean = np.tensordot(inverse.T @ np.tensordot(tractions, moved, 2), motions, 1)
+    return moved - mean if held is None else moved

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.tooth_influence import given_settings
+from fegear.case.built.tooth_influence import given_settings, planets_taken_alone, teeth_on_pins_differ
 from fegear.case.part import at
 
 if TYPE_CHECKING:
@@ -171,11 +171,6 @@ def check_solid_gear(scene: Scene, name: str) -> None:
             f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
             'solve the gear as a solid: write "solid" for "slices"',
         )  # fmt: skip
-    if (support := scene.gears[name].support) is not None and support.pins:
-        raise InputError(
-            f"gear.{name}.rim_support.kind", '"pins"', "is known to plane gears alone so far",
-            'leave the pair\'s width = "solid" and helix angles out, or write "held" or "splined"',
-        )  # fmt: skip
     check_ends(scene, name, _wide_pairs(scene))
     if part.face_width is None:
         raise InputError(
@@ -265,6 +260,19 @@ def seconds_of_solid_gear(
     by_width = _BY_WIDTH * width**_WIDER * (1.0 if twisted or on_a_web else _APART)
     alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + by_width
     return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else _RIM_FREE if rim_free else 1.0)
+
+
+def solid_support_remarks(name: str, influence: SolidInfluence) -> tuple[str, ...]:
+    """How the teeth of a ring on pins differ, and what a ring that is not held all round leaves out."""
+    support, teeth = influence.fine.support, influence.fine.pins
+    if support is None:
+        return ()
+    if teeth is None:
+        return (planets_taken_alone(name),)
+    spread = teeth_on_pins_differ(
+        name, support.pins, "at half height in the middle of the face", teeth.deflection, teeth.root_tension
+    )
+    return spread, planets_taken_alone(name)
 
 
 def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:

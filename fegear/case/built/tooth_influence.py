@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
 
@@ -160,13 +161,17 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
     low, high = influence.gear.involute_radii
     each = influence.over_the_teeth([0.5 * (low + high)], [influence.reference_half_width])
     c, tension = each["c_self"][:, 0], each["root_tension"][:, 0]
-    spread = (
-        f"Gear {name}: on {support.pins} pins {c.size} teeth in a row differ. Loaded at half height, c_self is "
+    return teeth_on_pins_differ(name, support.pins, "at half height", c, tension), apart
+
+
+def teeth_on_pins_differ(name: str, pins: int, where: str, c: Array, tension: Array) -> str:
+    """How far c_self and root tension of teeth on pins, shape (T,), depart from their means."""
+    return (
+        f"Gear {name}: on {pins} pins {c.size} teeth in a row differ. Loaded {where}, c_self is "
         f"{c.min() / c.mean() - 1.0:+.1%} to {c.max() / c.mean() - 1.0:+.1%} of its mean over the teeth, root tension "
         f"{tension.min() / tension.mean() - 1.0:+.1%} to {tension.max() / tension.mean() - 1.0:+.1%}. Tables, pairs "
         "and sets take the mean compliance and stress of all teeth."
     )
-    return spread, apart
 
 
 def planets_taken_alone(name: str) -> str:

@@ -358,11 +358,12 @@ def _lent(motion: NDArray[np.inexact], size: float) -> NDArray[np.inexact]:
     return np.asarray(size * (q @ q.conj().T))
 
 
-def harmonic_stiffness(condensed: Array, n: int, z: int, rigid: RigidSides) -> NDArray[np.complex128]:
-    """K_n of harmonic 0 or 1 with the stiffness that rigid motions are lent, shape (m, m)."""
+def harmonic_stiffness(condensed: Array, n: int, z: int, rigid: RigidSides | None) -> NDArray[np.complex128]:
+    """K_n of one harmonic, 0 and 1 with the stiffness that rigid motions are lent, shape (m, m)."""
     m, e = condensed.shape[0] // 2, np.exp(2.0j * np.pi * n / z)
     diagonal, ahead = condensed[:m, :m] + condensed[m:, m:], condensed[:m, m:]
-    return np.asarray(diagonal + e * ahead + np.conj(e) * ahead.T + _lent(rigid[n], diagonal.trace() / m))
+    found = np.asarray(diagonal + e * ahead + np.conj(e) * ahead.T)
+    return found if n > 1 or rigid is None else np.asarray(found + _lent(rigid[n], diagonal.trace() / m))
 
 
 def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Array]:

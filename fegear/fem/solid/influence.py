@@ -24,6 +24,7 @@ from fegear.fem.solid.bands import Bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
+from fegear.fem.solid.pinned_rim import TeethOnPins
 from fegear.fem.solid.settings import SolidSettings, check_solid, whole
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
@@ -33,7 +34,10 @@ from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rim_support import RimSupport
 
 #: What a solution consists of, for those that keep it.
-_KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody, RimSupport)
+_KINDS = (
+    SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody, RimSupport,
+    TeethOnPins,
+)  # fmt: skip
 #: Where errors are looked for: contact lines through these shares of the flank's length in the middle of the face,
 #: where they stay off its ends by a share of it; root tension of what stands above another share.
 _UP, _FOOT, _ABOVE_FOOT = (0.12, 0.3, 0.5, 0.7, 0.88), 0.07, 0.35
@@ -263,7 +267,7 @@ def solid_influence(
     body : GearBody, optional
         Rim, web and hub, whose bore is held over the hub [modules]; by default a disc as wide as the face.
     support : RimSupport, optional
-        Of a ring gear's rim, a spline; by default its whole outer cylinder is held.
+        Of a ring gear's rim, pins or a spline; by default its whole outer cylinder is held.
     estimate_error : bool
         Whether to spend a part again on a coarser solution.
     cache : SolutionCache, optional

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
 from fegear.fem.plane.ring import closed_ring, harmonic_stiffness
@@ -71,7 +72,7 @@ class SolidRim:
         return np.asarray(turn[np.ix_(self.which, self.which)])
 
     @property
-    def waves(self) -> tuple[Array, Array]:
+    def waves(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Motions of harmonics 0 and 1, shape (d, 1 or 2) each: turned by one pitch they are exp(i n theta) times."""
         every = np.zeros((2, 6, 2), dtype=complex)
         every[0, [2, 5], [0, 1]] = 1.0
@@ -130,70 +131,116 @@ def solid_rim(section: Section, face: FaceFunctions, counts: Index, *, plane_str
     return SolidRim(motions, work.reshape(size)[..., which], which)
 
 
-def splined_response(
-    sector: Condensed, side: int, rim: SolidRim, known: Unknowns, teeth: int, reach: int, loaded: Index, watch: Index,
-    started: float,
-) -> tuple[dict[int, Array], Ring]:  # fmt: skip
-    """Displacements of watched ports on sectors -reach..reach of a splined ring under forces on sector 0.
+@dataclass(frozen=True)
+class FreeRing:
+    """A ring that nothing holds, with the stiffness that it was lent against its rigid motions.
+
+    Parameters
+    ----------
+    ring : Ring
+    moved, pressed : ndarray, shape (ports, d)
+        Rigid motions and even tractions at the ports of a sector.
+    rim : SolidRim
+        What of the motions there is.
+    rigid : RigidSides or None
+        Of the sides; None if there is no motion.
+    sides : ndarray, shape (2 m, 2 m)
+        Stiffness between the sides, nothing inside held.
+    place : ndarray of int, shape (size,)
+        Where unknowns stand among the ports; -1 for others.
+    """
+
+    ring: Ring
+    moved: Array
+    pressed: Array
+    rim: SolidRim
+    rigid: RigidSides | None
+    sides: Array
+    place: Index
+
+    def moves(self, n: int, ports: Index | slice, forces: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """Motion of side A in the n-th harmonic under harmonic forces on ports, shape (m, P)."""
+        return np.asarray(np.linalg.solve(self.stiffness(n), self.followed(n, ports).conj().T @ forces))
+
+    def stiffness(self, n: int) -> NDArray[np.complex128]:
+        """K_n, shape (m, m)."""
+        return harmonic_stiffness(self.sides, n, self.ring.teeth, self.rigid)
+
+    def followed(self, n: int, ports: Index | slice) -> NDArray[np.complex128]:
+        """How ports follow side A in the n-th harmonic, shape (ports, m)."""
+        turn = np.exp(2.0j * math.pi * n / self.ring.teeth)
+        return np.asarray(self.ring.follow_a[ports] + turn * self.ring.follow_b[ports])
+
+
+def free_ring(
+    sector: Condensed, side: int, rim: SolidRim, known: Unknowns, teeth: int, reach: int, started: float
+) -> FreeRing:
+    """Close the ring of a sector of which nothing is held.
 
     Parameters
     ----------
     sector : Condensed
-        Nothing of it held; its ports are the sides, the outer cylinder, and what is loaded or watched.
+        Its ports are the sides, the outer cylinder, and what is loaded or watched.
     side : int
         Unknowns of one side.
     rim : SolidRim
     known : Unknowns
     teeth, reach : int
-    loaded, watch : ndarray of int
     started : float
         Clock when condensing began.
-
-    Returns
-    -------
-    response : dict of int to ndarray, shape (watch, loaded)
-    ring : Ring
-        That nothing holds, with the stiffness that it was lent.
     """
-    rim = rim.of(known)
-    if not rim.which:
-        ring = closed_ring(sector, side, None, teeth, reach, started=started)
-        return ring.respond(loaded, watch), ring
-    there = known.number >= 0
+    rim, there = rim.of(known), known.number >= 0
     motion, traction = np.zeros((2, known.size, len(rim.which)))
     motion[known.number[there]], traction[known.number[there]] = rim.motions[there], rim.tractions[there]
     moved, pressed = motion[sector.kept], traction[sector.kept]
     # What round-off leaves of the sector's stiffness against rigid motions is as much as a thin ring bends with.
-    q = np.linalg.qr(moved)[0]
-    off = sector.stiffness @ q
-    stiffness = sector.stiffness - off @ q.T - q @ off.T + q @ (q.T @ off) @ q.T
-    sector = replace(sector, stiffness=0.5 * (stiffness + stiffness.T))
-    waves = rim.waves
-    rigid: RigidSides = (moved[:side] @ waves[0].real, moved[:side] @ waves[1])
+    rigid: RigidSides | None = None
+    if rim.which:
+        q = np.linalg.qr(moved)[0]
+        off = sector.stiffness @ q
+        stiffness = sector.stiffness - off @ q.T - q @ off.T + q @ (q.T @ off) @ q.T
+        sector = replace(sector, stiffness=0.5 * (stiffness + stiffness.T))
+        waves = rim.waves
+        rigid = (moved[:side] @ waves[0].real, moved[:side] @ waves[1])
     ring = closed_ring(sector, side, None, teeth, reach, started=started, rigid=rigid)
-    follow = np.hstack([ring.follow_a, ring.follow_b])
-    sides = sector.stiffness[: 2 * side] @ follow
+    sides = sector.stiffness[: 2 * side] @ np.hstack([ring.follow_a, ring.follow_b])
+    place = np.full(known.size, -1)
+    place[sector.kept] = np.arange(sector.kept.size)
+    return FreeRing(ring, moved, pressed, rim, rigid, sides, place)
+
+
+def splined_response(free: FreeRing, loaded: Index, watch: Index) -> dict[int, Array]:
+    """Displacements of watched ports on sectors -reach..reach of a splined ring under forces on sector 0.
+
+    Parameters
+    ----------
+    free : FreeRing
+    loaded, watch : ndarray of int
+        Unknowns.
+
+    Returns
+    -------
+    dict of int to ndarray, shape (watch, loaded)
+    """
+    ring, rim, moved, pressed = free.ring, free.rim, free.moved, free.pressed
+    if not rim.which:
+        return ring.respond(loaded, watch)
+    teeth = ring.teeth
     # G W, on all ports: sector 0's share of what even tractions on all sectors do.
     mean = np.zeros_like(pressed)
-    for n, wave in enumerate(waves):
-        if not wave.size:
-            continue
-        turn = np.exp(2.0j * math.pi * n / teeth)
-        load = pressed @ wave
-        force = ring.follow_a.T @ load + np.conj(turn) * (ring.follow_b.T @ load)
-        moves = np.linalg.solve(harmonic_stiffness(sides, n, teeth, rigid), force)
-        answer = ring.follow_a @ moves + turn * (ring.follow_b @ moves) + ring.own @ load
-        mean += np.real(answer @ np.linalg.pinv(wave)) * (1.0 if n == 0 else 2.0)
+    for n, wave in enumerate(rim.waves):
+        if wave.size:
+            load = pressed @ wave
+            answer = free.followed(n, slice(None)) @ free.moves(n, slice(None), load) + ring.own @ load
+            mean += np.real(answer @ np.linalg.pinv(wave)) * (1.0 if n == 0 else 2.0)
     pitch = 2.0 * math.pi / teeth
     turns = np.stack([rim.turned(k * pitch) for k in range(teeth)])
     inverse = np.linalg.inv(np.einsum("kab,ac,kcd->bd", turns, moved.T @ pressed, turns))
     twice = np.einsum("kab,ac,kcd->bd", turns, mean.T @ pressed, turns)
-    place = np.full(known.size, -1)
-    place[sector.kept] = np.arange(sector.kept.size)
-    rows, columns = place[watch], place[loaded]
+    rows, columns = free.place[watch], free.place[loaded]
     response = {}
     for k, lent in ring.respond(loaded, watch).items():
         to, away, here = rim.turned(k * pitch) @ inverse, moved[rows], moved[columns]
         taken = away @ (to @ mean[columns].T) + (mean[rows] @ to) @ here.T
         response[k] = lent - taken + away @ (to @ twice @ inverse) @ here.T
-    return response, ring
+    return response

@@ -17,13 +17,13 @@ from fegear.case.built.solid_influence import (
     solid_gear_to_solve,
     solid_settings_of,
     solid_solution_settings,
+    solid_support_remarks,
     solve_solid_influence,
 )
 from fegear.case.built.tooth_influence import (
     GearToSolve,
     gear_to_solve,
     mesh_settings,
-    planets_taken_alone,
     solution_remarks,
     solution_settings,
     solve_influence_functions,
@@ -92,7 +92,7 @@ def _solve_solid(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> So
 
 
 def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcome:
-    remarks = () if influence.fine.support is None else (planets_taken_alone(asked.name),)
+    remarks = solid_support_remarks(asked.name, influence)
     return Outcome(influence, settings=solid_solution_settings(influence), remarks=remarks)
 
 
