@@ -370,8 +370,8 @@ def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tu
         )
     told += inputs.said
     told.append(
-        f"Pair {name}: of ISO/TS 6336-4 print at hand backs the structure of A_FF, its symbols and the scope, "
-        f"case-carburized external gears. Recalled are K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa per HV, c_1 = "
+        f"Pair {name}: structure, symbols and scope of A_FF (case-carburized external gears) are those that printed "
+        f"sources give of ISO/TS 6336-4. Recalled without a source are K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa per HV, c_1 = "
         f"{CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; K_material = "
         f"{inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). tau_eff is the mean shear over all "
         "planes below a Hertzian contact without friction, in the place of the standard's fitted formulas. "
