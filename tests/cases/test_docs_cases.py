@@ -330,6 +330,7 @@ def test_what_a_failing_page_leaves_running_ends_with_it(tmp_path):
         pytest.fail("the background process still runs")
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     "page",
     [pytest.param(page, id=page.stem, marks=[pytest.mark.long] if page.stem in COSTLY else []) for page in PAGES],

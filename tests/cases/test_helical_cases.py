@@ -299,6 +299,7 @@ def test_helical_and_spur_gears_do_not_mix(tmp_path):
         read_scene(case)
 
 
+@pytest.mark.dear
 def test_a_run_leaves_tables_and_pictures(tmp_path):
     from typer.testing import CliRunner
 

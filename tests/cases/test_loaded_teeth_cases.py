@@ -36,6 +36,7 @@ def data(name: str) -> dict[str, np.ndarray]:
     return {head.split(" [")[0]: rows[:, i] for i, head in enumerate(lines[0].split(","))}
 
 
+@pytest.mark.dear
 def test_marks_gears_designed_for_least_excitation():
     """C_I, Table 1's loads (Fig. 12) and a transmission error that is constant at the design load."""
     tables, values, results = run("mark_minimum_excitation")
@@ -153,6 +154,7 @@ def test_nasa_gears_have_a_best_length_at_every_amount():
     assert tables["relief_optimum_I"]["length_effective"].min() > 0.0
 
 
+@pytest.mark.dear
 def test_a_search_without_tip_corners_says_what_they_would_make_of_it():
     """Another valley is the deepest with them: 12.4 um on the driven gear where the search without takes 18.9."""
     quick = ('results=["relief"]', "accuracy.tolerance=1e-2", 'design.grind=["linear"]')
@@ -199,6 +201,7 @@ def test_lins_gears_with_tip_relief():
     assert sharing["load"].max() == pytest.approx(8890.0, rel=1e-12)
 
 
+@pytest.mark.dear
 def test_contact_ratio_above_two():
     tables, values, _ = run("high_contact_ratio")
     assert values["I.contact_ratio"].value == pytest.approx(2.2, abs=0.02)

@@ -20,6 +20,7 @@ CASES = Path(__file__).parents[2] / "cases"
 QUICK = {"calculix_pair": ("accuracy.tolerance=2e-2",), "nasa_relief_design": ("accuracy.tolerance=2e-2",)}
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("case", "names"),
     [

@@ -96,6 +96,7 @@ def effects(**chosen: str) -> tuple[str, ...]:
     return tuple(f"effects.{name}={value}" for name, value in chosen.items())
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("name", "effect", "among"),
     [

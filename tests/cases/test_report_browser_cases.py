@@ -268,6 +268,7 @@ def swept(tmp_path_factory):
     return results, folder
 
 
+@pytest.mark.dear
 def test_a_sweep_is_shown_as_map_curves_and_lines_through_all_its_values(browser, swept):
     results, folder = swept
     browser.size(1300, 900)

@@ -31,6 +31,7 @@ CHEAP = {
 }
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("name", CHEAP)
 def test_numbers_and_units_agree_everywhere(name):
     found = fegear.run(CASES / f"{name}.toml", CHEAP[name], cache=CACHE)

@@ -504,6 +504,7 @@ def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves
     served.end()
 
 
+@pytest.mark.dear
 def test_names_of_any_length_leave_the_page_its_width(browser, serve, tmp_path):
     path = tmp_path / "named.toml"
     path.write_text(TEXT.replace("gear.a]", f"gear.{'g' * 300}]").replace('"a"', f'"{"g" * 300}"'))
@@ -589,6 +590,7 @@ coupling = "120 mm"
 """
 
 
+@pytest.mark.dear
 def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(browser, serve, tmp_path):
     path = tmp_path / "both.toml"
     path.write_text(ASSEMBLED)

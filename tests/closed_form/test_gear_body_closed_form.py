@@ -69,6 +69,7 @@ def test_a_body_that_fills_the_face_is_solved_as_a_disc():
     assert replace(gear, body=body((-2.0, 1.9)).scaled(m)).body_in_modules is not None
 
 
+@pytest.mark.dear
 def test_symmetries():
     """What moves here under a force there moves there under it here; a web on the other side is the mirrored gear."""
     one, other = solved(body((-1.6, -0.6))), solved(body((0.6, 1.6)))
@@ -79,6 +80,7 @@ def test_symmetries():
     assert deflections(one, 1) == pytest.approx(deflections(one, -1).T, rel=1e-9)
 
 
+@pytest.mark.dear
 def test_less_material_gives_way_more():
     """At every place, and most where it was taken away; energy bounds it from below by the disc."""
     disc, wide, thin = (deflections(solved(given)) for given in (None, body((-1.0, 1.0)), body((-0.5, 0.5))))

@@ -108,6 +108,7 @@ def test_axial_forces_are_those_of_a_pressure_on_the_helicoid(hand, clockwise):
     assert found.tilting == pytest.approx(-found.sun / 4.0 * sum(pitch), rel=1e-12)
 
 
+@pytest.mark.dear
 def test_every_mesh_gives_way_as_its_flanks_do_under_the_load_that_it_carries():
     """At places between the roll positions, under loads between those of the law: within what is stated."""
     errors = {"tangential": ["25 um", "0 um", "-8 um", "0 um"]}
@@ -141,6 +142,7 @@ def test_a_set_of_one_planet_gives_way_as_its_two_pairs_do():
     assert loads.largest_share == pytest.approx(1.0, abs=1e-10)
 
 
+@pytest.mark.dear
 def test_a_helix_that_vanishes_leaves_the_spur_set():
     errors = {"tangential": ["25 um", "0 um", "-8 um", "0 um"]}
     spur, small = (

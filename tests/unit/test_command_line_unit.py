@@ -125,6 +125,7 @@ def test_export_writes_drawings_and_meshes(case, tmp_path):
         assert (done.returncode, words in done.stderr, (tmp_path / "new").exists()) == (2, True, False)
 
 
+@pytest.mark.dear
 def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert fegear("run", case, "--no-plots", cwd=tmp_path).returncode == 0
     out = tmp_path / "results" / "one"
@@ -201,6 +202,7 @@ def test_ctrl_c_while_a_sweep_starts_its_processes_is_one_line(case, tmp_path):
     assert errors == "fegear: interrupted; started again, the sweep resumes where it stopped.\n"
 
 
+@pytest.mark.dear
 def test_a_terminal_gets_a_bar(case, tmp_path):
     import pty
 
@@ -247,6 +249,7 @@ def test_an_output_folder_without_a_name_is_refused(case, tmp_path, command):
     assert [one.name for one in tmp_path.iterdir()] == ["one.toml"]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     "arguments", [("new", "x"), ("schema", "--out", "x"), ("run",), ("compare", "a.toml", "b.toml")]
 )
