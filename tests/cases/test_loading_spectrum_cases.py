@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from solved_once import CACHE
 
 from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene, read_scene
@@ -16,7 +15,7 @@ SOURCES = Path(__file__).parents[2] / "cases" / "sources"
 
 
 def found(scene):
-    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+    return run_plan(scene, make_plan(scene, STAGES))
 
 
 def asked(**loading):

@@ -14,7 +14,8 @@ import pytest
 
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.body_modes import body_modes
-from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.influence import solid_influence
+from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.fem.solid.solution import solve_solid
 
 _spec = importlib.util.spec_from_file_location("made", Path(__file__).with_name("make_gear_body_calculix.py"))
@@ -28,7 +29,11 @@ FINE = replace(
 
 def worst(which, settings):
     """Largest differences of deflections over each band's own, and of root tension over its largest."""
-    solved = solve_solid(made.TOOTH, 0.0, made.FACE, 0.3, made.BORE, settings, body=made.BODIES[which])
+    return apart(which, solve_solid(made.TOOTH, 0.0, made.FACE, 0.3, made.BORE, settings, body=made.BODIES[which]))
+
+
+def apart(which, solved):
+    """The same of a solved gear."""
     own = [bands(made.RADIUS, top, top - low, 0.25, after=high - top) for low, top, high in map(made.hat, made.PLACES)]
     moved = np.array([[float(solved.deflection(0, b, a)[0, 0]) for b in own] for a in own])
     places = made.calculix.STATIONS
@@ -40,12 +45,21 @@ def worst(which, settings):
     )
 
 
-@pytest.mark.dear
 def test_load_on_a_web_off_the_middle():
     """With functions that resolve hats of half a module beside a web's end: deflection .4 %, root tension .5 %."""
     moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=3.0))
     assert moved < 0.006
     assert stress < 0.008
+
+
+@pytest.mark.long  # the ordinary run compares the degrees of both solutions
+def test_coarse_settings_on_a_thin_rim_tell_their_error():
+    """At a tolerance of .1; the body's rim is 1.25 modules thick."""
+    size = (made.TOOTH, 0.0, made.FACE, 0.3, made.BORE, solid_settings(0.1))
+    known = solid_influence(*size, reach=0, body=made.BODIES["off"])
+    moved, stress = apart("off", known.fine)
+    assert 0.01 < moved < known.error["contact"]
+    assert 0.01 < stress < known.error["root_tension"]
 
 
 @pytest.mark.long  # the ordinary run has the web off the middle with coarser settings

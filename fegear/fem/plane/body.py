@@ -37,7 +37,7 @@ def zones(body: GearBody, points: Array, corners: Index) -> Index:
     return np.asarray((outermost < body.rim_radius).astype(np.int64) + (outermost < body.hub_radius))
 
 
-def with_body(rim: SectorMesh, body: GearBody, bore_radius: float, share: float) -> SectorMesh:
+def with_body(rim: SectorMesh, body: GearBody, bore_radius: float, share: float, fewest: int = _FEWEST) -> SectorMesh:
     """The section of rim and teeth, drawn on through web and hub down to the bore.
 
     Parameters
@@ -50,9 +50,11 @@ def with_body(rim: SectorMesh, body: GearBody, bore_radius: float, share: float)
         [modules].
     share : float
         A layer of web or hub is at most this share of it deep; those at both ends of a slender web are less deep.
+    fewest : int
+        Layers through web and through hub at least.
     """
     radii = [body.rim_radius]
-    fewest = max(_FEWEST, math.ceil(1.0 / share))
+    fewest = max(fewest, math.ceil(1.0 / share))
     clamped = _CLAMPED * share * (body.web[1] - body.web[0]) / (body.rim_radius - body.hub_radius)
     slender = math.ceil(math.pi / math.acos(1.0 - 2.0 * min(clamped, 1.0)) - _ROUND_OFF)
     web = min(max(slender, fewest), _SLENDER * fewest)

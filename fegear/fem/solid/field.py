@@ -97,9 +97,12 @@ def solid_field(
     """
     with one_thread():
         chosen = replace(settings.section.scaled(_SIX_NODE_EDGES), order=2)
-        sector = section_mesh(tooth, bore_radius, chosen, body)
+        sector = section_mesh(tooth, bore_radius, chosen, body, fewest=settings.body_layers)
         section = make_section(sector, 2, tau, poisson_ratio, tooth.base_radius, body, side=tooth.side)
-        face = face_functions(width, settings.degree(width), () if body is None else body.ends)
+        cuts = () if body is None else body.ends
+        face = face_functions(
+            width, settings.degree(width), cuts, settings.least_piece_degree, settings.fewer_on_pieces
+        )
         known = solid_unknowns(section, face, settings, None if body is None else body.hub)
         ports = 3 * flank_nodes(section)
         sides = [(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in (section.side_a, section.side_b)]

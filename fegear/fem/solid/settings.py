@@ -33,6 +33,11 @@ _COARSER = 1.35
 _FEWER_DEGREES = 2
 
 
+#: The lowest degree of its pieces of a face, and by how much it is lower than their length asks for: two below that of
+#: every other set, for the same reason; and its layers through web and hub.
+_LEAST_PIECE, _FEWER_ON_PIECES, _FEWEST_LAYERS = 3, 1, 2
+
+
 #: How much less room its bands take beside the ends of the flank, where room alone decides how wide they are.
 _OTHER_ROOM = 0.7
 
@@ -53,6 +58,11 @@ class SolidSettings:
         Degree of the polynomials along the face per module of width.
     least_degree : int
         Their lowest degree, for narrow gears.
+    least_piece_degree, fewer_on_pieces : int
+        Their lowest degree on each piece of a face that web, hub or the held part of a bore cut into pieces, and by how
+        much it is lower than a piece's length asks for.
+    body_layers : int
+        Layers of elements through web and through hub at least.
     wave_reach, fewest_waves : float
         A node at the distance d from the loaded flank has wave_reach * width / (2 d) + fewest_waves functions along
         the face, at most all.
@@ -67,6 +77,9 @@ class SolidSettings:
     section: MeshSettings = field(default=_SECTION)
     waves_per_module: float = 1.5
     least_degree: int = 8
+    least_piece_degree: int = 5
+    fewer_on_pieces: int = 0
+    body_layers: int = 3
     wave_reach: float = 2.5
     fewest_waves: float = 6.0
     band_half_width: float = 0.25
@@ -77,14 +90,17 @@ class SolidSettings:
         """Refuse settings that make no mesh."""
         for f in fields(self):
             value = getattr(self, f.name)
-            if f.name not in ("section", "source") and not (math.isfinite(value) and value > 0.0):
+            if f.name not in ("section", "source", "fewer_on_pieces") and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
         if self.room_share > 0.95:
             raise InputError("accuracy.room_share", self.room_share, "must be at most 0.95: a band stays on the flank")
         if self.fewest_waves < 2.0:  # a rigid motion along the face takes two
             raise InputError("accuracy.fewest_waves", self.fewest_waves, "must be at least 2")
-        if self.least_degree < 3:
-            raise InputError("accuracy.least_degree", self.least_degree, "must be at least 3")
+        if self.fewer_on_pieces < 0:
+            raise InputError("accuracy.fewer_on_pieces", self.fewer_on_pieces, "must be at least 0")
+        for name in ("least_degree", "least_piece_degree"):
+            if getattr(self, name) < 3:
+                raise InputError(f"accuracy.{name}", getattr(self, name), "must be at least 3")
 
     def degree(self, width: float) -> int:
         """Degree of the polynomials along a face [modules]."""
@@ -110,6 +126,9 @@ class SolidSettings:
             other,
             room_share=_OTHER_ROOM * self.room_share,
             least_degree=degree,
+            least_piece_degree=_LEAST_PIECE,
+            fewer_on_pieces=_FEWER_ON_PIECES,
+            body_layers=_FEWEST_LAYERS,
             waves_per_module=min(other.waves_per_module, degree / width),
         )
 

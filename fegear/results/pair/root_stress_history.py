@@ -389,8 +389,6 @@ def _map(
 
 
 ROOT_STRESS_HISTORY = teeth_stage(
-    answers=("root tension",),
-    every_load=True,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
