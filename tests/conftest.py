@@ -3,6 +3,9 @@
 Tests that run another program ask the fixture `program` for it: where it is missing they are skipped, with the line
 that installs it. ``--no-skips`` lets no test be skipped.
 
+Tests marked ``dear`` take seconds of a processor each, a third of the time of all: ``--dear`` runs them too, as
+`.ci/run` does at every change; who names one by its place (``FILE::TEST``) gets it anyway.
+
 ``--last-bit SEED`` computes as another processor might: with noise of one unit in the last place where rounding enters
 (`helpers/other_processor`). It runs the tests marked ``last_bit`` and every tenth of the others, always the same;
 ``--last-bit-every 1`` runs all.
@@ -68,6 +71,7 @@ def scheduler():
 
 def pytest_addoption(parser):
     parser.addoption("--no-skips", action="store_true", help="a test that cannot run here has failed")
+    parser.addoption("--dear", action="store_true", help="run the tests that take seconds each, too, as .ci/run does")
     parser.addoption("--last-bit", type=int, metavar="SEED", help="noise in the last place, of this seed")
     parser.addoption("--last-bit-every", type=int, default=10, metavar="N", help="run every N-th ordinary test with it")
 
@@ -137,6 +141,13 @@ def pytest_collection_modifyitems(config, items):
             ordinary, many = marker.args
             settings(profile, max_examples=many if long_run else ordinary)(function)
     if config.getoption("last_bit") is not None:
-        chosen = [_is_for_last_bit(config, item) for item in items]
-        config.hook.pytest_deselected(items=[item for item, one in zip(items, chosen, strict=True) if not one])
-        items[:] = [item for item, one in zip(items, chosen, strict=True) if one]
+        _choose(config, items, lambda item: _is_for_last_bit(config, item))
+    elif not (config.getoption("dear") or long_run or any("::" in one for one in config.args)):
+        _choose(config, items, lambda item: item.get_closest_marker("dear") is None)
+
+
+def _choose(config, items, wanted):
+    """Leave the tests that are wanted."""
+    chosen = [wanted(item) for item in items]
+    config.hook.pytest_deselected(items=[item for item, one in zip(items, chosen, strict=True) if not one])
+    items[:] = [item for item, one in zip(items, chosen, strict=True) if one]

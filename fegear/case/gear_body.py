@@ -62,7 +62,8 @@ class RimSupportPart(Part):
 
     kind: Literal["held", "splined", "pins"] = Field(
         description="`held`: the whole outer circle; `splined`: force and torque leave by tractions that are spread "
-        "evenly over it, and its mean motion is none; `pins`: evenly spaced parts of it are held on average."
+        "evenly over it, and its mean motion is none; `pins`: evenly spaced parts of it are held on average; of a gear "
+        "with its width at every height of the face, and along the axis over all of it."
     )
     pins: int | None = Field(default=None, description="Number of pins, bolts or lugs, 2 to the number of teeth.")
     width: PositiveLength | None = Field(
@@ -70,7 +71,8 @@ class RimSupportPart(Part):
     )
     angle: Angle = Field(
         default=0.0,
-        description="Of the first pin from the centre line of tooth 0, positive the way that its loaded flank faces.",
+        description="Of the first pin from the centre line of tooth 0 in the middle of the face, positive the way that "
+        "its loaded flank faces.",
     )
 
     @model_validator(mode="after")

@@ -151,12 +151,12 @@ class StrengthPart(Part):
     core_hardness: Hardness | None = Field(
         default=None,
         description="Hardness of the core of surface-hardened teeth: 25 HRC at least for case-hardened steel, quality "
-        "MQ, whose root bears more from 30 HRC; AGMA 2101 asks for it too.",
+        "MQ, whose root is stronger from 30 HRC on; AGMA 2101 asks for it too.",
     )
     jominy_12: Hardness | None = Field(
         default=None,
         description="Hardness 12 mm from the quenched end of a Jominy bar, of case-hardened steel of quality MQ: from "
-        "28 HRC the root bears more.",
+        "28 HRC on the root is stronger.",
     )
     case_depth: PositiveLength | None = Field(
         default=None,

@@ -304,7 +304,7 @@ class TransmissibilityPart(Part):
         default=None, description="Parameters over which the modes are followed, for `mode-tracking`."
     )
     excitation: ExcitationPart | None = Field(
-        default=None, description="What shakes the pair, for `pair-forced-response`."
+        default=None, description="Excitation of the pair, for `pair-forced-response`."
     )
 
     @model_validator(mode="after")

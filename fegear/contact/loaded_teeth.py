@@ -8,7 +8,7 @@ kind is one more maker. What is known of one kind alone is a part of an answer t
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -207,6 +207,26 @@ class FlankLoad:
     outside: float
 
 
+class Largest(NamedTuple):
+    """Largest share of a tooth pair and largest pressure on it at the nominal load, whoever states them.
+
+    Parameters
+    ----------
+    share, share_error : float
+        Of the load, and its estimated error.
+    pressure, pressure_error : float
+        Of smooth flanks [Pa].
+    place : str
+        Where the pressure is largest, in words.
+    """
+
+    share: float
+    share_error: float
+    pressure: float
+    pressure_error: float
+    place: str
+
+
 @dataclass(frozen=True)
 class LoadHistory:
     """One tooth pair followed over the path of contact, at P positions under L loads.
@@ -224,8 +244,8 @@ class LoadHistory:
         What a figure adds to the points of the path.
     positions : int
         At which it was asked for.
-    pressure_error : float or None
-        Estimated error of the largest pressure at the nominal load, where it is known by itself [Pa].
+    largest : Largest or None
+        Largest share and pressure at the nominal load, where these are found by themselves.
     """
 
     found: PairHistory
@@ -234,7 +254,7 @@ class LoadHistory:
     corner: Array | None = shown("", "1 where a tip corner touches off the path")
     where: str = ""
     positions: int = 0
-    pressure_error: float | None = None
+    largest: Largest | None = None
 
     @property
     def most_loaded(self) -> int:
@@ -262,30 +282,39 @@ class LoadHistory:
     @shows("", "of one tooth pair")
     def largest_share(self) -> float:
         """Of the nominal load."""
-        return float(self.found.share[self.most_loaded, self.at])
+        return self.largest.share if self.largest else float(self.found.share[self.most_loaded, self.at])
 
     @property
     @shows("MPa", "smooth flanks")
     def largest_hertz_pressure(self) -> float:
         """At the nominal load [Pa]."""
-        return float(self._smooth_pressure[self.hardest_pressed])
+        return self.largest.pressure if self.largest else float(self._smooth_pressure[self.hardest_pressed])
+
+    @property
+    def hardest_pressed_at(self) -> str:
+        """Where that is, as the value's meaning has it."""
+        return self.largest.place if self.largest else f"at x = {self.found.x[self.hardest_pressed] * 1e3:.5g} mm"
 
     @property
     def largest_load_error(self) -> float | None:
         """Estimated [N]."""
+        if self.largest:
+            return self.largest.share_error * self.largest_load / self.largest.share
         return None if self.load_error is None else float(self.load_error[self.most_loaded, self.at])
 
     @property
     def largest_share_error(self) -> float | None:
         """Estimated: that of the largest load over it."""
+        if self.largest:
+            return self.largest.share_error
         error = self.largest_load_error
         return None if error is None else error / self.found.load[self.most_loaded, self.at]
 
     @property
     def largest_pressure_error(self) -> float | None:
         """Estimated, by itself or by the load's [Pa]; never zero, for what Hertz neglects is not estimated."""
-        if self.pressure_error is not None:
-            return self.pressure_error
+        if self.largest:
+            return self.largest.pressure_error
         relative = self.largest_share_error
         return 0.5 * relative * self.largest_hertz_pressure if relative else None
 

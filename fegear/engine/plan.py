@@ -11,7 +11,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
-from typing import NamedTuple, overload
+from typing import Any, NamedTuple, overload
 
 from fegear.base.errors import InputError
 from fegear.case.part import nearest
@@ -135,12 +135,18 @@ ON_REQUEST = "shown on request"
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One task of the plan and the reasons for it."""
+    """One task of the plan, the reasons for it, effects that change it, and the stages that read it."""
 
     task: Task
     stage: Stage
     reasons: tuple[str, ...]
     effects: tuple[str, ...]
+    readers: tuple[Stage, ...] = ()
+
+    def inputs(self, scene: Scene) -> Any:
+        """All that its result reads of the case."""
+        inputs, for_readers = self.stage.inputs(scene, self.task.subject), self.stage.for_readers
+        return inputs if for_readers is None else for_readers(inputs, self.readers)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +197,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     reasons: dict[Task, list[str]] = {}
     order: list[Task] = []
+    under: dict[Task, dict[Task, None]] = {}
 
     def require(task: Task, reason: str, result: str = "") -> None:
         if task in reasons:
@@ -199,12 +206,14 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
             return
         stage = known.called(task.stage)
         _require_effects(scene, stage, wanted)
+        _refuse_twice(stage, wanted)
         _refuse_internal(scene, stage, task.subject, result)
         stage.check(scene, task.subject)
-        reasons[task] = [reason]
-        for need in stage.needs(scene, task.subject):
+        reasons[task], needs = [reason], stage.needs(scene, task.subject)
+        for need in needs:
             require(need, f"needed by {task}", result)
         order.append(task)
+        under[task] = dict.fromkeys((*(below for need in needs for below in under[need]), *needs))
 
     for result in wanted:
         if result not in by_result:
@@ -226,10 +235,14 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         require(task, ON_REQUEST)
 
     on = scene.case.effects.on()
+    stages_of = {task: known.called(task.stage) for task in order}
     steps = tuple(
-        Step(task, stage, tuple(reasons[task]), tuple(e for e in on if e in stage.effects_on(scene, task.subject)))
-        for task, stage in ((task, known.called(task.stage)) for task in order)
-    )
+        Step(
+            task, stage, tuple(reasons[task]), tuple(e for e in on if e in stage.effects_on(scene, task.subject)),
+            tuple(reader for other, reader in stages_of.items() if task in under[other]),
+        )
+        for task, stage in stages_of.items()
+    )  # fmt: skip
     running = {step.stage.name for step in steps}
     skipped = tuple((one.name, _why_not(one, wanted)) for one in known.entries if one.name not in running)
     used = {effect for step in steps for effect in step.effects}
@@ -265,6 +278,16 @@ def _require_effects(scene: Scene, stage: Stage, results: Sequence[str]) -> None
             f"is needed by {who}: {need.reason}",
             f"write {need.effect} = {scene.case.effects.example(need.effect)} under [effects], or do not ask for {who}",
         )
+
+
+def _refuse_twice(stage: Stage, results: Sequence[str]) -> None:
+    """Refuse results that another wanted one holds."""
+    for other in stage.holds:
+        if other in results:
+            raise InputError(
+                "results", f'"{other}"', f"and {stage.name} would write the same tables",
+                f"ask for {stage.name} alone: it holds what {other} has",
+            )  # fmt: skip
 
 
 def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> None:

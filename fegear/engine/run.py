@@ -232,7 +232,7 @@ def _refuse_one_name_for_two(done: Mapping[Task, _Finished], task: Task) -> None
 
 def key_without_needs(scene: Scene, step: Step) -> str:
     """Under which the result of a task that needs no other is known."""
-    return content_key(step.stage.name, step.stage.inputs(scene, step.task.subject), [])
+    return content_key(step.stage.name, step.inputs(scene), [])
 
 
 def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work) -> _Finished:
@@ -240,7 +240,7 @@ def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work
     work.cache.begin()
     shapes = work.cache.shapes.state
     stage, subject = step.stage, step.task.subject
-    inputs, needs = stage.inputs(scene, subject), stage.needs(scene, subject)
+    inputs, needs = step.inputs(scene), stage.needs(scene, subject)
     # All that the result reads of the case, and the keys of what it builds on: nothing else changes its numbers.
     key = content_key(stage.name, inputs, [done[need].key for need in needs])
     upstream = {need: done[need].data for need in needs}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
@@ -183,6 +183,16 @@ class Stage:
         Whether it takes internal gears and pairs; a plan refuses those of other stages.
     why_external : str
         Why it does not.
+    holds : tuple of str
+        Results whose tables and numbers it has, too, so that a plan refuses both.
+    answers : tuple of str
+        Answers of loaded pairs that the result stands on (`fegear.contact.loaded_teeth.Answer`): for these, the pairs
+        under it estimate what they neglect.
+    every_load : bool
+        Whether it is for every load of a pair, not for the nominal one alone.
+    for_readers : callable or None
+        ``for_readers(inputs, readers)`` -> the inputs with what the stages ask of it that read the task in a plan, at
+        first hand or not; None where nothing depends on who reads it.
     in_points : bool
         Whether it consists of points that other processes, or a cluster, can compute.
     name, title, results, about, extra : str, str, tuple of str, str, str
@@ -202,6 +212,10 @@ class Stage:
     cites: Cites = _uncited
     internal: bool = False
     why_external: str = ""
+    holds: tuple[str, ...] = ()
+    answers: tuple[str, ...] = ()
+    every_load: bool = False
+    for_readers: Callable[[Any, Sequence[Stage]], Any] | None = None
     in_points: bool = False
     name: str = ""
     title: str = ""

@@ -19,8 +19,8 @@ from fegear.base.arrays import Array
 from fegear.geometry.involute import polar_angle
 
 
-class Curve(Protocol):
-    """A smooth piece of the outline with parameter running from `start` to `end`."""
+class Drawn(Protocol):
+    """A smooth piece of an outline, enough of `Curve` to draw it."""
 
     @property
     def start(self) -> float:
@@ -32,6 +32,10 @@ class Curve(Protocol):
 
     def points(self, parameter: ArrayLike) -> Array:
         """Points [modules], shape (2, N)."""
+
+
+class Curve(Drawn, Protocol):
+    """A smooth piece of the outline with parameter running from `start` to `end`."""
 
     def normals(self, parameter: ArrayLike) -> Array:
         """Unit normals out of the material, shape (2, N)."""

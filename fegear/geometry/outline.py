@@ -13,14 +13,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.geometry.curves import Arc, Involute, Line
+from fegear.geometry.curves import Arc, Drawn, Involute, Line
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_tooth import InvoluteTooth
@@ -126,21 +125,6 @@ def tool_in_space(tooth: InvoluteTooth, count: int) -> Array:
     """
     reach = 1.6 * math.pi / tooth.teeth + 0.6 / math.sqrt(tooth.teeth)
     return np.stack([tool_in_gear(tooth, rolled) for rolled in np.linspace(-reach, reach, count).tolist()])
-
-
-class Drawn(Protocol):
-    """A smooth piece of an outline, enough of `Curve` to draw it."""
-
-    @property
-    def start(self) -> float:
-        """Parameter at the end nearer the tooth space."""
-
-    @property
-    def end(self) -> float:
-        """Parameter at the end nearer the tooth's centre line."""
-
-    def points(self, parameter: ArrayLike) -> Array:
-        """Points [modules], shape (2, N)."""
 
 
 @dataclass(frozen=True, slots=True)

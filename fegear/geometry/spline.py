@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.geometry.curves import Drawn
 from fegear.geometry.fillet import ProtuberanceFillet
-from fegear.geometry.outline import Drawn
 
 DEGREE = 5
 _FEWEST, _MOST = 9, 4096

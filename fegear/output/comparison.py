@@ -40,7 +40,8 @@ def read_side(folder: Path) -> Side:
     try:
         summary = json.loads((folder / SUMMARY).read_text("utf-8"))
         found, document = summary["results"], summary.get("inputs", {})
-        values = {name: _value(name, one["value"], one["unit"], one["error"]) for name, one in found.items()}
+        values = {name: _value(name, one["value"], one["unit"], one["error"]) for name, one in found.items()
+                  if "now" not in one}  # fmt: skip
         tables = [_read_table(path) for path in sorted((folder / "tables").glob("*.csv"))]
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(

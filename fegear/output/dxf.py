@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.geometry.curves import Arc, Line
+from fegear.geometry.curves import Arc, Drawn, Line
 from fegear.geometry.gear import Gear
-from fegear.geometry.outline import Drawn, gear_outline, relieved_outline, tooth_outline, turned
+from fegear.geometry.outline import gear_outline, relieved_outline, tooth_outline, turned
 from fegear.geometry.relief import Relief
 from fegear.geometry.spline import DEGREE, Spline, smooth_pieces, spline_of
 

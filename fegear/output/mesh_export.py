@@ -67,12 +67,7 @@ def write_inp(path: Path, gear: Gear, whole: WholeGear, forces: Array) -> None:
         out.append(f"*NSET, NSET={name.upper()}")
         out += _lines(whole.node_set(name) + 1)
     out += [
-        "*MATERIAL, NAME=GEAR",
-        "*ELASTIC",
-        f"{gear.material.young_modulus * 1e-6:.9g}, {gear.material.poisson_ratio:.9g}",
-        "*DENSITY",
-        f"{gear.material.density * 1e-12:.9g}",
-        "*SOLID SECTION, ELSET=GEAR, MATERIAL=GEAR",
+        *_material(gear),
         f"{width:.12g}",
         "*BOUNDARY",
         "BORE, 1, 2",
@@ -213,6 +208,19 @@ def _number(x: float) -> str:
     return f"{x:.12e}"
 
 
+def _material(gear: Gear) -> list[str]:
+    """Cards of the material, in mm, N and MPa, up to the section that is made of it."""
+    made_of = gear.material
+    return [
+        "*MATERIAL, NAME=GEAR",
+        "*ELASTIC",
+        f"{made_of.young_modulus * 1e-6:.9g}, {made_of.poisson_ratio:.9g}",
+        "*DENSITY",
+        f"{made_of.density * 1e-12:.9g}",
+        "*SOLID SECTION, ELSET=GEAR, MATERIAL=GEAR",
+    ]
+
+
 def _lines(numbers: Index, per_line: int = 12) -> Iterator[str]:
     for first in range(0, len(numbers), per_line):
         yield ", ".join(map(str, numbers[first : first + per_line]))
@@ -273,16 +281,7 @@ def write_solid_inp(
     for name, nodes in {**sets, **printed}.items():
         out.append(f"*NSET, NSET={name.upper()}")
         out += _lines(nodes + 1)
-    out += [
-        "*MATERIAL, NAME=GEAR",
-        "*ELASTIC",
-        f"{gear.material.young_modulus * 1e-6:.9g}, {gear.material.poisson_ratio:.9g}",
-        "*DENSITY",
-        f"{gear.material.density * 1e-12:.9g}",
-        "*SOLID SECTION, ELSET=GEAR, MATERIAL=GEAR",
-        "*BOUNDARY",
-        "BORE, 1, 3",
-    ]
+    out += [*_material(gear), "*BOUNDARY", "BORE, 1, 3"]
     for name, forces in loads.items():
         out += ["*STEP", "*STATIC", "*CLOAD, OP=NEW", f"** {name}"]
         for node in np.flatnonzero(np.any(forces != 0.0, axis=0)):

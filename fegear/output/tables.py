@@ -10,12 +10,13 @@ import io
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 import fegear
+from fegear.engine.outcome import Value
 from fegear.engine.run import Results
 from fegear.engine.table import Table
 from fegear.output.file_names import file_name
@@ -24,6 +25,8 @@ from fegear.output.file_names import file_name
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
+#: What names of values begin with that had no such beginning where the other result of their pair was not wanted.
+_PREFIX = re.compile(r"^(.+\.)(?:unloaded|wide)_(?=[^.]+$)")
 _QUANTITY = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?( ?[A-Za-zµ°%]+)?|inf|nan)?")
 
 
@@ -106,6 +109,16 @@ def _finite(number: float | None) -> float | None:
     return number if number is not None and math.isfinite(number) else None
 
 
+def _numbers(values: Iterable[Value]) -> dict[str, dict[str, object]]:
+    """Values by their names; where no other number has it now, by the name of before, too, with ``now`` beside it."""
+    found: dict[str, dict[str, object]] = {
+        value.name: {"value": _finite(value.value), "unit": value.unit, "error": _finite(value.error)}
+        for value in values
+    }
+    before = {_PREFIX.sub(r"\1", name): name for name in found if _PREFIX.match(name)}
+    return found | {old: {**found[now], "now": now} for old, now in before.items() if old not in found}
+
+
 def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str, object]:
     """Collect what the summary holds.
 
@@ -120,10 +133,7 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
     return {
         "title": case.title,
         "case": results.scene.name,
-        "results": {
-            value.name: {"value": _finite(value.value), "unit": value.unit, "error": _finite(value.error)}
-            for value in results.values
-        },
+        "results": _numbers(results.values),
         "inputs": inputs(results.scene.document),
         "settings": {
             "tolerance": case.accuracy.tolerance,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.units import from_si
 from fegear.case.built.tooth_influence import gear_to_solve, solve_influence_functions
+from fegear.fem.plane.tooth_on_pins import tooth_on_pins
 from fegear.results.gear.load_positions import chosen_gears
 
 if TYPE_CHECKING:
@@ -90,7 +91,10 @@ def gears_to_check(scene: Scene) -> tuple[str, ...]:
 
 
 def check_gear(scene: Scene, name: str, positions: int) -> Checked:
-    """Solve a gear by fegear and by scikit-fem alone, and compare them at positions evenly spaced in roll angle."""
+    """Solve a gear by fegear and by scikit-fem alone, and compare them at positions evenly spaced in roll angle.
+
+    Of a ring on pins it is tooth 0 that is compared.
+    """
     from fegear.fem.plane.scikit_fem_alone import solve_alone
 
     known = solve_influence_functions(gear_to_solve(scene, name))
@@ -106,19 +110,22 @@ def check_gear(scene: Scene, name: str, positions: int) -> Checked:
     radius = flank.radius_of_arc(np.clip(arc, flank.flank_start + room, flank.flank_end - room))
     found = solve_alone(
         gear.tooth, gear.bore_radius / module, gear.material.poisson_ratio, gear.plane_assumption, known.settings,
-        radius, half_width,
+        radius, half_width, gear.support_in_modules,
     )  # fmt: skip
     return Checked(name, tuple(_compared(known, found, radius * module)), found.unknowns, time.perf_counter() - started)
 
 
 def _compared(known: GearInfluence, found: WholeGearAlone, radius: Array) -> list[Compared]:
     b, modulus, module = known.reference_half_width, known.gear.material.young_modulus, known.gear.module
-    own = known.self_compliance(radius, b)
+    tooth = replace(
+        known, fine=tooth_on_pins(known.fine, 0)
+    )  # of a ring on pins, whose numbers are means over its teeth
+    own = tooth.self_compliance(radius, b)
     rows = [("c_self", own, found.c_self / modulus, known.self_error(radius, b), own, _COMPLIANCE)]
     for name, k, other in (("c_next", 1, found.c_next), ("c_prev", -1, found.c_prev)):
-        value, error = (np.diagonal(f(k, radius, radius)) for f in (known.neighbour, known.neighbour_error))
+        value, error = (np.diagonal(f(k, radius, radius)) for f in (tooth.neighbour, known.neighbour_error))
         rows.append((name, value, other / modulus, error, own, _COMPLIANCE))
-    tension, compression = (known.largest_root_stress(0, side, radius)[0] for side in ("tension", "compression"))
+    tension, compression = (tooth.largest_root_stress(0, side, radius)[0] for side in ("tension", "compression"))
     for name, value, other, error in (
         ("root_tension", tension, found.root_tension, known.root_stress_error(0, "tension", radius)),
         ("root_compression", compression, found.root_compression, known.root_stress_error(0, "compression", radius)),

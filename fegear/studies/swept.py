@@ -25,8 +25,8 @@ _ROUND_OFF = 1e-12
 _NOTHING = 1e-12
 #: By which values one point is chosen before another, by the end of their names, and whether the most is best.
 _CHOSEN_BY = {
-    "te_peak_to_peak": False, "largest_root_tension": False, "largest_hertz_pressure": False, "K_Hbeta": False,
-    "S_F": True, "S_H": True,
+    "te_peak_to_peak": False, "unloaded_te_peak_to_peak": False, "largest_root_tension": False,
+    "largest_hertz_pressure": False, "K_Hbeta": False, "S_F": True, "S_H": True,
 }  # fmt: skip
 #: Of one pair each of these is told, of many the first.
 _MOST_TOLD = 8

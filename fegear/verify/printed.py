@@ -267,4 +267,63 @@ def stribeck() -> Iterator[Compared]:
         yield from near(bearing.loads(moved).max() * 40 / bearing.reaction(moved)[0][0], wanted, allowed)
 
 
+@ROWS.add(
+    "tooth loss factors and pressure of the FZG test gears", "printed",
+    "C. Fernandes (FEUP), reports of the program GEARpie on the gears C14, C40 and H501",
+)  # fmt: skip
+def fzg_losses() -> Iterator[Compared]:
+    """Contact ratio, Ohlendorf's H_V, Wimmer's integral, which is a sum of few places there, load and pressure."""
+    from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
+    from fegear.formulas.friction import ohlendorf, wimmer
+    from fegear.formulas.iso6336.part22_micropitting import pressure
+
+    spur = (16, 24), 4.5e-3, (0.1817, 0.1715)
+    oblique = (20, 30), 3.5e-3, (0.1809, 0.0891), (40.336e-3, 58.132e-3), math.radians(15.0), 23e-3
+    pair = _fzg(*spur, (41.228e-3, 59.182e-3))
+    for one, ratio, closed, summed in (
+        (pair, "1.44", "0.1950", 0.1945),
+        (_fzg(*spur, (41.318e-3, 59.272e-3)), "1.46", "0.1986", 0.1984),
+        (_fzg(*oblique), "1.46", "0.1639", 0.1869),
+    ):
+        yield printed(one.contact_ratio, ratio)
+        yield printed(ohlendorf(one), closed, input_moves=1e-4)
+        yield from near(wimmer(one), summed, 5e-3)
+    load = 200.0 / pair.driver.base_radius
+    yield printed(load, "5912.1", input_moves=0.06)
+    found = pressure(flank_speeds(pair, 0.0, 157.1), load / 14e-3, reduced_modulus((206e9, 206e9), (0.3, 0.3)))
+    yield printed(float(found) * 1e-6, "1347.3", input_moves=0.45)
+
+
+def _fzg(
+    teeth: tuple[int, int], module: float, shifts: tuple[float, float], tips: tuple[float, float], helix: float = 0.0,
+    face: float = 14e-3,
+) -> GearPair:  # fmt: skip
+    from fegear.geometry.rack import BasicRack
+    from fegear.geometry.tooth import Tooth
+
+    rack, gears = BasicRack.named("A", math.radians(20.0)), []
+    hands: tuple[Hand, Hand] = ("right", "left") if helix else ("spur", "spur")
+    for z, x, tip, hand in zip(teeth, shifts, tips, hands, strict=True):
+        tooth = Tooth(z, rack, profile_shift=x, thickness_allowance=0.01, tip_radius=tip / module, helix_angle=helix)
+        gears.append(Gear(tooth, module, 0.4 * module / math.cos(helix) * z, face, hand=hand))
+    return GearPair(gears[0], gears[1], 91.5e-3)
+
+
+@ROWS.add(
+    "basic rating life of bearings by ISO 281", "printed", "worked examples: hchbearing.com, sarthaks.com 2642436"
+)
+def bearing_lives() -> Iterator[Compared]:
+    """Equivalent load and revolutions of two ball bearings under combined load, and of a rating of eight loads."""
+    from fegear.shafts.life import LifeRating
+
+    # Ratings printed to four digits, of which the third power makes three times the error.
+    for rating, radial, axial, equivalent, speed in (
+        (LifeRating(19730.0, "ball", 0.56, 1.6, 0.2), 2000.0, 300.0, 2000.0, 1600.0),
+        (LifeRating(51280.0, "ball", 0.56, 1.6, 0.2), 4000.0, 2400.0, 6080.0, 1000.0),
+    ):
+        yield from near(rating.equivalent_load(radial, axial), equivalent, 1e-9)
+        yield from near(rating.revolutions(radial, axial), 60.0 * speed * 10_000.0, 1e-3)
+    yield from near(LifeRating(16e3).revolutions(2e3, 0.0), 512e6, 1e-9)
+
+
 ROWS.all[:0] = _rating_rows()

@@ -113,6 +113,24 @@ def whole_gear_root_stress() -> Iterator[Compared]:
     yield from _quantities("root_tension", "root_compression")
 
 
+@ROWS.add("rings on pins and in a spline", "program", _ALONE)
+def ring_supports() -> Iterator[Compared]:
+    """Compliance and root stress of an internal gear on pins (tooth 0) and in a spline; what is stated is allowed."""
+    from fegear.case.reading import build_scene
+    from fegear.studies.check import check_gear
+
+    ring = {
+        "internal": True, "teeth": 30, "module": "2 mm", "rim_thickness": "5 mm", "tip_diameter": "57.4 mm",
+        "cutter": {"teeth": 15},
+    }  # fmt: skip
+    pins = {"kind": "pins", "pins": 4, "width": "6 mm", "angle": "17 deg"}
+    for support in (pins, {"kind": "splined"}):
+        gears = {"ring": ring | {"rim_support": support}}
+        scene = build_scene({"results": ["stiffness"], "gear": gears, "accuracy": {"tolerance": 5e-2}}, "case", Path())
+        for one in check_gear(scene, "ring", 1).compared:
+            yield Compared(one.difference, 0.0, 1.0, one.stated_error, one.stated_error)
+
+
 # ---- formulas ---------------------------------------------------------------------------------------------------
 @ROWS.add("geometry and contact stress of ISO 6336-2", "program", _DIN)
 def din3990_contact_stress() -> Iterator[Compared]:

@@ -84,16 +84,20 @@ const fegearGlance = (() => {
     host.append(choice);
   }
   const STYLES = { dash: "dashed", dashdot: "dashed", dot: "dotted" };
+  function inOrder(curves) { // as they stand below each other; what is counted stays in the order of its numbers
+    if (curves.every(({ name: words }) => /\d$/.test(words))) return curves;
+    const top = ({ y }) => numbersOf(y).reduce((most, one) => Math.max(most, Number.isFinite(one) ? one : most), -Infinity);
+    return curves.sort((one, other) => top(other) - top(one));
+  }
   /** Says what the curves of a small picture are, where there are several; what has no room is on pointing at it. */
   function name(legend, traces, darker) {
     const named = [...new Map(traces.filter(({ name: words, showlegend }) => words && showlegend !== false).map((one) => [one.name, one])).values()];
-    const top = ({ y }) => numbersOf(y).reduce((most, one) => Math.max(most, Number.isFinite(one) ? one : most), -Infinity);
     const said = JSON.stringify([fegearFigure.theme(), named.map(({ name: words, line }) => [words, line?.color])]);
     if (legend.dataset.said === said) return;
     legend.dataset.said = said;
     legend.hidden = named.length < 2;
     legend.title = named.map((one) => plain(one.name)).join(", ");
-    legend.replaceChildren(...named.sort((one, other) => top(other) - top(one)).map((one) => { // as they stand below each other
+    legend.replaceChildren(...inOrder(named).map((one) => {
       const entry = made("span"), key = made("i"), colour = one.line?.color ?? one.marker?.color;
       key.style.borderTop = `${one.type === "bar" ? 7 : 2}px ${STYLES[one.line?.dash] ?? "solid"} ${fegearFigure.theme() === "dark" ? darker[colour] ?? colour : colour}`;
       entry.append(key, plain(one.name));

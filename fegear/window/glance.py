@@ -57,6 +57,7 @@ USUAL_SET = ("planet-loads", "set-te", "set-forces")
 #: The numbers of the strip by the end of a value's name, in their order, and how they are called.
 NUMBERS = {
     "te_peak_to_peak": "transmission error, p-p",
+    "unloaded_te_peak_to_peak": "unloaded transmission error, p-p",
     "K_gamma": "K_gamma, load of the planets",
     "mesh_stiffness_mean": "mesh stiffness, mean",
     "driver.largest_root_tension": "root tension, driver",
@@ -88,14 +89,7 @@ def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
     usual = USUAL_WIDE if scene.wide_pairs else USUAL
     names = dict.fromkeys((*_ALWAYS, *(PICTURES[one].stage for one in pictures or usual if one in PICTURES)))
     stages = {stage.name: stage for stage in STAGES if stage.name in names}
-    # Of a pair with a width both tell its load and pressure: the case's own, or that over the face.
-    twice = "load-distribution" if "load-sharing" in scene.case.results else "load-sharing"
-    return [
-        Task(name, one)
-        for name in names
-        for one in stages[name].subjects(scene)
-        if not (name == twice and one in scene.wide_pairs)
-    ]
+    return [Task(name, one) for name in names for one in stages[name].subjects(scene)]
 
 
 def field_tasks(scene: Scene) -> list[Task]:

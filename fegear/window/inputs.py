@@ -181,7 +181,8 @@ class Inputs:
         if before == told:
             return
         for path in {*before, *told}:
-            self._tell(path)
+            if before.get(path) != told.get(path):  # a field that is sent anew loses what is typed at that moment
+                self._tell(path)
         for fold in set(self._places.values()):
             inside = [path[-1].replace("_", " ") for path in told if self._places.get(path) is fold]
             fold.props["caption"] = f"assumed or not given: {', '.join(inside)}" if inside else ""

@@ -138,6 +138,12 @@ const fegearPlots = (() => {
       node("image", { href: canvas.toDataURL(), x: kept.x(low[0]), y: kept.y(high[1]), width: kept.x(low[1]) - kept.x(low[0]),
         height: kept.y(high[0]) - kept.y(high[1]), preserveAspectRatio: "none" }, group);
     }
+    function says(spec, group) { // why nothing is to be seen, where the figure says it in its title
+      const said = plain(spec.layout.annotations?.find(({ xref, text }) => xref === "paper" && /^(<b>)?none/.test(text))?.text ?? "");
+      const { x0, x1, y0, y1 } = kept.box, most = (x1 - x0) / 5.6, lines = [""];
+      for (const word of said.split(" ")) if (`${lines.at(-1)} ${word}`.length > most) lines.push(word); else lines.push(`${lines.pop()} ${word}`.trim());
+      lines.forEach((line, i) => { node("text", { x: (x0 + x1) / 2, y: (y0 + y1) / 2 + 14 * (i - 0.5 * (lines.length - 1)), "text-anchor": "middle" }, group).textContent = line; });
+    }
     /** Draws a panel of a figure: `held`: keep its axes; `pinned`: the same figure of A; `marks`: places along x. */
     kept.draw = (spec, panel = 1, { held = false, pinned = null, marks = [], words = "", darker = {} } = {}) => {
       const { width, height } = kept.room ?? svg.getBoundingClientRect();
@@ -182,6 +188,7 @@ const fegearPlots = (() => {
       for (const trace of traces) if (trace.type === "heatmap") map(trace, inner);
       if (pinned) for (const trace of ofPanel(pinned, panel)) curve(trace, inner, true);
       for (const trace of traces) curve(trace, inner, false);
+      if (traces.length && traces.every(({ y }) => numbers(y).every((one) => one === 0))) says(spec, group);
       kept.nows = node("g", {}, inner);
       kept.mark(marks);
       node("rect", { x: x0, y: y1, width: x1 - x0, height: y0 - y1, class: "frame" }, group);

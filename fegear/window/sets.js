@@ -35,7 +35,7 @@ const fegearSets = (() => {
   }
 
   function setOf(name) {
-    const host = made("section", "hand"), stage = made("div", "mesh-stage"), canvas = made("canvas"), scale = made("p", "mesh-scale"), scales = made("div", "mesh-scales");
+    const host = made("section", "hand"), stage = made("div", "mesh-stage"), canvas = made("canvas"), scale = made("p", "mesh-scale below");
     host.dataset.set = name;
     stage.tabIndex = 0;
     canvas.setAttribute("role", "img");
@@ -46,10 +46,9 @@ const fegearSets = (() => {
     label.append(seen);
     const play = fegearGears.button("Play", "Turn the set", () => { kept.playing = !kept.playing; play.textContent = kept.playing ? "Pause" : "Play"; if (kept.playing) requestAnimationFrame(turn); });
     const nearer = fegearGears.button("Nearer", "One planet after the other, large (or click on it)", () => { kept.focus = kept.focus + 1 < kept.data.angles.length ? kept.focus + 1 : -1; draw(); });
-    scales.append(scale);
-    stage.append(canvas, scales);
+    stage.append(canvas);
     tools.append(play, angle, now, label, nearer);
-    host.append(made("h2", "", `Set ${name}`), stage, tools, told);
+    host.append(made("h2", "", `Set ${name}`), stage, scale, tools, told);
     angle.oninput = () => { kept.turned = angle.value / 7200 * 2 * PI; draw(); };
     seen.onchange = () => draw();
     let last = 0;

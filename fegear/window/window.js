@@ -3,7 +3,7 @@
 const fegear = (() => {
   const $ = (id) => document.getElementById(id);
   const sections = new Map(); // task -> { element, specs, darker, ... }
-  const { dark, shadesOf, draw, drop } = fegearFigure;
+  const { dark, shadesOf, draw } = fegearFigure;
   let template = null;
   const made = (tag, cls, text) => {
     const one = document.createElement(tag);
@@ -15,6 +15,10 @@ const fegear = (() => {
   // Figures out of sight are painted when they come near it.
   const MARGIN = 200, owners = new WeakMap(), late = new Set();
   const away = new WeakSet();
+  function drop(element) { // what is shown no longer is not kept for a later painting either
+    for (const figure of late) if (element.contains(figure)) late.delete(figure);
+    fegearFigure.drop(element);
+  }
   const watch = new IntersectionObserver((entries) => {
     for (const { target, isIntersecting } of entries) {
       if (!isIntersecting) { away.add(target); continue; }

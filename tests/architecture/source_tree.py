@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,7 +44,7 @@ def imports_of(name: str, source: str, known: set[str], *, is_package: bool) -> 
         return ".".join(base + ([node.module] if node.module else []))
 
     def walk(node: ast.AST, typing_only: bool) -> None:
-        for child in ast.iter_child_nodes(node):
+        for child in parts(node):
             inside = typing_only or (isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test))
             if isinstance(child, ast.Import):
                 found.extend(Import(name, alias.name, child.lineno, typing_only) for alias in child.names)
@@ -52,14 +53,29 @@ def imports_of(name: str, source: str, known: set[str], *, is_package: bool) -> 
                 for alias in child.names:
                     full = f"{module}.{alias.name}"
                     found.append(Import(name, full if full in known else module, child.lineno, typing_only))
-            elif isinstance(child, ast.Call) and ast.unparse(child.func) in ("importlib.import_module", "__import__"):
+            elif isinstance(child, ast.Call) and _imports(child.func):
                 target = child.args[0]
                 text = target.value if isinstance(target, ast.Constant) else ast.unparse(target)
                 found.append(Import(name, str(text), child.lineno, typing_only))
             walk(child, inside)
 
+    # an expression imports nothing but by these two
+    parts = ast.iter_child_nodes if re.search(r"import_module|__import__", source) else _statements
     walk(ast.parse(source), typing_only=False)
     return found
+
+
+def _statements(node: ast.AST) -> list[ast.AST]:
+    """The statements within one, and what holds others: handlers and cases."""
+    return [
+        part for part in ast.iter_child_nodes(node) if isinstance(part, (ast.stmt, ast.excepthandler, ast.match_case))
+    ]
+
+
+def _imports(called: ast.expr) -> bool:
+    """Whether a function that is called is `importlib.import_module` or `__import__`."""
+    name = called.id if isinstance(called, ast.Name) else getattr(called, "attr", "")
+    return name in ("import_module", "__import__") and ast.unparse(called) in ("importlib.import_module", "__import__")
 
 
 def all_imports() -> list[Import]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import fnmatch
 import importlib.util
 import subprocess
@@ -237,3 +238,23 @@ def test_the_window_computes_and_draws_nothing_of_its_own(imports):
         "fegear.fem.plane.table",
     }  # loaded before they are asked for
     assert [str(one) for one in reached if one.importer != "fegear.window.worker" or one.imported not in warmed] == []
+
+
+def _reads_wanted_results(source: str) -> bool:
+    """Whether it looks at ``case.results``, the list of what a case asks for."""
+    return any(
+        isinstance(node, ast.Attribute) and node.attr == "results"
+        and (node.value.attr if isinstance(node.value, ast.Attribute) else getattr(node.value, "id", "")) == "case"
+        for node in ast.walk(ast.parse(source))
+    )  # fmt: skip
+
+
+def test_no_number_depends_on_the_list_of_wanted_results():
+    """What is computed follows from the tasks that need it, and what these say of themselves: plans read the list."""
+    assert _reads_wanted_results('if "relief" in scene.case.results: pass')
+    assert not _reads_wanted_results("scene.case.pair")
+    house = Path(__file__).resolve().parents[2] / "fegear"
+    rooms = ("case", "results", "contact", "dynamics", "design", "fem", "window", "workbench")
+    files = [path for room in rooms for path in (house / room).rglob("*.py")]
+    assert len(files) > 200
+    assert [path.name for path in files if _reads_wanted_results(path.read_text("utf-8"))] == []

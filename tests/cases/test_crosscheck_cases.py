@@ -380,6 +380,7 @@ def test_studies_that_mean_nothing_are_refused(overrides, words):
         run("root_stress_validation", *overrides)
 
 
+@pytest.mark.dear
 def test_the_command_writes_tables_pictures_and_report(tmp_path):
     with pytest.raises(SystemExit) as left:
         app(["run", str(CASES / "cornell_test_gear.toml"), "--out", str(tmp_path / "o")])

@@ -152,6 +152,7 @@ def test_phases_of_meshes_reach_tooth_forces_and_root_stress(case, result):
     assert np.abs(turned[1] - rest[1]).max() > 0.01 * np.abs(rest[1]).max()
 
 
+@pytest.mark.dear
 def test_the_side_that_drives_follows_from_the_torques():
     """Friction with a pair named the wrong way round: the same motion and forces, and it is told."""
     common = ("results=['dynamic-factor', 'tooth-force']", "dynamics.speeds=['2000 rpm']")
@@ -454,6 +455,7 @@ def test_design_chart_with_friction():
     assert abs(swept - dry) > 5e-3
 
 
+@pytest.mark.dear
 def test_two_stage_gearbox():
     """Three shafts, two meshes and a branch: seven bodies have six elastic modes; the loads follow the ratios."""
     speed = "dynamics.speeds=['5000 rpm']"

@@ -303,6 +303,7 @@ def test_the_case_s_own_pair_excites(tmp_path):
         run(case, "transmissibility.I.excitation.transmission_error={pair='tooth'}")
 
 
+@pytest.mark.dear
 def test_a_helical_pair_excites_with_its_tooth_contact(tmp_path):
     text = (CASES / "litvin_shaft_angle.toml").read_text()
     scene = read_scene(CASES / "litvin_shaft_angle.toml")

@@ -29,18 +29,13 @@ def names_of(analysis, *options):
     return {v.name for v in outcome.values}, {f.key for f in outcome.figures}, outcome.remarks
 
 
-def test_what_loaded_flanks_have_too_is_called_unloaded(analysis):
-    """Without that a case could not ask for both: two results may not have one name."""
-    values, figures, remarks = names_of(analysis)
+@pytest.mark.parametrize("options", [(), ('results=["tooth-contact"]',)])
+def test_what_loaded_flanks_have_too_is_called_unloaded(analysis, options):
+    """Whatever else the case asks for: two results may not have one name, and none may change with another."""
+    values, figures, remarks = names_of(analysis, *options)
     assert {"I.unloaded_te_peak_to_peak", "I.unloaded_te_max", "I.unloaded_te_min"} <= values
     assert {"unloaded_transmission_error_I", "unloaded_contact_pattern_I"} <= figures
-    assert not any("changes nothing here" in remark for remark in remarks)  # the load is taken by the other result
-
-
-def test_alone_it_keeps_its_names(analysis):
-    values, figures, _ = names_of(analysis, 'results=["tooth-contact"]')
-    assert {"I.te_peak_to_peak", "I.te_max", "I.te_min"} <= values
-    assert {"transmission_error_I", "contact_pattern_I"} <= figures
+    assert any("load changes nothing in tooth contact analysis" in remark for remark in remarks)
 
 
 @pytest.mark.long

@@ -273,3 +273,12 @@ def test_one_gear_is_not_solved_as_a_solid_and_in_slices():
     scene = read_scene(CASE, [*both, 'stiffness.source="slices"', 'pair.I.width="slices"'])
     assert solid_gear_to_solve(scene, "pinion").settings.source == "slices"
     assert make_plan(scene, STAGES).steps
+
+
+def test_pressures_beside_stations_that_a_line_lacks_raise_no_warning(cache):
+    """With corner contact a line has fewer stations than another: infinity less infinity was computed for the rest."""
+    path = CASE.with_name("nasa_relief_design.toml")
+    few = ("accuracy.tolerance=0.3", "load_distribution.positions=3", "load_distribution.panels=4")
+    scene = read_scene(path, ['results=["load-distribution"]', "pair.I.width='slices'", *few])
+    outcome = run_plan(scene, make_plan(scene, STAGES), cache=cache).outcomes[Task("load-distribution", "I")]
+    assert all(np.isfinite(value.si) for value in outcome.values)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene, read_scene
@@ -15,7 +16,7 @@ SOURCES = Path(__file__).parents[2] / "cases" / "sources"
 
 
 def found(scene):
-    return run_plan(scene, make_plan(scene, STAGES))
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
 
 
 def asked(**loading):

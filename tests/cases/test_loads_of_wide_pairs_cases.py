@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
@@ -43,7 +44,7 @@ COARSE = (
 @pytest.fixture(scope="module")
 def results():
     scene = read_scene(CASE, COARSE)
-    return run_plan(scene, make_plan(scene, STAGES))
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
 
 
 def columns(results, name):
@@ -71,7 +72,7 @@ def test_errors_of_slices_count_what_slices_are_known_to_miss(results):
 def test_without_estimates_the_numbers_are_the_same_and_no_error_is_stated(results):
     """As while a value is moved in the window; only peaks are not looked for between roll positions."""
     scene = replace(read_scene(CASE, COARSE), estimates=False)
-    quick = run_plan(scene, make_plan(scene, STAGES))
+    quick = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     assert not quick.outcomes[Task("loaded-flanks", "I")].data.estimated
     estimated = [value for value in results.values if value.error and value.name.startswith("I.")]
     assert len(estimated) > 10
@@ -166,7 +167,7 @@ def test_root_stress_over_the_face_and_its_largest_value_are_one(results):
 @pytest.mark.long
 def test_solid_helical_gears_tell_their_tension_across_the_root():
     scene = read_scene(CASE, [*COARSE, "pair.I.width=solid", 'results=["root-stress-history"]'])
-    found = run_plan(scene, make_plan(scene, STAGES))
+    found = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     for member in MEMBERS:
         largest, across = (found.values[f"I.{member}.largest_root_tension{end}"] for end in ("", "_across"))
         # of a helix of 15 degrees it is larger, by what the shear in the fillet adds

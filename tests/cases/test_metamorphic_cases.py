@@ -82,6 +82,7 @@ def scaled_file(path, scales, folder):
     return str(copied)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("how", SCALES)
 @pytest.mark.parametrize("name", cases(*OWN_STEEL))
 def test_mechanics_knows_no_units_of_length_mass_and_time(name, how, monkeypatch, tmp_path):
@@ -111,6 +112,7 @@ def searched():
         return columns(ran(document, patch)), columns(ran(other, patch))
 
 
+@pytest.mark.dear
 def test_other_units_leave_searched_reliefs_and_what_they_leave(searched):
     """Scaling the lengths once made 18.7 um of 41.3 um."""
     length = SCALES["units"][0]

@@ -19,7 +19,6 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.loaded_pair import LOADED_PAIR
 
 CASES = Path(__file__).parents[2] / "cases"
 COARSE = "accuracy.tolerance=1e-2"
@@ -44,6 +43,12 @@ PAIRS = {
 def run(name: str, *overrides: str):
     scene = read_scene(CASES / f"{name}.toml", (COARSE, *PAIRS.get(name, ()), *overrides))
     return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+
+
+def inputs_of(results):
+    """What the loaded pair was estimated for: the results that read it say so."""
+    (step,) = (step for step in results.plan.steps if step.task == Task("loaded-pair", "I"))
+    return step.inputs(results.scene)
 
 
 def columns(results, table: str) -> dict[str, np.ndarray]:
@@ -91,6 +96,7 @@ def effects(**chosen: str) -> tuple[str, ...]:
     return tuple(f"effects.{name}={value}" for name, value in chosen.items())
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("name", "effect", "among"),
     [
@@ -124,7 +130,7 @@ def test_the_reported_size_is_that_of_the_run_with_the_effect_on(name, effect, a
     before = run(name, *effects(**off))
     after = run(name, *effects(**{**off, effect: ON[effect]}))
     pair = before.outcomes[Task("loaded-pair", "I")].data
-    inputs = LOADED_PAIR.inputs(before.scene, "I")
+    inputs = inputs_of(before)
     compared = 0
     for load in (pair.loads[0], pair.nominal, pair.loads[-1]):
         found = neglected_effects(inputs.asked, pair, inputs.answers, [load])
@@ -241,7 +247,7 @@ def test_sizes_of_root_tension_of_random_pairs(seed):
     assert (1.0 - 1e-6) * stress <= headline(after) <= (1.0 + 5e-4) * stress  # which misses kinks by its own step
     for effect in WHOLE:
         before = made("root-stress-history", **{name: value for name, value in WHOLE.items() if name != effect})
-        inputs = LOADED_PAIR.inputs(before.scene, "I")
+        inputs = inputs_of(before)
         pair = before.outcomes[Task("loaded-pair", "I")].data
         (change,) = neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]
         true = stress - largest_tension(before, load)
@@ -261,7 +267,7 @@ def test_sizes_of_random_pairs_and_loads(seed):
     after = made(*results, **WHOLE)
     for effect in WHOLE:
         before = made(*results, **{name: value for name, value in WHOLE.items() if name != effect})
-        inputs = LOADED_PAIR.inputs(before.scene, "I")
+        inputs = inputs_of(before)
         pair = before.outcomes[Task("loaded-pair", "I")].data
         for change in neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]:
             if change.answer == "load on a tooth pair":

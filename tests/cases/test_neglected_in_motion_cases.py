@@ -35,6 +35,7 @@ def factors(results) -> np.ndarray:
     return np.array([s.tooth_force[0] / results.outcomes[Task("gear-train")].data.forces[0] for s in states])
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("load", "relief", "effect", "changes"),
     [

@@ -12,6 +12,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from solved_once import CACHE
 
 from fegear.base.errors import MissingLibraryError
 from fegear.case.reading import read_scene
@@ -35,7 +36,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 def made(folder: Path, name: str, *overrides: str) -> Path:
     scene = read_scene(CASES / f"{name}.toml", overrides)
-    write_results(run_plan(scene, make_plan(scene, STAGES)), folder, Silence(), plots=False)
+    write_results(run_plan(scene, make_plan(scene, STAGES), cache=CACHE), folder, Silence(), plots=False)
     return folder
 
 
@@ -267,6 +268,7 @@ def swept(tmp_path_factory):
     return results, folder
 
 
+@pytest.mark.dear
 def test_a_sweep_is_shown_as_map_curves_and_lines_through_all_its_values(browser, swept):
     results, folder = swept
     browser.size(1300, 900)

@@ -143,6 +143,7 @@ def test_the_page_of_the_same_results_is_the_same_bytes(made, tmp_path):
     assert carried(PageParser((tmp_path / "again.html").read_text("utf-8"))) == carried(report(folder))
 
 
+@pytest.mark.dear
 def test_the_report_needs_neither_plotly_nor_matplotlib_and_plane_gears_are_drawn_without_pyvista_and_plotly(tmp_path):
     (tmp_path / "report").mkdir()
     probe = (

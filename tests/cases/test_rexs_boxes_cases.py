@@ -32,6 +32,7 @@ def _opened(tree: dict) -> np.ndarray:
     return np.array([shares.over_face for shares, _ in box.misalignment(box.under(box.even), box.even)])
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_gearbox_written_otherwise_is_misaligned_alike(seed: int) -> None:
     tree = random_box(seed)

@@ -209,6 +209,7 @@ def test_a_contact_as_wide_as_a_load_makes_it_is_not_called_the_usual_one():
         assert np.allclose(found.half_widths, 0.02 * 3e-3) is said
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("factors", "waves"),
     [((2.5, 1.25), (0.75, 2.0)), pytest.param(knobs._FACTORS, knobs._WAVES, marks=pytest.mark.long)],

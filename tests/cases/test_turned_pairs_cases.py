@@ -313,6 +313,7 @@ HELICAL = {
 }  # fmt: skip
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("width", ["slices", pytest.param("solid", marks=pytest.mark.long)])
 def test_a_helical_pair_that_changes_places_has_the_same_load_over_its_flanks(width, monkeypatch):
     """The wheel drives backward: the same flanks bear, and the ends of the face stay the same."""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 import fegear
 from fegear.output.tables import summary, table_text
@@ -30,9 +31,10 @@ CHEAP = {
 }
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("name", CHEAP)
 def test_numbers_and_units_agree_everywhere(name):
-    found = fegear.run(CASES / f"{name}.toml", CHEAP[name])
+    found = fegear.run(CASES / f"{name}.toml", CHEAP[name], cache=CACHE)
     written = summary(found, [], [])["results"]
     data = found.to_xarray()
     spelt = {"": "1", "deg": "degree"}

@@ -112,6 +112,12 @@ def button(words: str) -> str:
     return f"[...document.querySelectorAll('button')].find(one => one.textContent.trim() === '{words}')"
 
 
+def nodes(browser) -> int:
+    """How many nodes the page holds, those that stand in no document any more included."""
+    browser("HeapProfiler.collectGarbage")
+    return browser("Memory.getDOMCounters")["nodes"]
+
+
 def go(browser, address: str) -> None:
     browser("Page.navigate", url=address)
     browser.until("document.documentElement?.dataset.ready !== undefined")
@@ -262,6 +268,20 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.until(f"{drawn}.length > {len(empty)} + 2000")
     browser.click(button("Deformed"))
     browser.until("document.querySelector('.mesh-told').textContent.includes('not how a tooth deforms')")
+
+    # What is compared no more is let go of, its pictures included, which nobody has scrolled to.
+    kept = []
+    for _ in range(4):
+        browser.click(button("Unpin A"))
+        browser.until(f"{button('Pin as A')} !== undefined && document.querySelector('#compared section') === null")
+        kept.append(nodes(browser))
+        browser.click(button("Pin as A"))
+        browser.run("document.querySelector('[data-slider]').focus()")
+        press(browser, "ArrowRight", 39)
+        browser.until(f"document.querySelector('#compared').textContent.includes('pair.I.load') && {IDLE}")
+        browser.click(button("Undo"))
+        browser.until(f"document.querySelector('textarea').value.includes('load = \"7 kN\"') && {IDLE}")
+    assert kept[-1] < kept[0] + 30
 
     # The server is killed; its successor has what was not saved, and writes it where it belongs.
     served.end(signal.SIGKILL)
@@ -484,6 +504,7 @@ def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves
     served.end()
 
 
+@pytest.mark.dear
 def test_names_of_any_length_leave_the_page_its_width(browser, serve, tmp_path):
     path = tmp_path / "named.toml"
     path.write_text(TEXT.replace("gear.a]", f"gear.{'g' * 300}]").replace('"a"', f'"{"g" * 300}"'))
@@ -569,6 +590,7 @@ coupling = "120 mm"
 """
 
 
+@pytest.mark.dear
 def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(browser, serve, tmp_path):
     path = tmp_path / "both.toml"
     path.write_text(ASSEMBLED)

@@ -31,6 +31,7 @@ POLYLINES = [
 ]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("gear", POLYLINES)
 def test_polylines_are_closed_and_lie_on_the_tooth(gear, tmp_path):
     paths = {path.stem: path for path in write_dxf(gear, tmp_path, "g")}
@@ -66,6 +67,7 @@ def test_area_converges_with_the_square_of_the_chord(gear):
     assert abs(area(1e-6) - fine) < 0.1 * abs(area(1e-4) - fine)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("gear", GEARS.values(), ids=GEARS)
 def test_splines_hold_the_curves_and_their_ends_meet(gear, tmp_path):
     paths = {path.stem: path for path in write_dxf(gear, tmp_path, "g")}

@@ -149,6 +149,7 @@ def check_drives(drives):
     return kinds
 
 
+@pytest.mark.dear
 def test_extremes_of_random_drives_are_those_of_a_dense_search():
     # Tangents of one cell alone, as if every cell were convex, missed with an error of zero reported.
     assert len(check_drives(random_drives(3, 11))) >= 2

@@ -247,6 +247,7 @@ def test_undamped_resonance_is_refused_and_next_to_it_is_not():
         dynamic_increments(train, np.nan)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("seed", range(8))
 def test_random_trains(seed):
     """Trees of two to eight bodies over many decades, with dampers to ground and between bodies of any speed."""

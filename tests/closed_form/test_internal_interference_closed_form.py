@@ -216,6 +216,7 @@ ROLLING = (
 )
 
 
+@pytest.mark.dear
 @PAIRS
 @pytest.mark.parametrize("name", ROLLING)
 def test_teeth_that_roll_overlap_where_a_margin_is_negative(name: str, count: int) -> None:

@@ -122,6 +122,7 @@ def test_two_ramps_and_jumps_have_asymptotes_too():
     assert math.isinf(jump.initial_slope())
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     "ramp",
     [Ramp(0.0), Ramp(1.0), Ramp(2.0), Ramp(0.0, 3), Ramp(3.0, 3), Ramp(0.0, 7), Ramp(3.0, 7), Ramp(7.0, 7)],

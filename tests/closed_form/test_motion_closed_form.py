@@ -251,6 +251,7 @@ def test_slack_teeth_that_hammer_both_flanks(ratio, amplitude, backlash, kind, p
         assert np.max(np.abs(one.x - two.x)) > 1e-8
 
 
+@pytest.mark.dear
 def test_quasi_periodic_motion_is_named():
     """Shafts with a damping ratio of 0.005 near 11,000 rpm: multipliers leave the unit circle off the real axis."""
     system = four_inertia(backlash=2e-5, shaft_ratio=0.005)

@@ -91,6 +91,21 @@ def test_contact_states_are_those_of_an_enumeration():
     assert lifted > 10
 
 
+@pytest.mark.parametrize("other", ["stiffness", "separation", "load"])
+def test_positions_that_are_alike_are_found_as_beside_one_that_differs(other):
+    """Given stiffness makes all positions one, which is solved once."""
+    rng = np.random.default_rng(11)
+    held, rows = rng.normal(size=(4, 4)), rng.normal(size=(6, 4))
+    each = {"stiffness": rng.uniform(0.5, 2.0, 6), "separation": rng.normal(size=6), "load": rng.normal(size=4)}
+    alike = {key: np.tile(one, (5, 1)) for key, one in each.items()}
+    differing = alike | {other: np.vstack([alike[other], 1.5 * each[other]])}
+    differing = {key: one if key == other else np.vstack([one, one[:1]]) for key, one in differing.items()}
+    found, beside = (equilibrium(held @ held.T, rows, **given) for given in (alike, differing))
+    assert found.shape == (5, 4)
+    assert found == pytest.approx(beside[:5], rel=1e-10)
+    assert not np.allclose(beside[5], beside[4], rtol=1e-3)
+
+
 def test_tooth_pairs_that_stand_apart_are_springs_of_their_own():
     """Two slots of one mesh with different separations, and a relief that takes contact from one of them."""
     ramp = Periodic.through_points([0.0, 1.0], [0.0, 30e-6])

@@ -170,6 +170,7 @@ def test_error_vanishes_linearly_with_the_misalignment():
     assert 0.0 < tiny.peak_to_peak < 1e-4 * ARCSEC
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("errors", [
     Misalignment(shaft_angle=3 * ARCMIN),
     pytest.param(Misalignment(shaft_angle=3 * ARCMIN, lead_angle=-4 * ARCMIN), marks=pytest.mark.long),

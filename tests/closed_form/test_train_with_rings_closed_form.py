@@ -120,6 +120,7 @@ def test_flanks_of_a_ring_slide_in_a_train_as_they_do_in_a_pair(drives):
     assert found.rolling == pytest.approx(known.sum, rel=1e-9)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("drives", ["planet", "ring"])
 def test_friction_of_an_internal_mesh_takes_what_the_pair_loses(drives):
     """Both torques times both speeds are the loss of the pair's own result."""
@@ -160,6 +161,7 @@ def test_friction_of_an_internal_mesh_takes_what_the_pair_loses(drives):
     assert lost[on] == pytest.approx((0.06 * at["load"] * np.abs(at["sliding_velocity"]))[on], rel=1e-9)
 
 
+@pytest.mark.dear
 def test_every_result_of_a_train_takes_an_internal_mesh():
     """A ring that drives, too; motion with contact loss far above the resonance stays at the static force."""
     results = ("dynamic-increments", "tooth-force", "dynamic-root-stress", "dynamic-factor")

@@ -124,6 +124,7 @@ def told_too_little(estimates, names):
     return found
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("estimates", [own_estimates, table_estimates])
 def test_a_solid_gear_is_no_further_off_than_it_tells(estimates):
     assert not told_too_little(estimates, QUICK)

@@ -70,6 +70,7 @@ def check_honesty(found, count):
         assert len(entries) <= 0.02 * count, (quantity, entries)
 
 
+@pytest.mark.dear
 def test_estimates_hold_entry_by_entry():
     check_honesty(*exceeded(QUICK, at_level(0)))
 

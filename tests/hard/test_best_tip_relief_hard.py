@@ -140,6 +140,7 @@ def numbers(found, pair):
     return [n for r, g in both for n in (r.amount, (r.end - r.start) * g.base_radius / pair.path_length)]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("z1", "z2", "addendum", "shift", "shape", "metric"),
     [
@@ -180,7 +181,7 @@ def left_at(e, load, relief):
     return max(np.ptp(values), solved.peak_to_peak)
 
 
-@pytest.mark.parametrize("shape", ["linear", "parabolic"])
+@pytest.mark.parametrize("shape", ["linear", pytest.param("parabolic", marks=pytest.mark.long)])
 def test_a_relief_on_finite_elements_leaves_what_the_search_says(shape):
     """A pair that parted just before a straight relief's start left .748 um where the search saw .664."""
     teeth = Tooth(23, BasicRack(), profile_shift=0.3), Tooth(57, BasicRack(), profile_shift=-0.1)
@@ -238,6 +239,7 @@ def test_the_driver_of_a_like_pair_takes_the_deeper_relief_and_both_have_one_ban
         assert (found.band_error > 0.0).all()
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("teeth", "options", "shape"),
     [
@@ -310,6 +312,7 @@ def test_the_last_digits_of_the_load_and_the_unit_of_length_change_nothing(teeth
     unchanged(teeth, options, shape, loads, "peak_to_peak", 1e-8)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("teeth", "options", "shape", "loads"),
     [
@@ -431,6 +434,7 @@ def test_the_least_removal_is_found_in_a_valley_that_is_not_the_deepest():
     assert found.driver.amount + found.driven.amount < 61e-6
 
 
+@pytest.mark.dear
 def test_reliefs_for_several_loads_are_at_least_as_good_as_those_for_one():
     e, load = engaged(24, 36, hertz="load-dependent")
     loads = [0.5 * load, load]

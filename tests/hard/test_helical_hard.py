@@ -48,6 +48,7 @@ def test_a_helix_angle_that_vanishes_leaves_the_spur_pair(shaft, lead, parabola)
     assert abs(ranges[1] - ranges[0]) < size * (200.0 * 1e-10 + 1e-9)
 
 
+@pytest.mark.dear
 @pytest.mark.examples(6, 120)
 @given(st.sampled_from([0.0, 12.0, 30.0]), angles, angles, st.integers(20, 60), st.integers(20, 90))
 def test_error_is_proportional_to_a_misalignment_that_vanishes(beta, shaft, lead, n1, n2):

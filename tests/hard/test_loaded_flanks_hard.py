@@ -35,6 +35,7 @@ def flanks(beta, panel):
     return FlankPair(pair, {"driver": body(pair.driver), "driven": body(pair.driven)}, panel=panel, positions=4)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(("beta", "panel"), [(15.0, 0.03), (1e-6, 0.5), (35.0, 0.5)])
 def test_loads_of_every_size_find_their_stations(beta, panel):
     """200 stations a line, hardly a helix, 35 degrees; 1e-4 to 5000 N/mm, ends of the face that never touch."""

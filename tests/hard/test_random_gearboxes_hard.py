@@ -91,6 +91,7 @@ def test_sizes_of_any_magnitude(first):
         _in_a_sentence(_any_size(seed))
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("first", [0, *(pytest.param(n, marks=pytest.mark.long) for n in range(8, 208, 50))])
 def test_bearings_of_any_kind_find_their_balance(first):
     count, refused = 50 if first else 8, []

@@ -157,6 +157,7 @@ def test_finite_elements_keep_the_laws_of_elasticity(gear, a, b):
     assert (tension[1:] > -1e-6 * np.abs(tension).max()).all()
 
 
+@pytest.mark.dear
 @pytest.mark.examples(10, 300)
 @given(gears(), st.sampled_from([0.25, 2.0, 8.0]), st.floats(0.1, 400.0))
 def test_finite_elements_know_no_size_and_no_steel(gear, module, modulus):

@@ -53,6 +53,7 @@ def tension(name, known, half_width, places=PLACES):
     return known.largest_root_stress(0, "tension", radii(name, places), half_width)[0]
 
 
+@pytest.mark.dear
 @EVERY
 def test_root_tension_beside_a_contact_tends_to_a_limit(name):
     """Its search once ended at a distance that shrank with the edges: 17.86, 18.10, 18.59, 19.03."""

@@ -78,6 +78,7 @@ def missed(i):
     return over
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("i", ORDINARY)
 def test_tables_of_sharp_gears_are_within_their_tolerance_or_their_stated_error(i):
     """With edges of .0015 modules where flank and fillet meet draw 171, a fillet of .0034, was 2.2 times outside."""

@@ -43,6 +43,7 @@ def test_a_coarse_solution_tells_its_error():
     assert all(true[key] / SHARES[key] <= told[key] for key in told)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("tooth", "degrees", "width", "poisson_ratio", "bore"),
     [

@@ -5,4 +5,4 @@ Not for tests that count what is computed, or that change how it is.
 
 from fegear.base.solution_cache import SolutionCache
 
-CACHE = SolutionCache(most=48)
+CACHE = SolutionCache(most=600)

@@ -126,6 +126,7 @@ OPTIMA = [
 ]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(("amount", "low", "high"), OPTIMA)
 def test_optimum_length(amount, low, high):
     """Figs. 9 and 10: 1.21 for 0.50 Delta, 1.09 for 0.75 Delta, 0.68 to 0.72 for 1.50 Delta; grid of 0.02 to 0.04."""

@@ -251,6 +251,7 @@ def test_load_share_and_transmission_error_of_lins_gears(lin):
     assert (got.transmission_error[:, 0] < te).all()
 
 
+@pytest.mark.dear
 def test_optimiser_beats_the_chart(lin):
     loads = [0.6 * LIN_LOAD, LIN_LOAD]
     found = optimise_tip_relief(lin, loads)

@@ -45,6 +45,7 @@ def apart(which, solved):
     )
 
 
+@pytest.mark.dear
 def test_load_on_a_web_off_the_middle():
     """With functions that resolve hats of half a module beside a web's end: deflection .4 %, root tension .5 %."""
     moved, stress = worst("off", replace(SolidSettings().scaled(1.2), waves_per_module=3.0))

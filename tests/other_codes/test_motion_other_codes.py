@@ -86,6 +86,7 @@ def random_rig(seed):
     return system, rpm, error, ((high, low, high), jumps)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("seed", range(60))
 def test_random_rigs_move_as_an_own_integration_says(seed):
     """Started on the steady motion, scipy stays on it for its periods, with its contact changes and its largest force.

@@ -68,6 +68,7 @@ def forces(run, rows, errors, q, s_sun):
     return total
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("torque", [2000.0, 20.0])
 def test_motion_with_contact_loss_is_that_of_scipy(torque):
     """From rest, on which the torque strikes: teeth part at once and often; pins stand off."""

@@ -145,6 +145,7 @@ def written(folder, ccx, kind, nodes, bricks, fixed, loads, asked):
     return {int(one[1]) - 1: np.array([float(x) for x in one[2].split()]) for one in rows}
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("steps", "within", "twisted"),
     [

@@ -95,6 +95,7 @@ def test_the_reference_itself_has_converged(case):
             assert left.max() < 2e-3 * np.abs(values).max()
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("case", ["helical", "helical_ring"])
 def test_usual_settings_are_within_a_per_cent(case):
     """Pressed hats want more functions along the face than contacts, whose half-space makes up for what they lack.

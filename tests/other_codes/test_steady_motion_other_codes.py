@@ -429,6 +429,7 @@ def test_a_median_is_a_force_that_occurs(cornell_discs):
     assert state.quantile(0.51)[0] == 3.0
 
 
+@pytest.mark.dear
 def test_teeth_that_throw_each_other_ever_further_are_unsettled_and_a_stable_motion_beside_them_is_named():
     """Damping 0.01 at 2.007 natural frequencies: the reference's largest force grows as long as it is followed."""
     depth, zeta, ratio = 0.45, 0.01, 2.007

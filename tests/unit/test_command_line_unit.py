@@ -13,9 +13,10 @@ import time
 
 import in_process
 import pytest
+import typer
 
 from fegear.base.errors import lacks_memory
-from fegear.cli import _NO_MEMORY
+from fegear.cli import _NO_MEMORY, COMMANDS, app
 
 CASE = """
 title = "One gear"
@@ -124,6 +125,7 @@ def test_export_writes_drawings_and_meshes(case, tmp_path):
         assert (done.returncode, words in done.stderr, (tmp_path / "new").exists()) == (2, True, False)
 
 
+@pytest.mark.dear
 def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert fegear("run", case, "--no-plots", cwd=tmp_path).returncode == 0
     out = tmp_path / "results" / "one"
@@ -200,6 +202,7 @@ def test_ctrl_c_while_a_sweep_starts_its_processes_is_one_line(case, tmp_path):
     assert errors == "fegear: interrupted; started again, the sweep resumes where it stopped.\n"
 
 
+@pytest.mark.dear
 def test_a_terminal_gets_a_bar(case, tmp_path):
     import pty
 
@@ -212,6 +215,22 @@ def test_a_terminal_gets_a_bar(case, tmp_path):
     assert "Geometry" in text
     assert "━" in text
     assert b"Wrote" in done.stdout
+
+
+def test_a_command_is_read_alone_and_is_that_of_the_whole_program(capsys, monkeypatch):
+    whole = typer.main.get_command(app)
+    read, plain = [], typer.main.get_command_from_info
+    monkeypatch.setattr(
+        typer.main, "get_command_from_info", lambda command_info, **how: read.append(0) or plain(command_info, **how)
+    )
+    assert len(whole.commands) == len(COMMANDS)
+    for name in whole.commands:
+        whole([name, "--help"], prog_name="fegear", standalone_mode=False)
+        expected = capsys.readouterr().out
+        assert "--help" in expected
+        app([name, "--help"], prog_name="fegear", standalone_mode=False)
+        assert capsys.readouterr().out == expected
+    assert len(read) == len(COMMANDS)  # one each
 
 
 def test_version(tmp_path):
@@ -230,6 +249,7 @@ def test_an_output_folder_without_a_name_is_refused(case, tmp_path, command):
     assert [one.name for one in tmp_path.iterdir()] == ["one.toml"]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     "arguments", [("new", "x"), ("schema", "--out", "x"), ("run",), ("compare", "a.toml", "b.toml")]
 )

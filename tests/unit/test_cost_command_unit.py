@@ -257,6 +257,7 @@ def test_a_case_without_a_load_has_no_pair_to_study(tmp_path):
         asked(read_scene(path))
 
 
+@pytest.mark.dear
 def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     slow = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"

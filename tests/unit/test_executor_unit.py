@@ -48,6 +48,7 @@ def test_results_come_in_order_and_failures_are_values(tmp_path):
     assert map_points(math.sqrt, points, cache=SolutionCache(store)) == found
 
 
+@pytest.mark.dear
 def test_a_process_that_dies_takes_no_other_point_with_it():
     found = map_points(functools.partial(map, os._exit), [7], Executor(workers=2))
     assert isinstance(found[0], Failure)  # a map is no plain data, and nothing died yet
@@ -247,6 +248,7 @@ def test_no_worker_outlives_a_killed_parent(tmp_path):
             os.killpg(group.pid, signal.SIGKILL)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("own", [False, True])
 def test_a_script_is_run_again_only_for_its_own_functions(own, tmp_path):
     """Spawned processes import the file of ``__main__``: a script without a guard would start itself anew in each."""

@@ -63,6 +63,7 @@ def test_pictures_that_cannot_be_drawn_say_what_to_install():
         offscreen_pyvista()
 
 
+@pytest.mark.dear
 def test_every_command_starts_without_them(tmp_path):
     """In a new process where importing any of them fails: help of all commands, a new case, its run with its report."""
     program = f"""

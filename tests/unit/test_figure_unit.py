@@ -105,6 +105,7 @@ def test_a_picture_of_everything_can_be_read(tmp_path, kind):
     assert (image[..., :3].min(axis=2) < 0.9).mean() > 0.01
 
 
+@pytest.mark.dear
 @pytest.mark.examples(15, 1000)
 @given(st.text(min_size=1, max_size=30))
 def test_names_are_text_and_never_markup(name):

@@ -108,6 +108,7 @@ def test_panels_shorter_than_a_contact_leave_no_zigzag(bodies):
     np.testing.assert_array_equal(usual.line_load[on][:, 0], usual.contact.force[on][:, 0] / usual.lines.support[on])
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(("beta", "edges"), [pytest.param(0.0, True, marks=pytest.mark.long), (15.0, True)])
 def test_few_roll_positions_state_what_many_show(bodies, beta, edges):
     """Twelve positions were off by up to six times what was stated; so was what eight said of the peak to peak."""

@@ -239,6 +239,7 @@ def test_losses_under_every_load_are_those_of_each_load_alone():
     assert table["tooth_loss"][1] == pytest.approx(alone["tooth_loss"], rel=1e-9)
 
 
+@pytest.mark.dear
 def test_a_helical_pair_shares_the_load_as_its_overlap_says():
     """X_Y of ISO/TS 6336-22 over the path: spur teeth's trapezium without buttressed ends was taken for any helix."""
     gear = {"module": None, "normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "24 mm"}

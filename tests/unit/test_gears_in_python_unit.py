@@ -125,6 +125,7 @@ def test_a_question_asked_again_is_recalled(pair):
     assert {timing.origin for timing in again.timings.values()} == {"recalled"}
 
 
+@pytest.mark.dear
 def test_relief_is_the_case_s(pair, design):
     same(design, CASE, {"pair.I.torque": "90 N*m", "design": {"grind": ["linear"]}}, ["relief"])
 
@@ -223,6 +224,7 @@ def wide(request):
     return pair, case
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("result", DOORS)
 def test_every_door_takes_pairs_with_a_width_and_gives_what_the_case_file_does(wide, result):
     pair, case = wide

@@ -88,6 +88,7 @@ def test_a_folder_that_vanishes_costs_time_only(made, tmp_path):
     assert fast(1.5) == 3.0
 
 
+@pytest.mark.dear
 def test_machine_code_of_functions_in_several_files_is_made_anew_when_one_of_them_changes(tmp_path):
     """Numba alone takes a caller's old code where a function that it calls has changed in another file."""
     (tmp_path / "helper.py").write_text("def part(x):\n    return 2.0 * x\n")

@@ -228,6 +228,7 @@ def test_work_begun_ahead_holds_no_stopped_program_back():
     assert subprocess.run([sys.executable, "-c", program], check=False, env=ENVIRONMENT, timeout=60).returncode == 143
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("number", ["SIGTERM", "SIGINT"])
 @pytest.mark.parametrize(
     ("moment", "code", "left"),

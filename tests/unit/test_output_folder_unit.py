@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from fegear.engine.table import Column, Table
 from fegear.output.dataset import write_dataset
 from fegear.output.exchange import RECORD
 from fegear.output.folder import whole_or_nothing, write_results
+from fegear.output.tables import summary
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -121,6 +123,21 @@ def results() -> Results:
     task = Task("demo", "a")
     outcome = Outcome(None, (table,), values, {"order": 2}, ("A remark.",))
     return Results(scene, Plan((), (), ()), {task: outcome}, {task: Timing(0.25)})
+
+
+def test_the_summary_has_old_names_where_no_other_number_is_called_so(results):
+    task = Task("demo", "a")
+    values = (
+        Value("I.unloaded_te_max", 1e-6, "um", 0.0),
+        Value("II.wide_te_mean", 2e-6, "um"),
+        Value("II.te_mean", 3e-6, "um"),
+        Value("wide_of_no_owner", 4.0),
+    )
+    outcome = replace(results.outcomes[task], values=values)
+    found = summary(replace(results, outcomes={task: outcome}), [], [])["results"]
+    assert found["I.te_max"] == {**found["I.unloaded_te_max"], "now": "I.unloaded_te_max"}
+    assert found["II.te_mean"] == {"value": pytest.approx(3.0), "unit": "um", "error": None}
+    assert set(found) == {one.name for one in values} | {"I.te_max"}
 
 
 def test_every_file_holds_the_same_numbers(results, tmp_path):

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import fegear
+from fegear.verify.rows import ALL
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
@@ -27,6 +28,35 @@ def test_the_recipe_has_the_dependencies_with_their_bounds():
     wanted = {(CONDA.get(name, name), bounds) for name, bounds in split}
     assert set(asked) == wanted | {("python", PROJECT["requires-python"])}
     assert f'version = "{fegear.__version__}"' in recipe
+
+
+def test_the_recipe_is_one_when_its_templates_are_filled():
+    yaml, jinja2 = pytest.importorskip("yaml"), pytest.importorskip("jinja2")
+    filled = jinja2.Environment(undefined=jinja2.StrictUndefined).from_string(text("packaging/conda/meta.yaml"))
+    recipe = yaml.safe_load(filled.render(PYTHON="python"))
+    assert recipe["package"] == {"name": PROJECT["name"], "version": fegear.__version__}
+    assert recipe["build"]["noarch"] == "python"
+    entry = [" = ".join(one) for one in PROJECT["scripts"].items()]
+    assert recipe["build"]["entry_points"] == entry
+    assert {one.split()[0] for one in recipe["requirements"]["host"]} == {"python", "pip", "hatchling"}
+    assert re.fullmatch(r"[0-9a-f]{64}", recipe["source"]["sha256"])
+    assert recipe["source"]["url"].endswith(f"/fegear-{fegear.__version__}.tar.gz")
+    assert (ROOT / recipe["about"]["license_file"]).is_file()
+    (verify,) = recipe["test"]["commands"]
+    assert {word for word in verify.split() if word in {row.name for row in ALL}} == {
+        "beams", "cones", "load-sharing-enumerated",
+    }  # fmt: skip
+
+
+def test_the_bare_root_runs_every_step_of_the_container():
+    """It reads the file itself; what it copies where, it knows by heart."""
+    steps = text("packaging/bare_root.sh")
+    copied = re.findall(r"^COPY \. (\S+)$", text("packaging/Containerfile"), re.MULTILINE)
+    assert copied == ["/opt/fegear/source"]
+    assert "$bare/opt/fegear/source" in steps
+    assert 'ENTRYPOINT ["/opt/fegear/venv/bin/fegear"]' in text("packaging/Containerfile")
+    assert "FROM docker.io/library/debian:bookworm-slim" in text("packaging/Containerfile")
+    assert " bookworm " in steps
 
 
 def test_the_container_has_the_system_libraries_of_the_set_up():

@@ -1,6 +1,7 @@
 """The sector's mesh: the same whatever was drawn before, the last bits and the thread; and no flat triangles."""
 
 import math
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -138,6 +139,29 @@ def test_a_flat_mesh_is_refused():
         chains.append(Chain(name, ends, ends.mean(axis=1, keepdims=True), np.hstack([along, along])))
     with pytest.raises(InputError, match="triangle of quality"):
         mesh_inside(chains, 20)
+
+
+def test_a_request_to_stop_before_the_first_line_of_what_gmsh_calls_is_not_lost(capfd):
+    """A signal may come between the call of a function and its first statement, where no `try` of its own helps."""
+    calls = []
+
+    def interrupt(frame, event, _argument):
+        if event == "call" and frame.f_code.co_name == "size":
+            calls.append(frame.f_code.co_name)
+            if len(calls) == 3:
+                raise KeyboardInterrupt
+
+    before = sys.gettrace(), sys.unraisablehook
+    sys.settrace(interrupt)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            drawn("z 28")
+    finally:
+        sys.settrace(before[0])
+    assert len(calls) == 3
+    assert sys.unraisablehook is before[1]
+    assert capfd.readouterr() == ("", "")
+    assert_same(drawn("z 28"), drawn("z 28"))
 
 
 def test_a_request_to_stop_that_arrives_below_gmsh_is_not_lost(monkeypatch, capfd):

@@ -243,6 +243,7 @@ def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "resumed", "two", "two.toml", "whole"]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("cluster", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_executors_are_bit_equal(case, request, tmp_path, cluster):
     """Points on a cluster are those computed here: tests of the executor, in the ordinary run too."""

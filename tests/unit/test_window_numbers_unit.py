@@ -179,6 +179,7 @@ def worker(wire, tmp_path, monkeypatch):
     return Worker(wire, tmp_path / "shapes")
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("text", "changes"),
     [

@@ -1182,6 +1182,7 @@ def test_a_fault_of_fegear_is_said_to_be_one_and_the_next_case_is_computed(compu
     heard.until(39, "done")
 
 
+@pytest.mark.dear
 def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
     made, heard = computing
     made.ask(Compute(40, Asked(TEXT.replace("weber-banaschek", "fe"), "c", str(tmp_path))))

@@ -12,7 +12,7 @@ from fegear.case.built.flank_modifications import FaceModifications, gear_face
 from fegear.case.built.loaded_pair import build_relief
 from fegear.case.built.pair_inputs import Flanks, gear_flanks, gear_name
 from fegear.case.built.shafts import check_heights, on_shafts
-from fegear.case.built.solid_influence import check_solid_gear
+from fegear.case.built.solid_influence import check_solid_gear, check_source
 from fegear.case.effects import WIDE_EFFECTS, EffectsPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
@@ -185,6 +185,7 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     for gear in (part.driver, part.driven):
         check_solid_gear(scene, gear)
+        check_source(scene, gear, f"pair.{name}.width", "slices" if part.width == "slices" else "solid")
     if part.normal_load(pair) is None:
         raise InputError(f"pair.{name}.load", "(not given)", "is needed to load the flanks", "give load or torque")
     try:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.tooth_influence import given_settings
+from fegear.case.built.tooth_influence import given_settings, planets_taken_alone, teeth_on_pins_differ
 from fegear.case.part import at
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from fegear.case.accuracy import AccuracyPart
     from fegear.case.reading import Scene
@@ -35,6 +35,8 @@ _APART = 0.35
 _SECONDS_OF_SLICES = 0.6
 #: How many times as long one on a web takes.
 _ON_A_WEB = 3.0
+#: And a ring whose rim is not held.
+_RIM_FREE = 1.8
 
 
 @dataclass(frozen=True)
@@ -80,21 +82,14 @@ def solid_settings_of(scene: Scene, name: str) -> SolidSettings:
 
 
 def _source(scene: Scene, name: str) -> Literal["solid", "slices"]:
-    """Solid or slices, as the gear's pairs and the table over its face have it.
+    """Solid or slices, as the gear's pairs have it; as the table over its face, where none of them is wide.
 
     Raises
     ------
     InputError
-        If they want both.
+        If its pairs want both.
     """
-    wanted: dict[str, Literal["solid", "slices"]] = {}
-    for key in flank_pairs(scene):
-        part = scene.case.pair[key]
-        if name in (part.driver, part.driven):
-            wanted[f"pair.{key}.width"] = "slices" if part.width == "slices" else "solid"
-    table = scene.case.stiffness
-    if table.face_positions is not None and table.gear in (None, name) and "stiffness" in scene.case.results:
-        wanted["stiffness.source"] = table.source
+    wanted = {f"pair.{key}.width": width for key, width in _widths(scene, name).items()}
     if len(set(wanted.values())) > 1:
         one = next(key for key, value in wanted.items() if value == "slices")
         other = next(key for key, value in wanted.items() if value == "solid")
@@ -102,26 +97,59 @@ def _source(scene: Scene, name: str) -> Literal["solid", "slices"]:
             one, '"slices"', f"contradicts {other}: gear {name} is solved once in a case, as a solid or in slices",
             "write the same for both, or ask for one of them in a case of its own",
         )  # fmt: skip
-    return next(iter(wanted.values()), table.source)
+    table = scene.case.stiffness
+    tabled = table.face_positions is not None and table.gear in (None, name)
+    usual = table.source if tabled or not _pairs_of(scene, name, flank_pairs(scene)) else "solid"
+    return next(iter(wanted.values()), usual)
+
+
+def _pairs_of(scene: Scene, name: str, pairs: Iterable[str]) -> list[str]:
+    """Those of some pairs that a gear is in."""
+    return [key for key in pairs if name in (scene.case.pair[key].driver, scene.case.pair[key].driven)]
+
+
+def _widths(scene: Scene, name: str) -> dict[str, Literal["solid", "slices"]]:
+    """As what a gear's pairs with a width have it solved, by the name of the pair."""
+    pairs = _pairs_of(scene, name, _wide_pairs(scene))
+    return {key: "slices" if scene.case.pair[key].width == "slices" else "solid" for key in pairs}
+
+
+def check_source(scene: Scene, name: str, key: str, source: str) -> None:
+    """Refuse a key that wants a gear solved in another way than it is.
+
+    Raises
+    ------
+    InputError
+    """
+    if source == _source(scene, name):
+        return
+    other = next((f"pair.{pair}.width" for pair in _widths(scene, name)), "stiffness.source")
+    raise InputError(
+        key, f'"{source}"', f"contradicts {other}: gear {name} is solved once in a case, as a solid or in slices",
+        "write the same for both, or ask for one of them in a case of its own",
+    )  # fmt: skip
 
 
 def flank_pairs(scene: Scene) -> tuple[str, ...]:
-    """The pairs that the case's results load with their width, if they have a load.
+    """The pairs with a load that may be loaded with their width.
 
     ``load-distribution`` is for every pair that is not plane by its key, other results for those with a width.
     """
-    if "load-distribution" in scene.case.results:
-        return tuple(key for key, part in scene.case.pair.items() if part.width != "plane")
-    return tuple(key for key in scene.wide_pairs if scene.case.pair[key].normal_load(scene.pairs[key]) is not None)
+    loaded = (key for key, pair in scene.pairs.items() if scene.case.pair[key].normal_load(pair) is not None)
+    return tuple(key for key in loaded if scene.case.pair[key].width != "plane")
+
+
+def _wide_pairs(scene: Scene) -> list[str]:
+    """Those of them that every result loads with their width."""
+    return [key for key in flank_pairs(scene) if key in scene.wide_pairs]
 
 
 def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
     """What the case asks of the solid influence functions of a gear."""
     accuracy, reach = scene.case.accuracy, 1
-    for key in flank_pairs(scene):
-        if name in (scene.case.pair[key].driver, scene.case.pair[key].driven):
-            # As far as two pairs of one mesh can stand apart.
-            reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
+    for key in _pairs_of(scene, name, flank_pairs(scene)):
+        # As far as two pairs of one mesh can stand apart.
+        reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
     return SolidGearToSolve(scene.gears[name], solid_settings_of(scene, name), accuracy.tolerance, reach, name)
 
 
@@ -143,22 +171,7 @@ def check_solid_gear(scene: Scene, name: str) -> None:
             f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
             'solve the gear as a solid: write "solid" for "slices"',
         )  # fmt: skip
-    if scene.gears[name].support is not None:
-        raise InputError(
-            f"gear.{name}.rim_support", "pins or a spline", "is known to plane gears alone so far",
-            'leave the pair\'s width = "solid" and helix angles out, or write rim_support = { kind = "held" }',
-        )  # fmt: skip
-    if (body := scene.gears[name].body) is not None and not body.even:
-        meshes = [(key, scene.case.pair[key]) for key in flank_pairs(scene)]
-        driven = next((key for key, one in meshes if one.driven == name), None)
-        drives = next((key for key, one in meshes if one.driver == name), None)
-        if driven is not None and drives is not None:
-            raise InputError(
-                f"gear.{name}.body", "off the middle of the face",
-                f"counts toward end II, which pairs {driven} and {drives} have at opposite ends of gear {name}: "
-                "it is driven in one and drives in the other",
-                "load each pair in a case of its own, web_offset and hub_offset with the other sign in one of them",
-            )  # fmt: skip
+    check_ends(scene, name, _wide_pairs(scene))
     if part.face_width is None:
         raise InputError(
             f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",
@@ -173,6 +186,28 @@ def check_solid_gear(scene: Scene, name: str) -> None:
 
     with _keys_of_the_case(name):
         check_solid(*_in_modules(scene.gears[name]), solid_settings_of(scene, name), None, 0)
+
+
+def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
+    """Refuse a web or hub off the middle of a gear that is driven in one of some loaded pairs and drives in another.
+
+    Raises
+    ------
+    InputError
+    """
+    body = scene.gears[name].body
+    if body is None or body.even:
+        return
+    meshes = [(key, scene.case.pair[key]) for key in pairs]
+    driven = next((key for key, one in meshes if one.driven == name), None)
+    drives = next((key for key, one in meshes if one.driver == name), None)
+    if driven is not None and drives is not None:
+        raise InputError(
+            f"gear.{name}.body", "off the middle of the face",
+            f"counts toward end II, which pairs {driven} and {drives} have at opposite ends of gear {name}: "
+            "it is driven in one and drives in the other",
+            "load each pair in a case of its own, web_offset and hub_offset with the other sign in one of them",
+        )  # fmt: skip
 
 
 def _in_modules(gear: Gear) -> tuple[InvoluteTooth, float, float, float]:
@@ -208,13 +243,14 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
             asked.settings,
             reach=asked.reach,
             body=gear.body_in_modules,
+            support=gear.support_in_modules,
             cache=cache,
         )
     return found.with_error(cache)
 
 
 def seconds_of_solid_gear(
-    settings: SolidSettings, width: float, *, twisted: bool = True, on_a_web: bool = False
+    settings: SolidSettings, width: float, *, twisted: bool = True, on_a_web: bool = False, rim_free: bool = False
 ) -> float:
     """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
     from fegear.fem.solid.settings import SolidSettings
@@ -223,7 +259,20 @@ def seconds_of_solid_gear(
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
     by_width = _BY_WIDTH * width**_WIDER * (1.0 if twisted or on_a_web else _APART)
     alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + by_width
-    return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else 1.0)
+    return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else _RIM_FREE if rim_free else 1.0)
+
+
+def solid_support_remarks(name: str, influence: SolidInfluence) -> tuple[str, ...]:
+    """How the teeth of a ring on pins differ, and what a ring that is not held all round leaves out."""
+    support, teeth = influence.fine.support, influence.fine.pins
+    if support is None:
+        return ()
+    if teeth is None:
+        return (planets_taken_alone(name),)
+    spread = teeth_on_pins_differ(
+        name, support.pins, "at half height in the middle of the face", teeth.deflection, teeth.root_tension
+    )
+    return spread, planets_taken_alone(name)
 
 
 def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
 
@@ -42,8 +43,7 @@ def needed_reach(scene: Scene, name: str) -> int:
             # A corner in contact before and after the path adds a pair at either end.
             extra = 1 if scene.case.effects.corner_contact else 0
             # A root's stress is followed from a base pitch before contact to one after it.
-            extra += 1 if "root-stress-history" in scene.case.results else 0
-            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) - 1 + extra, scene.gears[name].teeth // 2 - 1))
+            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) + extra, scene.gears[name].teeth // 2 - 1))
     return reach
 
 
@@ -155,22 +155,31 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
     support = influence.gear.support
     if support is None:
         return ()
-    apart = (
-        f"Gear {name}: its rim gives way as a whole; planets of a set are each taken alone with the ring, and what one "
-        "planet's load does to the rim below another is neglected."
-    )
+    apart = planets_taken_alone(name)
     if influence.fine.pins is None:
         return (apart,)
     low, high = influence.gear.involute_radii
     each = influence.over_the_teeth([0.5 * (low + high)], [influence.reference_half_width])
     c, tension = each["c_self"][:, 0], each["root_tension"][:, 0]
-    spread = (
-        f"Gear {name}: on {support.pins} pins {c.size} teeth in a row differ. Loaded at half height, c_self is "
+    return teeth_on_pins_differ(name, support.pins, "at half height", c, tension), apart
+
+
+def teeth_on_pins_differ(name: str, pins: int, where: str, c: Array, tension: Array) -> str:
+    """How far c_self and root tension of teeth on pins, shape (T,), depart from their means."""
+    return (
+        f"Gear {name}: on {pins} pins {c.size} teeth in a row differ. Loaded {where}, c_self is "
         f"{c.min() / c.mean() - 1.0:+.1%} to {c.max() / c.mean() - 1.0:+.1%} of its mean over the teeth, root tension "
         f"{tension.min() / tension.mean() - 1.0:+.1%} to {tension.max() / tension.mean() - 1.0:+.1%}. Tables, pairs "
         "and sets take the mean compliance and stress of all teeth."
     )
-    return spread, apart
+
+
+def planets_taken_alone(name: str) -> str:
+    """What a ring that is not held all round leaves out."""
+    return (
+        f"Gear {name}: its rim deflects as a whole; planets of a set are each taken alone with the ring, and what one "
+        "planet's load does to the rim below another is neglected."
+    )
 
 
 def _tolerance_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:

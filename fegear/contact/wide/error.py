@@ -51,11 +51,7 @@ class FlankError:
     peak_to_peak: Array = shown("um", "over the whole base pitch", name="te_peak_to_peak")
     face_load_factor: Array = shown("", "largest over mean load per face width", name="K_Hbeta")
     largest_line_load: Array = shown("N/mm", "on one contact line of a module or more, clear of tips and form circles")
-    largest_pressure: Array = shown(
-        "MPa",
-        "smooth flanks, on contact lines of a module or more, clear of tips and form circles",
-        name="largest_hertz_pressure",
-    )
+    largest_pressure: Array = shown("MPa", "smooth flanks", name="largest_hertz_pressure")
 
 
 def flank_error(

@@ -120,7 +120,8 @@ class LoadedFlanks(ReadOnlyArrays):
         before, behind = (slice(None), slice(None, -1)), (slice(None), slice(1, None))
         for inner, outer in ((before, behind), (behind, before)):
             at = same & self.smooth[inner] & ~self.smooth[outer] & (apart[outer] < 0.0)
-            share = np.where(at, apart[inner] / np.where(at, apart[inner] - apart[outer], 1.0), 0.0)
+            near, far = (np.where(at, apart[one], end) for one, end in ((inner, 0.0), (outer, -1.0)))
+            share = near / (near - far)
             load, factor = (
                 one[inner] + (share[..., None] if one.ndim > 2 else share) * (one[outer] - one[inner])
                 for one in (self.line_load, self.known.width_factor)

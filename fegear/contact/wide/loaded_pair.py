@@ -11,10 +11,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, first_of_largest
 from fegear.contact.loaded_teeth import (
     ErrorOverPitch,
     FlankLoad,
+    Largest,
     LoadHistory,
     Neglected,
     RootStressInMesh,
@@ -129,6 +130,25 @@ class LoadedWidePair:
         """Numbers of the whole base pitch under every load."""
         return self.over.stated
 
+    @cached_property
+    def largest(self) -> Largest:
+        """Largest share and pressure at the nominal load, for every result that states them.
+
+        The share is that of the roll positions of `found`; pressures stand between these, and are looked for at those
+        of the whole base pitch.
+        """
+        i, lines = self.at, self.over.found.lines
+        inner = self.over.found.smooth_pressure[:, :, i]
+        p, s = np.unravel_index(int(first_of_largest(inner)), inner.shape)
+        place = (
+            "on contact lines of a module or more, clear of tips and form circles, "
+            f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
+        )
+        return Largest(
+            float(self.found.share[:, :, i].max()), float(self.error.share[:, :, i].max()), float(inner.max()),
+            float(self.error.largest_pressure[i]), place,
+        )  # fmt: skip
+
     @property
     def places_along(self) -> Array:
         """Places along the face at which root stress is looked for [m], both ends among them."""
@@ -140,7 +160,7 @@ class LoadedWidePair:
         """See `LoadedTeeth`; errors are the change by the coarser solution, and what slices miss."""
         from fegear.contact.wide.pair_history import flank_pair_history, history_error
 
-        coarse, i, missed = self.error.coarse, self.at, self._missed
+        coarse, missed = self.error.coarse, self._missed
         found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines, self.found.load))
         again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines, coarse.load))
         error = history_error(found, again) + missed * found.load * (1.0 - found.share)
@@ -149,10 +169,7 @@ class LoadedWidePair:
             if self.pair.driver.helix_angle
             else ""
         )
-        # The largest of these roll positions, in the place of that of the whole base pitch.
-        missed_by_positions = self.stated.largest_pressure[i] - found.hertz_pressure[:, i].max()
-        pressure_error = float(self.error.largest_pressure[i] + missed_by_positions)
-        return LoadHistory(found, i, error, None, where, found.x.size, pressure_error)
+        return LoadHistory(found, self.at, error, None, where, found.x.size, self.largest)
 
     def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
         """See `LoadedTeeth`; numbers of the base pitch are of more roll positions than the curves, where these need."""
@@ -172,9 +189,8 @@ class LoadedWidePair:
         # What is stated of the whole base pitch is stated once.
         shift = replace(shift, mean=float(self.error.mean[i]), peak_to_peak=float(self.error.peak_to_peak[i]))
         uneven = bool(self.gaps.driver_spacing.size or self.gaps.driven_spacing.size)
-        te_mean, peak_to_peak, effective, local = (
-            np.array([getattr(te, key) for te in each])
-            for key in ("mean", "peak_to_peak", "effective_error", "average_stiffness")
+        effective, local = (
+            np.array([getattr(te, key) for te in each]) for key in ("effective_error", "average_stiffness")
         )
         return ErrorOverPitch(
             self.pair,
@@ -189,8 +205,8 @@ class LoadedWidePair:
             mesh_stiffness=np.stack([te.secant for te in curves], axis=1),
             pairs_in_contact=(found.pair_load > 0.0).sum(axis=0),
             local_stiffness=np.stack([te.local for te in curves], axis=1),
-            te_mean=te_mean,
-            te_peak_to_peak=peak_to_peak,
+            te_mean=self.stated.mean,
+            te_peak_to_peak=self.stated.peak_to_peak,
             te_effective=effective,
             local_stiffness_mean=local,
             mesh_stiffness_mean=each[i].mean_secant,

@@ -53,6 +53,10 @@ def equilibrium(linear: Array, rows: Array, stiffness: Array, separation: Array,
         stiffness, separation = stiffness[..., None], separation[..., None]
     count, n = stiffness.shape[0], linear.shape[0]
     loads = np.broadcast_to(load, (count, n))
+    if count > 1 and all((one == one[0]).all() for one in (stiffness, separation, loads)):
+        # stiffness that is given does not change over the cycle: each position is the first
+        found = equilibrium(linear, rows, stiffness[:1], separation[:1], loads[:1])
+        return np.broadcast_to(found, (count, n)).copy()
     size = np.max(np.abs(loads), axis=1)
     guard = guarded(linear, stiffness)
     # from where all springs bear, as far as they carry anything

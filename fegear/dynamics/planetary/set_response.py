@@ -157,19 +157,21 @@ class ForcedResponse:
         return np.asarray(np.abs(2.0 * np.real(np.einsum("tl,wlan->wtan", turn, self.dynamic))).max(axis=1))
 
     @property
-    @shows("N", "largest dynamic force in a mesh with the sun, over the mean force", label="dynamic force at the sun")
+    @shows("N", "largest dynamic force in a mesh with the sun, above the mean force", label="dynamic force at the sun")
     def sun_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force[:, 0].max(axis=1))
 
     @property
-    @shows("N", "largest dynamic force in a mesh with the ring, over the mean force", label="dynamic force at the ring")
+    @shows(
+        "N", "largest dynamic force in a mesh with the ring, above the mean force", label="dynamic force at the ring"
+    )
     def ring_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force[:, 1].max(axis=1))
 
     @property
-    @shows("N", "largest dynamic force in a mesh, over the mean force")
+    @shows("N", "largest dynamic force in a mesh, above the mean force")
     def largest_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force.max(axis=(1, 2)))

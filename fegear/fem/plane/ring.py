@@ -71,7 +71,7 @@ def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, 
     return found[0], found[1]
 
 
-#: Motion of a side, shape (m,), in which a ring that nothing holds turns, and moves: harmonics 0 and 1.
+#: Motions of a side, shape (m,) or (m, d), in which a ring that nothing holds turns, and moves: harmonics 0 and 1.
 RigidSides = tuple[NDArray[np.inexact], NDArray[np.inexact]]
 #: Inverses of this many complex numbers are held at once while the harmonics are summed.
 _BATCH = 2_000_000
@@ -339,8 +339,7 @@ def coupling_by_harmonics(condensed: Array, z: int, reach: int, rigid: RigidSide
         e = np.exp(1j * theta)[:, None, None]
         stiffness = diagonal + e * ahead + np.conj(e) * ahead.T
         for i, motion in () if rigid is None or first else enumerate(rigid):
-            lent = motion / np.linalg.norm(motion)
-            stiffness[i] += diagonal.trace() / m * np.multiply.outer(lent, lent.conj())
+            stiffness[i] += _lent(motion, diagonal.trace() / m)
         inverse = np.linalg.inv(stiffness)
         # n = 0 and n = z/2 stand alone, every other harmonic stands for its conjugate as well
         weight = np.where((n == 0) | (2 * n == z), 1.0, 2.0) / z
@@ -348,6 +347,23 @@ def coupling_by_harmonics(condensed: Array, z: int, reach: int, rigid: RigidSide
             phase = weight * np.exp(1j * k * theta)
             total[k] += np.tensordot(phase.real, inverse.real, 1) - np.tensordot(phase.imag, inverse.imag, 1)
     return {k: (total[k] if k >= 0 else total[-k].T) for k in range(-reach, reach + 1)}
+
+
+def _lent(motion: NDArray[np.inexact], size: float) -> NDArray[np.inexact]:
+    """A stiffness against rigid motions of a side, the same against each, shape (m, m)."""
+    if motion.ndim == 1:
+        lent = motion / np.linalg.norm(motion)
+        return np.asarray(size * np.multiply.outer(lent, lent.conj()))
+    q = np.linalg.qr(motion)[0]
+    return np.asarray(size * (q @ q.conj().T))
+
+
+def harmonic_stiffness(condensed: Array, n: int, z: int, rigid: RigidSides | None) -> NDArray[np.complex128]:
+    """K_n of one harmonic, 0 and 1 with the stiffness that rigid motions are lent, shape (m, m)."""
+    m, e = condensed.shape[0] // 2, np.exp(2.0j * np.pi * n / z)
+    diagonal, ahead = condensed[:m, :m] + condensed[m:, m:], condensed[:m, m:]
+    found = np.asarray(diagonal + e * ahead + np.conj(e) * ahead.T)
+    return found if n > 1 or rigid is None else np.asarray(found + _lent(rigid[n], diagonal.trace() / m))
 
 
 def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Array]:

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 from skfem import (
     Basis,
@@ -39,6 +41,7 @@ from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.geometry.gear import Plane
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.outline import turned
+from fegear.geometry.rim_support import RimSupport
 
 #: Edges of tooth 0, as a share of those that the gear was solved with; those of other teeth are longer by as much, but
 #: no longer than those of this level.
@@ -81,6 +84,7 @@ def solve_alone(
     settings: MeshSettings,
     radius: Array,
     half_width: float,
+    support: RimSupport | None = None,
 ) -> WholeGearAlone:
     """Mesh, assemble, condense and solve the whole gear.
 
@@ -97,6 +101,8 @@ def solve_alone(
         Of contacts that lie on the flank with all of their width [modules].
     half_width : float
         [modules].
+    support : RimSupport, optional
+        Of the outer circle of an internal gear [modules]; without one it is held, as a bore is.
     """
     arc = _flank_arc(tooth, radius)
     mesh = _whole_gear(tooth, bore_radius, settings.refined(_FINER), [(s, half_width) for s in arc])
@@ -106,8 +112,11 @@ def solve_alone(
     own = [ring.pressure(tooth, s, half_width) for s in arc]
     at = {k: [ring.at_flank(k, r) for r in radius] for k in (-1, 0, 1)}
     loads = np.stack([*own, *at[0]], axis=1)
-    held = ring.dofs.get_facet_dofs(np.unique(ring.facets("bore"))).all()
-    moved = solve(*condense(stiffness, loads, x=np.zeros_like(loads), D=held), solver=_factored)
+    if support is None:
+        held = ring.dofs.get_facet_dofs(np.unique(ring.facets("bore"))).all()
+        moved = solve(*condense(stiffness, loads, x=np.zeros_like(loads), D=held), solver=_factored)
+    else:
+        moved = _on_average(stiffness, ring.on_average(support), loads)
     by_pressure, by_point = np.hsplit(moved, 2)
     modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
     place, tension = ring.along("fillet:0", by_pressure, modulus)
@@ -126,6 +135,17 @@ def solve_alone(
 def _factored(matrix: Any, right: Array) -> Array:
     options = {"SymmetricMode": True}
     return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options).solve(right)
+
+
+def _on_average(stiffness: Any, held: Array, loads: Array) -> Array:
+    """Displacements whose means `held`, shape (N, C), are none.
+
+    A stiffness that is lent to these means makes the matrix regular and vanishes with them; it is as large as others.
+    """
+    lent = csc_array(held * np.sqrt(stiffness.diagonal().mean()))
+    both = _factored(csc_array(stiffness) + lent @ lent.T, np.hstack([loads, held]))
+    free, by_support = np.hsplit(both, [loads.shape[1]])
+    return np.asarray(free - by_support @ np.linalg.solve(held.T @ by_support, held.T @ free))
 
 
 def _flank_arc(tooth: InvoluteTooth, radius: Array) -> Array:
@@ -204,9 +224,21 @@ class _Edges:
 
     def work(self, weight: Array) -> Array:
         """Nodal forces that press against the material with weights at the points, shape (m, q)."""
+        return -self.along(self.normal, weight)
+
+    def along(self, way: Array, weight: Array) -> Array:
+        """Nodal forces along a way at each point, shape (2, m, q), with weights there, shape (m, q)."""
         share = weight / self.basis.dx
-        pressed = LinearForm(lambda v, w: -w.share * dot(w.normal, v))
-        return np.asarray(asm(pressed, self.basis, share=share, normal=self.normal))
+        pushed = LinearForm(lambda v, w: w.share * dot(w.way, v))
+        return np.asarray(asm(pushed, self.basis, share=share, way=way))
+
+
+def _wrapped(angle: Array) -> Array:
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def _angle_from(start: float, place: Array) -> Array:
+    return _wrapped(np.arctan2(place[1], place[0]) - start)
 
 
 class _Ring:
@@ -267,6 +299,38 @@ class _Ring:
                 share = 0.5 * (high - low) * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
                 forces += self._pressed(facet, np.interp(arc + half_width * np.sin(theta), along, t), share)
         return forces
+
+    def on_average(self, support: RimSupport) -> Array:
+        """Weights of the means that a rim's support holds, shape (N, C): over each pin, or over the whole circle."""
+        facets = self.facets("bore")
+        if not support.pins:  # neither shift nor turn on average
+            held = np.zeros((self.dofs.N, 3))
+            for edges in self.edges(facets, 0.5 + 0.5 * _GAUSS[0], 0.5 * _GAUSS[1]):
+                x, y = edges.place
+                for c, field in enumerate(([1.0, 0.0], [0.0, 1.0], [-y, x])):
+                    way = np.stack([np.broadcast_to(one, x.shape) for one in field])
+                    held[:, c] += edges.along(way, edges.length * 0.5 * _GAUSS[1])
+            return held
+        ends = self._grid.p[:, self._grid.facets[:, facets]] + self._elements.tip
+        radius, middles = float(np.hypot(*ends[:, 0, 0])), np.arctan2(ends[1].mean(axis=0), ends[0].mean(axis=0))
+        half, held = 0.5 * support.width / radius, np.zeros((self.dofs.N, 2 * support.pins))
+        longest = float(np.hypot(*np.diff(ends, axis=1)).max()) / radius
+        # the centre line stands along y, and the loaded flank faces x
+        for pin in range(support.pins):
+            at = 0.5 * np.pi - support.angle - 2.0 * np.pi * pin / support.pins
+            near = np.abs(_wrapped(middles - at)) < half + longest
+            for facet in facets[near]:
+                t, along = self._finely(facet, partial(_angle_from, at))
+                low, high = np.clip(along[[0, -1]], -half, half)
+                if low < high:
+                    angle = 0.5 * (low + high) + 0.5 * (high - low) * _GAUSS[0]
+                    share = 0.5 * (high - low) * _GAUSS[1] / (2.0 * half)
+                    (edges,) = self.edges(np.array([facet]), np.interp(angle, along, t), np.ones(angle.size))
+                    for c in range(2):
+                        way = np.zeros((2, 1, angle.size))
+                        way[c] = 1.0
+                        held[:, 2 * pin + c] += edges.along(way, share[None])
+        return held
 
     def at_flank(self, number: int, radius: float) -> Array:
         """Nodal forces of a unit point load on the flank of a tooth: they read its deflection there, too."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -252,6 +253,27 @@ def _initialize(gmsh: Any) -> None:
         handlers.PyOS_setsig(number, ctypes.c_void_p(handler))
 
 
+@contextmanager
+def _heard_below(stopped: list[BaseException]) -> Iterator[None]:
+    """Keep what is raised in a function that a library calls: a request to stop, which ctypes would print and lose.
+
+    The library reads a size of zero for it, so that what it draws from there on is worth nothing.
+    """
+    before = sys.unraisablehook
+
+    def hear(said: sys.UnraisableHookArgs) -> None:
+        if "ctypes callback" in (said.err_msg or "") and said.exc_value is not None:
+            stopped.append(said.exc_value)
+        else:
+            before(said)
+
+    sys.unraisablehook = hear
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+
+
 def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes.
 
@@ -264,15 +286,11 @@ def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[n
     stopped: list[BaseException] = []
 
     def size(_dim: int, _tag: int, x: float, y: float, _z: float, _lc: float) -> float:
-        # What is raised here, a request to stop, would be printed below gmsh and be lost, and the size would be zero.
-        try:
-            if not stopped:
-                return float((length + (growth or 0.0) * np.sqrt((x_middle - x) ** 2 + (y_middle - y) ** 2)).min())
-        except BaseException as stop:  # noqa: BLE001 - raised again as soon as gmsh has returned
-            stopped.append(stop)
-        return _UNWANTED
+        if stopped:
+            return _UNWANTED
+        return float((length + (growth or 0.0) * np.sqrt((x_middle - x) ** 2 + (y_middle - y) ** 2)).min())
 
-    with gmsh_session("fegear sector") as gmsh:
+    with gmsh_session("fegear sector") as gmsh, _heard_below(stopped):
         try:
             geo = gmsh.model.geo
             for tag, (x, y) in enumerate(drawn.T, start=1):

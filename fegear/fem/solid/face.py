@@ -248,6 +248,7 @@ def solid_unknowns(
     plane_strain: bool = False,
     all_waves: bool = False,
     teeth: tuple[FaceFunctions, float] | None = None,
+    bore_held: bool = True,
 ) -> Unknowns:
     """Unknowns of the solid sector, its bore held.
 
@@ -264,6 +265,8 @@ def solid_unknowns(
         Every node has all functions along the face, as a body without a loaded flank wants them.
     teeth : (FaceFunctions, float), optional
         Functions, behind those of the face, that nodes beyond a radius [modules] have in their place.
+    bore_held : bool
+        Not the outer circle of a ring that has another support.
 
     Returns
     -------
@@ -287,7 +290,7 @@ def solid_unknowns(
     free = np.zeros(face.count, dtype=bool)
     if held is not None:
         free[face.vanishing_on(*held)] = True
-    has[bore.ravel()] &= free
+    has[bore.ravel()] &= free | (not bore_held)
     if teeth is not None:
         beyond = np.repeat(np.hypot(*section.places) > teeth[1], 3)[:, None]
         own = np.arange(teeth[0].count) < np.repeat(function_counts(section, teeth[0], settings), 3)[:, None]

@@ -24,15 +24,20 @@ from fegear.fem.solid.bands import Bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
+from fegear.fem.solid.pinned_rim import TeethOnPins
 from fegear.fem.solid.settings import SolidSettings, check_solid, whole
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rim_support import RimSupport
 
 #: What a solution consists of, for those that keep it.
-_KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody)
+_KINDS = (
+    SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody, RimSupport,
+    TeethOnPins,
+)  # fmt: skip
 #: Where errors are looked for: contact lines through these shares of the flank's length in the middle of the face,
 #: where they stay off its ends by a share of it; root tension of what stands above another share.
 _UP, _FOOT, _ABOVE_FOOT = (0.12, 0.3, 0.5, 0.7, 0.88), 0.07, 0.35
@@ -236,6 +241,7 @@ def solid_influence(
     reach: int = 1,
     held: tuple[float, float] | None = None,
     body: GearBody | None = None,
+    support: RimSupport | None = None,
     estimate_error: bool = True,
     cache: SolutionCache | None = None,
 ) -> SolidInfluence:
@@ -260,6 +266,8 @@ def solid_influence(
         Part of the face, between -width / 2 and width / 2, on which the bore is held [modules]; by default all of it.
     body : GearBody, optional
         Rim, web and hub, whose bore is held over the hub [modules]; by default a disc as wide as the face.
+    support : RimSupport, optional
+        Of a ring gear's rim, pins or a spline; by default its whole outer cylinder is held.
     estimate_error : bool
         Whether to spend a part again on a coarser solution.
     cache : SolutionCache, optional
@@ -285,8 +293,19 @@ def solid_influence(
         return known_or_solved(
             cache or SolutionCache(),
             section,
-            ("solid", tau, width, poisson_ratio, bore_radius, chosen, reach, held, body),
-            lambda: by(section, tau, width, poisson_ratio, bore_radius, chosen, reach=reach, held=held, body=body),
+            ("solid", tau, width, poisson_ratio, bore_radius, chosen, reach, held, body, support),
+            lambda: by(
+                section,
+                tau,
+                width,
+                poisson_ratio,
+                bore_radius,
+                chosen,
+                reach=reach,
+                held=held,
+                body=body,
+                support=support,
+            ),
             _KINDS,
         )
 

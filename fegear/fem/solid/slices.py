@@ -34,6 +34,7 @@ from fegear.fem.solid.slice_laws import LAWS, SliceLaws, Spread
 from fegear.fem.solid.solution import SolidSolution, solve_solid
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rim_support import RimSupport
 
 #: Functions along the face of the plane section, all but the constant of which stay at rest; and its width.
 _PLANE_DEGREE, _PLANE_WIDTH = 3, 1.0
@@ -84,6 +85,7 @@ def solve_slices(
     reach: int = 1,
     held: tuple[float, float] | None = None,
     body: GearBody | None = None,
+    support: RimSupport | None = None,
     laws: SliceLaws = LAWS,
     plane: SolidSolution | None = None,
 ) -> SolidSolution:
@@ -93,8 +95,8 @@ def solve_slices(
     ----------
     tooth, tau, width, poisson_ratio, bore_radius, settings, reach
         As of `solve_solid`.
-    held, body : None
-        A bore held on a part of the face, and web and hub, are not known to slices.
+    held, body, support : None
+        A bore held on a part of the face, web and hub, and the supports of a ring's rim are not known to slices.
     laws : SliceLaws
         By default those fitted to solid gears.
     plane : SolidSolution, optional
@@ -108,11 +110,16 @@ def solve_slices(
     Raises
     ------
     RangeError
-        If the bore is held on a part of the face, or the gear is no disc.
+        If the bore is held on a part of the face, the gear is no disc, or a rim is not held.
     """
     if body is not None:
         raise RangeError(
             "body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
+            'solve it as a solid: width = "solid"',
+        )  # fmt: skip
+    if support is not None:
+        raise RangeError(
+            "rim_support", "pins or a spline", "is not known to slices, whose laws were fitted to external gears",
             'solve it as a solid: width = "solid"',
         )  # fmt: skip
     if held is not None:

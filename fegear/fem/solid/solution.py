@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,19 +22,24 @@ from fegear.fem.plane.root_stress import extreme, search_end
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
-from fegear.fem.solid.bands import Bands, loads_of
+from fegear.fem.solid.bands import Bands, bands, loads_of
 from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions, JoinedFunctions, face_functions, own_of_teeth, solid_unknowns
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
 from fegear.fem.solid.flank_body import TwistedFlank
+from fegear.fem.solid.pinned_rim import TeethOnPins, pinned_response, pins_on
+from fegear.fem.solid.rim import free_ring, solid_rim, splined_response
 from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rim_support import RimSupport
 
 #: How far below the edge of a pressed band root tension begins [modules].
 _CLEARANCE = 0.25
+#: Places along the face at which the root stress of teeth on pins is compared.
+_PLACES = 17
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
@@ -70,6 +75,11 @@ class SolidSolution(TwistedFlank):
         K: neighbours -K..K are known; size of the sector's system.
     settings : SolidSettings
     seconds : mapping of str to float
+    support : RimSupport or None
+        Of a ring gear's rim; None of an outer cylinder that is held, and of external gears. On pins compliance and
+        displacement are the mean over all teeth.
+    pins : TeethOnPins or None
+        How the teeth differ.
     """
 
     tooth: InvoluteTooth
@@ -89,6 +99,8 @@ class SolidSolution(TwistedFlank):
     unknowns: int
     settings: SolidSettings
     seconds: Mapping[str, float]
+    support: RimSupport | None = None
+    pins: TeethOnPins | None = None
 
     def deflection(self, k: int, watched: Bands, pressed: Bands) -> Array:
         """c_k: mean approach of bands on tooth k under a unit force on bands of tooth 0, shape (P, Q) [1/(E module)].
@@ -203,6 +215,8 @@ def solve_solid(
     mesh: SectorMesh | None = None,
     sector_teeth: int = 0,
     plane_strain: bool = False,
+    support: RimSupport | None = None,
+    compared: Bands | None = None,
 ) -> SolidSolution:
     """Solve one solid ring for all that can be asked of its teeth.
 
@@ -231,22 +245,35 @@ def solve_solid(
         Solve a row of so many teeth with free sides, loaded in the middle, instead of the ring.
     plane_strain : bool
         Nothing moves along the axis: a check, which without a twist is the plane problem.
+    support : RimSupport, optional
+        Of a ring gear's rim, pins or a spline; by default its whole outer cylinder is held.
+    compared : Bands, optional
+        One band, under which the teeth of a ring on pins are compared; by default one at half height in the middle of
+        the face.
 
     Returns
     -------
     SolidSolution
+
+    Raises
+    ------
+    RangeError
+        If a support is asked for that a whole ring alone can have.
     """
     settings = settings or SolidSettings()
+    if support is not None:
+        _check_support(support, tooth, alone=held is None and body is None and not sector_teeth)
     with one_thread():
         return _solve(
-            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, body, mesh, sector_teeth, plane_strain
-        )
+            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, body, mesh, sector_teeth,
+            plane_strain, support, compared,
+        )  # fmt: skip
 
 
 def _solve(
     tooth: InvoluteTooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
     held: tuple[float, float] | None, body: GearBody | None, mesh: SectorMesh | None, sector_teeth: int,
-    plane_strain: bool,
+    plane_strain: bool, support: RimSupport | None, compared: Bands | None,
 ) -> SolidSolution:  # fmt: skip
     started = time.perf_counter()
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
@@ -260,7 +287,13 @@ def _solve(
     own = face_functions(width, settings.degree(width)) if math.isfinite(beyond) else face
     joined, columns = (face, slice(None)) if own is face else (JoinedFunctions(face, own), slice(face.count, None))
     known = solid_unknowns(
-        section, face, settings, held, plane_strain=plane_strain, teeth=None if own is face else (own, beyond)
+        section,
+        face,
+        settings,
+        held,
+        plane_strain=plane_strain,
+        teeth=None if own is face else (own, beyond),
+        bore_held=support is None,
     )
     flank = section_flank(mesh, section, tooth)
     fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
@@ -269,41 +302,115 @@ def _solve(
     sides = [(3 * nodes[:, None] + every).ravel() for nodes in (section.side_a, section.side_b)]
     ports = 3 * flank_nodes(section)
     seen = [(3 * fillet.nodes[:, None] + every).ravel() for fillet in fillets.values()]
-    inner = np.setdiff1d(np.concatenate([ports, *seen]), np.concatenate(sides))
+    counts = (known.number[::3] >= 0).sum(axis=1)
+    rim = None if support is None else solid_rim(section, face, counts, plane_strain=plane_strain)
+    pins = pins_on(section, face, counts, support, tooth.teeth) if support is not None and support.pins else None
+    band = _half_height(tooth, flank, own, settings, tau) if compared is None else compared
+    reference = loads_of(band, flank, own)[:, 0] if pins is not None else np.zeros(0)
+    outer = np.zeros(0, np.int64) if rim is None else (3 * section.nodes_of("bore")[:, None] + every).ravel()
+    inner = np.setdiff1d(np.concatenate([ports, *seen, outer]), np.concatenate(sides))
     on_flank = known.number[ports] >= 0
     size = int(on_flank.sum())
     compliance = {k: np.zeros((size, size)) for k in range(-reach, reach + 1)}
     local = {(k, side): np.zeros((part.size, own.count, size))
              for k in compliance for side, part in zip(_FILLETS, seen, strict=True)}  # fmt: skip
+    teeth = 1 if pins is None else pins.different
+    each = {side: np.zeros((part.size, own.count, teeth)) for side, part in zip(_FILLETS, seen, strict=True)}
+    approach = np.zeros(teeth)
     seconds = {"section": integrated - started, "condensation": 0.0, "ring": 0.0, "influence": 0.0}
     symmetric = tau == 0.0 and body is None and held is None
     for alone in known.split(_mirrored(section, face)) if symmetric else (known,):
         begun = time.perf_counter()
         condensed = condense_solid(section, joined, alone, np.concatenate([*sides, inner]))
-        ring = closed_ring(
-            condensed, alone.of(sides[0]).size, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=begun
-        )
-        closed = time.perf_counter()
-        loaded = alone.of(ports)
+        joint, loaded = alone.of(sides[0]).size, alone.of(ports)
+        watch = np.concatenate([loaded, *(alone.of(part) for part in seen)])
         mine = np.flatnonzero((alone.number[ports] >= 0)[on_flank])
-        for k, u in ring.respond(loaded, np.concatenate([loaded, *(alone.of(part) for part in seen)])).items():
+        apart = None
+        if rim is None:
+            ring = closed_ring(condensed, joint, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=begun)
+            response = ring.respond(loaded, watch)
+        else:
+            free = free_ring(condensed, joint, rim, alone, tooth.teeth, reach, begun)
+            ring = free.ring
+            if pins is None:
+                response = splined_response(free, loaded, watch)
+            else:
+                load = reference[mine]
+                response, apart = pinned_response(free, pins, alone, loaded, watch, load)
+                approach += apart[:, : loaded.size] @ load
+        for k, u in response.items():
             compliance[k][np.ix_(mine, mine)] = u[: loaded.size]
             row = loaded.size
             for side, part in zip(_FILLETS, seen, strict=True):
                 node, function = np.nonzero(alone.number[part][:, columns] >= 0)
                 local[k, side][node[:, None], function[:, None], mine] = u[row : row + node.size]
+                if k == 0 and apart is not None:
+                    each[side][node, function] = apart[:, row : row + node.size].T
                 row += node.size
-        for what, spent in {**ring.seconds, "influence": time.perf_counter() - closed}.items():
+        after = time.perf_counter() - begun - sum(ring.seconds.values())
+        for what, spent in {**ring.seconds, "influence": after}.items():
             seconds[what] += spent
-    displacement: dict[tuple[int, Side], Array] = {}
-    for (k, side), moved in local.items():
-        axes = section.axes[fillets[side].nodes]
+
+    def in_space(side: Side, moved: Array) -> Array:
         of_nodes = moved.reshape(-1, 3, *moved.shape[1:])
-        displacement[k, side] = np.einsum("ncd,ndkr->nckr", axes, of_nodes, optimize=True)
-    return SolidSolution(
+        return np.asarray(np.einsum("ncd,ndkr->nckr", section.axes[fillets[side].nodes], of_nodes, optimize=True))
+
+    displacement = {(k, side): in_space(side, moved) for (k, side), moved in local.items()}
+    found = SolidSolution(
         tooth, tau, width, bore_radius, held, body, nu, plane_strain, own, flank, compliance, fillets, displacement,
-        reach, known.size, settings, seconds,
+        reach, known.size, settings, seconds, support,
     )  # fmt: skip
+    if pins is None:
+        return found
+    moved = {side: in_space(side, apart) for side, apart in each.items()}
+    return replace(found, pins=_teeth_on_pins(found, band, reference, approach, moved))
+
+
+def _teeth_on_pins(
+    solution: SolidSolution, band: Bands, load: Array, approach: Array, moved: Mapping[Side, Array]
+) -> TeethOnPins:
+    """Each tooth under one load, from how it departs from the mean over all.
+
+    Parameters
+    ----------
+    solution : SolidSolution
+        The mean.
+    band : Bands
+    load : ndarray, shape (n,)
+        That of the band.
+    approach : ndarray, shape (T,)
+    moved : mapping of side to ndarray, shape (nodes, 3, functions, T)
+    """
+    places = np.linspace(-0.5, 0.5, _PLACES) * solution.width
+    values, slopes = solution.face.at(places)
+    root = {}
+    for side, fillet in solution.fillets.items():
+        every = (solution.displacement[0, side] @ load)[..., None] + moved[side]
+        stress = surface_stress(fillet, solution.tau, solution.poisson_ratio, every, values, slopes)[0]
+        flat, sign = stress.reshape(stress.shape[0], -1), 1.0 if side == "tension" else -1.0
+        end = np.full(flat.shape[1], float(solution.root_end(0, side, band)[0]))
+        largest = sign * extreme(flat, fillet.arc, sign, end)[0].reshape(stress.shape[1:])
+        root[side] = sign * largest.max(axis=0)
+    return TeethOnPins(float(load @ solution.compliance[0] @ load) + approach, root["tension"], root["compression"])
+
+
+def _half_height(
+    tooth: InvoluteTooth, flank: LoadedFlank, face: FaceFunctions, settings: SolidSettings, tau: float
+) -> Bands:
+    """A band of a module's length at half height in the middle of the face."""
+    arc = 0.5 * (flank.flank_start + flank.flank_end)
+    (radius,) = flank.radius_of_arc(np.array([arc]))
+    width = min(settings.band_half_width, settings.room_share * (flank.flank_end - arc))
+    slope = -tau * math.sqrt(max(radius**2 - tooth.base_radius**2, 0.0))
+    return bands(radius, 0.0, min(0.5, 0.5 * face.width), width, slope=slope)
+
+
+def _check_support(support: RimSupport, tooth: InvoluteTooth, *, alone: bool) -> None:
+    if not (tooth.internal and alone):
+        kind = '"pins"' if support.pins else '"splined"'
+        raise RangeError(
+            "rim_support.kind", kind, "is known to whole internal rings alone, without a body or a held part"
+        )
 
 
 def _mirrored(section: Section, face: FaceFunctions) -> Mask:

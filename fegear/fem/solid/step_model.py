@@ -20,8 +20,8 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
 from fegear.fem.plane.sector import gmsh_session
+from fegear.geometry.curves import Drawn
 from fegear.geometry.gear import Gear
-from fegear.geometry.outline import Drawn
 from fegear.geometry.spline import DEGREE, Spline, enclosed_area, fitted, smooth_pieces, spline_of
 
 #: How far the surfaces may lie off the exact ones [modules]: some ten nanometres.

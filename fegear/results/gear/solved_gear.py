@@ -17,6 +17,7 @@ from fegear.case.built.solid_influence import (
     solid_gear_to_solve,
     solid_settings_of,
     solid_solution_settings,
+    solid_support_remarks,
     solve_solid_influence,
 )
 from fegear.case.built.tooth_influence import (
@@ -90,14 +91,17 @@ def _solve_solid(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> So
     return solve_solid_influence(asked, work.cache)
 
 
-def _present_solid(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
-    return Outcome(influence, settings=solid_solution_settings(influence))
+def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcome:
+    remarks = solid_support_remarks(asked.name, influence)
+    return Outcome(influence, settings=solid_solution_settings(influence), remarks=remarks)
 
 
 def _forecast_solid(scene: Scene, name: str) -> Forecast:
     settings, gear = solid_settings_of(scene, name), scene.gears[name]
     width, twisted = gear.face_width / gear.module, gear.flank_twist != 0.0
-    seconds = seconds_of_solid_gear(settings, width, twisted=twisted, on_a_web=gear.body is not None)
+    seconds = seconds_of_solid_gear(
+        settings, width, twisted=twisted, on_a_web=gear.body is not None, rim_free=gear.support is not None
+    )
     return Forecast(asdict(settings), seconds)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
+from fegear.case.built.solid_influence import check_source
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, repeated, tiled, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
@@ -133,6 +134,7 @@ def _missed(t: SolidTable, asked: StiffnessInputs) -> list[str]:
 
 def _check(scene: Scene, name: str) -> None:
     check_contacts_of(scene, name)
+    check_source(scene, name, "stiffness.source", scene.case.stiffness.source)
     wanted, half = scene.case.stiffness.face_positions, 0.5 * scene.gears[name].face_width
     for i, place in enumerate(wanted if isinstance(wanted, list) else ()):
         if abs(place) > half * (1.0 + 1e-9):

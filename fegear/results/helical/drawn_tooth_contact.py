@@ -73,8 +73,8 @@ def _transmission_error(name: str, contact: ToothContact) -> Figure:
     axis = Axis("transmission error Δφ_{2}", "arcsec", limits=(low - room, high + 0.5 * room))
     ends = (math.degrees(first), math.degrees(last))
     return Figure(
-        f"transmission_error_{name}",
-        f"Transmission error of pair {name}",
+        f"unloaded_transmission_error_{name}",
+        f"Unloaded transmission error of pair {name}",
         f"Pair {name}: turn of the gear ahead of N1/N2 times the pinion's, over two cycles. The pair that touches "
         f"first leads. Peak to peak {contact.peak_to_peak * _ARCSEC:.4g} arcsec.",
         (Panel(Axis(_PHI.label, _PHI.unit, limits=ends), axis, tuple(curves)),),
@@ -106,8 +106,8 @@ def _pattern(name: str, contact: ToothContact, bearing: Bearing | None, load: fl
         panels.append(Panel(Axis(f"height z on the {which}", "mm"), Axis(f"radius on the {which}", "mm"), tuple(items)))
     vague = bool(single.ill_defined[single.kind == "surface"].any())
     return Figure(
-        f"contact_pattern_{name}",
-        f"Contact pattern of pair {name}",
+        f"unloaded_contact_pattern_{name}",
+        f"Unloaded contact pattern of pair {name}",
         f"Pair {name}: where one tooth pair touches over its engagement, by kind of contact."
         + (
             " Ellipses: contact under the load of the case, cut at the ends of the flank."

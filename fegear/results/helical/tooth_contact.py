@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,12 +50,6 @@ class ToothContactData:
     no_ellipses: str = ""
 
 
-#: Results that report the same pair under load, and values and figures that they have, too: here they are "unloaded".
-_UNDER_LOAD = frozenset({"transmission-error", "load-distribution", "contact-pattern"})
-_VALUES_OF_BOTH = ("te_peak_to_peak", "te_max", "te_min")
-_FIGURES_OF_BOTH = ("transmission_error_", "contact_pattern_")
-
-
 @dataclass(frozen=True, slots=True)
 class ToothContactInputs:
     """What the analysis of a pair depends on.
@@ -74,13 +68,11 @@ class ToothContactInputs:
     name : str
         Of the pair.
     ignored : str
-        Key of a load that the case gives and no wanted result takes; else empty.
+        Key of a load that the case gives the pair; empty where it gives none.
     lead : float or None
         Error of the pinion's lead that the case gives in place of a lead angle [m].
     relieved : tuple of str
         Gears whose relief, lead, bias or topography the analysis does not know.
-    loaded : bool
-        Whether another wanted result tells of the same flanks under load, in values and figures of the same names.
     """
 
     pair: HelicalPair
@@ -92,7 +84,6 @@ class ToothContactInputs:
     ignored: str = field(default="", compare=False)
     lead: float | None = field(default=None, compare=False)
     relieved: tuple[str, ...] = field(default=(), compare=False)
-    loaded: bool = field(default=False, compare=False)
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -251,15 +242,16 @@ def _values(name: str, t: ToothContact) -> tuple[Value, ...]:
     error = t.maximum.error + t.minimum.error
     pair = t.pair
     return (
-        Value(f"{name}.te_peak_to_peak", t.peak_to_peak, "arcsec", error, "variation over a cycle of the gear set"),
-        Value(f"{name}.te_max", t.maximum.value, "arcsec", t.maximum.error, "largest transmission error"),
-        Value(f"{name}.te_min", t.minimum.value, "arcsec", t.minimum.error, "smallest transmission error"),
+        Value(f"{name}.unloaded_te_peak_to_peak", t.peak_to_peak, "arcsec", error,
+              "variation over a cycle of the gear set"),
+        Value(f"{name}.unloaded_te_max", t.maximum.value, "arcsec", t.maximum.error, "largest transmission error"),
+        Value(f"{name}.unloaded_te_min", t.minimum.value, "arcsec", t.minimum.error, "smallest transmission error"),
         Value(f"{name}.transverse_contact_ratio", pair.transverse_contact_ratio, "", 0.0, "aligned drive"),
         Value(f"{name}.common_overlap_ratio", pair.overlap_ratio, "", 0.0, "common face over axial pitch"),
         Value(f"{name}.centre_distance_as_cut", pair.centre_distance, "mm", 0.0, "with the pinion as cut"),
         _surface_share(name, t),
         *_lead_values(name, pair),
-    )
+    )  # fmt: skip
 
 
 def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
@@ -314,15 +306,12 @@ def _inputs(scene: Scene, name: str) -> ToothContactInputs:
     part, asked = scene.case.pair[name], scene.case.tooth_contact
     a, b = (scene.case.gear[gear].material.build().plane_modulus("strain") for gear in (part.driver, part.driven))
     absorb = part.modification is not None and part.modification.absorb
-    loaded = not _UNDER_LOAD.isdisjoint(scene.case.results)
     return ToothContactInputs(
         scene.helical_pairs[name], asked.positions, absorb, asked.load, 1.0 / (1.0 / a + 1.0 / b), name,
-        next((key for key in ("load", "torque") if getattr(part, key) is not None), "")
-        if "crosscheck" not in scene.case.results and not loaded else "",
+        next((key for key in ("load", "torque") if getattr(part, key) is not None), ""),
         part.misalignment.lead if part.misalignment is not None else None,
         tuple(gear for gear in dict.fromkeys((part.driver, part.driven))
               if scene.case.gear[gear].relieved or scene.case.gear[gear].over_face),
-        loaded,
     )  # fmt: skip
 
 
@@ -372,20 +361,13 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
         remarks += (idle,)
     if asked.ignored:
         idle = (
-            f"Pair {name}: {asked.ignored} changes nothing here: tooth contact analysis takes the flanks as rigid. "
-            "tooth_contact.load gives contact ellipses; the crosscheck takes load or torque for ISO 6336."
+            f"Pair {name}: {asked.ignored} changes nothing in tooth contact analysis, which takes the flanks as rigid; "
+            "tooth_contact.load gives contact ellipses."
         )
         remarks += (idle,)
     if data.no_ellipses:
         remarks += (f"Pair {name}: no contact ellipses: {data.no_ellipses}.",)
     figures = tooth_contact_figures(name, contact, data.bearing, asked.load)
-    if asked.loaded:
-        both = {f"{name}.{value}": f"{name}.unloaded_{value}" for value in _VALUES_OF_BOTH}
-        values = tuple(replace(value, name=both.get(value.name, value.name)) for value in values)
-        figures = tuple(
-            replace(figure, key=f"unloaded_{figure.key}") if figure.key.startswith(_FIGURES_OF_BOTH) else figure
-            for figure in figures
-        )
     return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks, figures)
 
 

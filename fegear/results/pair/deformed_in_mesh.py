@@ -116,7 +116,7 @@ def _check_compliance(scene: Scene, name: str) -> None:
     if source != "fe":
         raise InputError(
             f"pair.{name}.compliance.source", f'"{source}"',
-            "knows how far flanks give way, not how a tooth deforms",
+            "has the deflection of flanks, not the shape of a deformed tooth",
             'write source = "fe", or leave the deformed teeth out',
         )  # fmt: skip
 

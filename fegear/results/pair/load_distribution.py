@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import first_of_largest
 from fegear.base.errors import InputError
+from fegear.case.built.solid_influence import check_ends
 from fegear.case.effects import WIDE_EFFECTS
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.loaded_teeth import ErrorOverPitch, LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, error_column, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
@@ -26,7 +26,7 @@ from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.pair.flank_surface_tables import flank_pressure_figure
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.pair.loaded_teeth import drawn_loads
+from fegear.results.pair.loaded_teeth import drawn_loads, gears_of
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -34,15 +34,10 @@ if TYPE_CHECKING:
     from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 
+#: Begins the names of what a pair's plane teeth have, too.
+_WIDE = "wide_"
 #: K_Hbeta above this part of the largest that its averaging allows is remarked on.
 _OF_MOST = 0.5
-
-
-#: Values that other results have too, and then they alone.
-_ALSO_OF = {
-    "transmission-error": ("te_mean", "te_peak_to_peak"),
-    "load-sharing": ("largest_share", "largest_hertz_pressure"),
-}
 
 
 @dataclass(frozen=True)
@@ -53,17 +48,16 @@ class LoadDistributionInputs:
     ----------
     name : str
         Of the pair.
-    elsewhere : tuple of str
-        Values that another wanted result tells.
+    also : str
+        Begins the names of numbers that a pair has by its other results, too, where these load plane teeth.
     """
 
     name: str = field(compare=False)
-    elsewhere: tuple[str, ...] = field(compare=False)
+    also: str = field(compare=False)
 
 
 def _inputs(scene: Scene, name: str) -> LoadDistributionInputs:
-    told = [value for result in scene.case.results for value in _ALSO_OF.get(result, ())]
-    return LoadDistributionInputs(name, tuple(told))
+    return LoadDistributionInputs(name, "" if name in scene.wide_pairs else _WIDE)
 
 
 def _stations(name: str, found: LoadedFlanks, i: int) -> Table:
@@ -129,29 +123,28 @@ def _loads(name: str, data: LoadedWidePair) -> Table:
 
 def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
     name, found, i = inputs.name, data.found, data.at
-    stated, lines = data.stated, data.over.found.lines
-    inner = data.over.found.smooth_pressure[:, :, i]
-    p, s = np.unravel_index(int(first_of_largest(inner)), inner.shape)
-    cells = found.cells.size - 1
-    where = f", at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
+    stated, largest, cells = data.stated, data.largest, found.cells.size - 1
     averaged = (
         f"largest load per face width over the mean one, averaged over a base pitch and over 1/{cells} of the "
         f"face: at most {cells}"
     )
 
-    def of_pitch(key: str, si: float | None = None, meaning: str = "", further: str = "") -> Value:
-        number, off = getattr(stated, key)[i] if si is None else si, float(getattr(data.error, key)[i])
-        return value_of(data.error, key, name, off, si=number, meaning=meaning, further=further)
+    def of_pitch(key: str, meaning: str = "") -> Value:
+        number, off = float(getattr(stated, key)[i]), float(getattr(data.error, key)[i])
+        return value_of(data.error, key, name, off, si=number, meaning=meaning)
 
+    def also(of: type, key: str, si: float, off: float, further: str = "") -> Value:
+        return value_of(of, key, name, off, si=si, name=f"{inputs.also}{key}", further=further)
+
+    error = data.error
     values: tuple[Value, ...] = (
-        of_pitch("mean"),
-        of_pitch("peak_to_peak", meaning="of the transmission error over the whole base pitch"),
+        also(ErrorOverPitch, "te_mean", float(stated.mean[i]), float(error.mean[i])),
+        also(ErrorOverPitch, "te_peak_to_peak", float(stated.peak_to_peak[i]), float(error.peak_to_peak[i])),
         of_pitch("face_load_factor", meaning=averaged),
         of_pitch("largest_line_load"),
-        of_pitch("largest_pressure", float(inner.max()), further=where),
-        value_of(found, "share", name, float(data.error.share[:, :, i].max()), si=found.share[:, :, i].max()),
+        also(LoadHistory, "largest_hertz_pressure", largest.pressure, largest.pressure_error, f", {largest.place}"),
+        also(LoadHistory, "largest_share", largest.share, largest.share_error),
     )
-    values = tuple(value for value in values if value.name.removeprefix(f"{name}.") not in inputs.elsewhere)
     whole = data.over.found
     tables = (_stations(name, found, i), _over_face(name, whole, i), _positions(name, data), _loads(name, data))
     figures = load_distribution_figures(name, whole, i)
@@ -225,6 +218,8 @@ def _check(scene: Scene, name: str) -> None:
             f"pair.{name}.width", '"plane"', 'contradicts results = ["load-distribution"], which is over the face',
             'write width = "solid" or "slices", or remove it',
         )  # fmt: skip
+    for gear in gears_of(scene, name).values():
+        check_ends(scene, gear, distributed_pairs(scene))
 
 
 def _forecast(_scene: Scene, _name: str) -> Forecast:

@@ -51,11 +51,10 @@ def _tables(name: str, data: LoadSharingData) -> tuple[Table, ...]:
 
 
 def _values(name: str, h: LoadHistory) -> tuple[Value, ...]:
-    where = f"smooth flanks, at x = {h.found.x[h.hardest_pressed] * 1e3:.5g} mm"
     return (
         value_of(h, "largest_load", name, h.largest_load_error),
         value_of(h, "largest_share", name, h.largest_share_error),
-        value_of(h, "largest_hertz_pressure", name, h.largest_pressure_error, meaning=where),
+        value_of(h, "largest_hertz_pressure", name, h.largest_pressure_error, further=f", {h.hardest_pressed_at}"),
     )
 
 
@@ -109,6 +108,8 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 LOAD_SHARING = teeth_stage(
+    answers=("load on a tooth pair",),
+    every_load=True,
     inputs=Subject.of,
     compute=_compute,
     present=_present,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from fegear.base.plain import content_key
 from fegear.case.built.loaded_pair import (
@@ -23,29 +23,13 @@ from fegear.results.gear.solved_gear import needs_solution, solution_of
 from fegear.results.pair.loaded_teeth import plane_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fegear.case.reading import Scene
     from fegear.contact.loaded_teeth import Answer
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.citation import Citation
-
-#: What the results that load a pair stand on; those of the train stand on its transmission error.
-_ANSWERS: dict[str, Answer] = {
-    "load-sharing": "load on a tooth pair",
-    "root-stress-history": "root tension",
-    **dict.fromkeys(
-        (
-            "transmission-error", "relief-curves", "relief-chart", "gear-train", "natural-modes", "campbell",
-            "dynamic-increments", "mesh-force-spectrum", "tooth-force", "dynamic-root-stress", "tooth-friction",
-            "dynamic-factor", "design-chart",
-        ),
-        "transmission error",
-    ),
-}  # fmt: skip
-#: Results that are for every load of the case.
-_FOR_ALL_LOADS = frozenset({"load-sharing", "transmission-error", "root-stress-history", "relief", "relief-chart"})
 
 
 @dataclass(frozen=True)
@@ -55,36 +39,40 @@ class LoadedPairInputs:
     Parameters
     ----------
     asked : PairInputs
-    answers : tuple of str
-        What the wanted results stand on, for the sizes of neglected effects.
-    loads : tuple of float
-        For which those are estimated [N].
     tolerance : float
-        That they are compared with.
+        That the sizes of neglected effects are compared with.
     effects : EffectsPart
         All of the case, for the remedies.
     estimates : bool
         Whether errors and neglected effects are estimated.
+    answers : tuple of str
+        What the results stand on that read the pair: these sizes are of it.
+    loads : tuple of float
+        For which they are estimated [N].
     """
 
     asked: PairInputs
-    answers: tuple[Answer, ...]
-    loads: tuple[float, ...]
     tolerance: float = field(compare=False)
     effects: EffectsPart = field(compare=False)
     estimates: bool = True
+    answers: tuple[Answer, ...] = ()
+    loads: tuple[float, ...] = ()
 
 
 def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
-    asked, wanted = pair_inputs(scene, name), scene.case.results
-    answers = tuple(dict.fromkeys(_ANSWERS[result] for result in wanted if result in _ANSWERS))
+    asked = pair_inputs(scene, name)
+    return LoadedPairInputs(asked, scene.case.accuracy.tolerance, scene.case.effects, scene.estimates)
+
+
+def _for_readers(inputs: LoadedPairInputs, readers: Sequence[Stage]) -> LoadedPairInputs:
+    """The same with what the results stand on that read the pair."""
+    asked = inputs.asked
+    answers = dict.fromkeys(cast("Answer", answer) for reader in readers for answer in reader.answers)
     if asked.compliance.source != "fe":  # knows no root stress: that of formulas follows the tooth's own load
-        answers = tuple(dict.fromkeys("load on a tooth pair" if a == "root tension" else a for a in answers))
-    loads = tuple(sorted({asked.loads[0], asked.nominal, asked.loads[-1]}))
-    if not _FOR_ALL_LOADS & set(wanted):
-        loads = (asked.nominal,)
-    tolerance, effects = scene.case.accuracy.tolerance, scene.case.effects
-    return LoadedPairInputs(asked, answers, loads, tolerance, effects, scene.estimates)
+        answers = dict.fromkeys("load on a tooth pair" if a == "root tension" else a for a in answers)
+    every = any(reader.every_load for reader in readers if reader.answers)
+    loads = (asked.loads[0], asked.nominal, asked.loads[-1]) if every else (asked.nominal,)
+    return replace(inputs, answers=tuple(answers), loads=tuple(sorted(set(loads))))
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -150,6 +138,7 @@ LOADED_PAIR = Stage(
     subjects=plane_pairs,
     needs=_needs,
     inputs=_inputs,
+    for_readers=_for_readers,
     compute=_compute,
     present=_present,
     check=check_pair,

@@ -389,6 +389,8 @@ def _map(
 
 
 ROOT_STRESS_HISTORY = teeth_stage(
+    answers=("root tension",),
+    every_load=True,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,

@@ -327,6 +327,8 @@ def _check(scene: Scene, name: str) -> None:
 
 
 TRANSMISSION_ERROR = teeth_stage(
+    answers=("transmission error",),
+    every_load=True,
     inputs=Reads.of(lambda scene: scene.case.transmission_error),
     compute=_compute,
     present=_present,

@@ -234,7 +234,7 @@ def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
     )
     return Figure(
         f"planet_vibration_{name}", f"Vibration of set {name} over speed",
-        f"Set {name}: largest dynamic force in the meshes over their mean force of {data.mean_force:.5g} N, and motion "
+        f"Set {name}: largest dynamic force in the meshes above the mean force of {data.mean_force:.5g} N, and motion "
         "of sun, ring and carrier across the axis (0-peak), excited by the transmission errors of the meshes with "
         "their phases.",
         (

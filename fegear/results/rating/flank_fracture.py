@@ -370,13 +370,12 @@ def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tu
         )
     told += inputs.said
     told.append(
-        f"Pair {name}: of ISO/TS 6336-4 print at hand backs the structure of A_FF, its symbols and the scope, "
-        f"case-carburized external gears. Recalled are K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa per HV, c_1 = "
-        f"{CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; K_material = "
-        f"{inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). tau_eff is the mean shear over all "
-        "planes below a Hertzian contact without friction, in the place of the standard's fitted formulas. "
-        "What the residual stress takes off decides within the case: A_FF_load "
-        "is without it."
+        f"Pair {name}: structure, symbols and scope of A_FF (case-carburized external gears) are those that printed "
+        f"sources give of ISO/TS 6336-4. Recalled without a source are K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa per "
+        f"HV, c_1 = {CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; "
+        f"K_material = {inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). tau_eff is the mean "
+        "shear over all planes below a Hertzian contact without friction, in the place of the standard's fitted "
+        "formulas. What the residual stress takes off decides within the case: A_FF_load is without it."
     )
     told.append(
         f"Pair {name}: limits of the case depth are recalled: .15 to .25 and .4 m_n, U_H of ISO 6336-5 (66,000 N/mm^2 "

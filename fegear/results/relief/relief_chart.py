@@ -277,6 +277,8 @@ _CITES = citing(
 
 
 RELIEF_CHART = relief_stage(
+    answers=("transmission error",),
+    every_load=True,
     inputs=_chart_inputs,
     compute=_compute_chart,
     present=_present_chart,

@@ -189,6 +189,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 RELIEF_CURVES = relief_stage(
+    answers=("transmission error",),
     inputs=Reads.of(lambda scene: design_part(scene).chart),
     compute=_compute,
     present=_present,

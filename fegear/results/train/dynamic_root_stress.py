@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
 from fegear.case.built.train import train_part
 from fegear.case.reading import Scene
@@ -50,11 +49,6 @@ class DynamicRootStress:
 def _check(scene: Scene, name: str) -> None:
     needs_one_speed(scene, name)
     needs_plane_teeth(scene, name, "results", '"dynamic-root-stress"')
-    if "root-stress-history" in scene.case.results:
-        raise InputError(
-            "results", '"root-stress-history"', "and dynamic-root-stress would write the same tables",
-            "ask for dynamic-root-stress alone: it holds the quasi-static stress too",
-        )  # fmt: skip
     check_formulas(scene, train_part(scene).pair_of(name), tips=False)
 
 
@@ -197,6 +191,7 @@ def _cites(scene: Scene, name: str) -> Iterator[Citation]:
 
 
 DYNAMIC_ROOT_STRESS = Stage(
+    holds=("root-stress-history",),
     subjects=own_meshes,
     needs=_needs,
     inputs=_inputs,

@@ -256,6 +256,7 @@ GEAR_TRAIN = Stage(
     present=_present,
     check=_check,
     effects=PLANE_EFFECTS,
+    answers=("transmission error",),
     cites=TRAIN_SOURCES,
     forecast=_forecast,
     internal=True,

@@ -203,7 +203,7 @@ def _flank_pair(scene: Scene) -> str:
     results over the face and for nothing that a study in the plane could answer.
     """
     part, wanted = scene.case.cost, set(scene.case.results)
-    pairs = [name for name in flank_pairs(scene) if scene.case.pair[name].normal_load(scene.pairs[name]) is not None]
+    pairs = [name for name in flank_pairs(scene) if "load-distribution" in wanted or name in scene.wide_pairs]
     given = set(part.quantities or ())
     if part.pair in scene.plane_pairs or not pairs:
         chosen = part.pair if part.pair in pairs else ""

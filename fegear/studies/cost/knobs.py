@@ -350,7 +350,7 @@ def _answer(asked: Asked, settings: SolidSettings) -> BandNumbers:
     m = gear.module
     solution = solver_of(settings)(
         gear.tooth, gear.twist * m, gear.face_width / m, gear.material.poisson_ratio, gear.bore_radius / m, settings,
-        body=gear.body_in_modules,
+        body=gear.body_in_modules, support=gear.support_in_modules,
     )  # fmt: skip
     places = face_positions(scene, asked.gear) / m
     return band_numbers(solution, bands_of_table(solution, asked.radii / m, places, asked.half_width / m))

@@ -275,8 +275,8 @@ def solve_bodies(scene: Scene, pair: str, body: str, settings: SolidSettings) ->
     for member, name in zip(MEMBERS, (part.driver, part.driven), strict=True):
         wanted = solid_gear_to_solve(scene, name)
         gear = wanted.gear
-        # Slices know no web: what they neglect of it shows in their difference from the solid.
-        more = {"body": gear.body_in_modules} if body == "solid" else {}
+        # Slices know no web and no rim's support: what they neglect shows in their difference from the solid.
+        more = {"body": gear.body_in_modules, "support": gear.support_in_modules} if body == "solid" else {}
         found[member] = _SOLVERS[body](
             gear.tooth, gear.twist * gear.module, gear.face_width / gear.module, gear.material.poisson_ratio,
             gear.bore_radius / gear.module, settings, reach=wanted.reach, **more,
