@@ -53,8 +53,14 @@ def _root(row: Any, low: float, high: float, sign: float) -> float:
     return high if sign * value_at(row, x) > 0.0 else x
 
 
-def first_crossing(row: Any, h: float, sign: float) -> float:
-    """First time in (0, h] at which sign * polynomial is no longer positive, or -1."""
+def first_crossing(row: Any, h: float, sign: float, moment: float) -> float:
+    """First time in (0, h] at which sign * polynomial is no longer positive, or -1.
+
+    A contact that has just changed lies within round-off of zero, on either side: it is looked at a `moment` later, a
+    millionth of the step that the motion allows, however short h is. What is clear of zero and changes within that
+    moment does so in its own time. Else two teeth that close in together would each be found open and closed in turn,
+    and time would stand still.
+    """
     reach = 0.0
     power = 1.0
     for k in range(1, row.shape[0]):
@@ -63,9 +69,12 @@ def first_crossing(row: Any, h: float, sign: float) -> float:
     if sign * row[0] > reach:
         return -1.0
     samples = 16
-    before, last = 1e-6 * h, sign * value_at(row, 1e-6 * h)
+    before, last = moment, sign * value_at(row, moment)
     if last <= 0.0:
-        return 0.0
+        when = _root(row, 0.0, moment, sign) if sign * row[0] > 0.0 else 0.0
+        return when if when <= h else -1.0
+    if moment >= h:
+        return -1.0
     older_t, older = before, last
     for j in range(1, samples + 1):
         t = h * j / samples

@@ -14,6 +14,9 @@ from fegear.dynamics.motion.kernel.series import damping_at, motion_series, tayl
 
 #: Least length of a collocation step, and what a failed one waits for, both in Taylor steps; most that the wait grows.
 WORTH, WAIT, LONGEST_WAIT = 40.0, 8, 8
+#: After this part of a Taylor step, or of a unit of time where the motion allows longer ones (teeth that fly freely), a
+#: contact is looked at that has just changed.
+MOMENT = 1e-6
 
 
 def travel(  # noqa: C901  (one loop over steps: what it shares is its local variables)
@@ -97,6 +100,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
             check[s] = 0
         motion_series(train, meshes, springs, work, status, x, v, rule.friction)
         h = taylor_step(train, rule, X, x, v)
+        moment = MOMENT * min(h, 1.0)
         waited += 1
         if long_steps and waited >= wait and limit - t > worth * h:
             far = min(max(reach, worth * h), limit - t)
@@ -124,7 +128,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                     value += approach[mesh_of[s], i] * X[k, i, 0]
                 strain0[s, k] = value - (local[s, 1, k] if k <= degree else 0.0)
             sign = sides[s] if status[s] == 1 else -sides[s]
-            when = first_crossing(strain0[s], h, sign)
+            when = first_crossing(strain0[s], h, sign, moment)
             if when >= 0.0:
                 h, changed, to_limit = when, s, False
         # what happened on the step
