@@ -51,4 +51,4 @@ def test_two_pairs_of_teeth_that_close_in_together_do_not_stop_time(coupling, rp
     model = MotionModel(drive.train(1.0 / springs.mean_compliance()), (springs,), 1.0)
     chart = speed_chart(model, [rpm * math.pi / 30.0], direction="static", tolerance=2e-3)
     assert 1.0 < chart.dynamic_factor[0] < 5.0
-    assert 0.0 < chart.apart[0] < 0.7
+    assert 0.0 <= chart.apart[0] < 0.7
