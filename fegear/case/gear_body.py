@@ -61,9 +61,9 @@ class RimSupportPart(Part):
     """``rim_support = { kind, pins, width, angle }`` of a ring gear."""
 
     kind: Literal["held", "splined", "pins"] = Field(
-        description="`held`: the whole outer circle; `splined`: force and torque leave by tractions that are spread "
-        "evenly over it, and its mean motion is none; `pins`: evenly spaced parts of it are held on average; of a gear "
-        "with its width at every height of the face, and along the axis over all of it."
+        description="`held`: the whole outer circle; `splined`: tractions spread evenly over it take force and torque; "
+        "`pins`: evenly spaced parts of it are held on average, of a gear with its width at every height of the face, "
+        "and along the axis."
     )
     pins: int | None = Field(default=None, description="Number of pins, bolts or lugs, 2 to the number of teeth.")
     width: PositiveLength | None = Field(

@@ -155,14 +155,14 @@ def test_parts_of_what_must_pass_are_the_kinds_of_tests_and_what_else_there_is(c
     (named,) = re.findall(r"there are: (.*)", done.stdout)
     parts = named.split()
     assert parts[:3] == ["site", "tests/hard", "tests/unit"]
-    assert {"last-bit-1", "last-bit-2", "last-bit-3", "versions", "types", "wheel"} == set(parts[3:])
+    assert {"last-bit-1", "last-bit-2", "last-bit-3", "versions", "types", "wheel", "workflows"} == set(parts[3:])
 
 
 def test_parts_of_what_must_pass_skip_no_test_and_say_how_they_ended(checked):
     done = checked("site", "tests/unit", "last-bit-2", "types")
     assert done.returncode == 0, done.stdout
     assert "docs.sh called:" in done.stdout
-    assert "test.sh called: -n 0 -p no:cacheprovider --no-skips tests/unit" in done.stdout
+    assert "test.sh called: -n 0 -p no:cacheprovider --no-skips --dear tests/unit" in done.stdout
     assert "test.sh called: -n 0 -p no:cacheprovider --last-bit 2" in done.stdout
     assert len(re.findall(r"^== \S+: passed after \d+ s$", done.stdout, re.MULTILINE)) == 4
 
