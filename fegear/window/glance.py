@@ -87,9 +87,17 @@ def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
         Names of `PICTURES` that are chosen; none for the usual ones.
     """
     usual = USUAL_WIDE if scene.wide_pairs else USUAL
-    names = dict.fromkeys((*_ALWAYS, *(PICTURES[one].stage for one in pictures or usual if one in PICTURES)))
+    shown = [PICTURES[one].stage for one in pictures or usual if one in PICTURES]
+    names = dict.fromkeys((*_ALWAYS, *shown))
     stages = {stage.name: stage for stage in STAGES if stage.name in names}
-    return [Task(name, one) for name in names for one in stages[name].subjects(scene)]
+    # Numbers of a pair with a width stand in its load over the face, too: load sharing is drawn where it is looked at.
+    spared = "load-sharing" if "load-distribution" in shown and "load-sharing" not in shown else ""
+    return [
+        Task(name, one)
+        for name in names
+        for one in stages[name].subjects(scene)
+        if not (name == spared and one in scene.wide_pairs)
+    ]
 
 
 def field_tasks(scene: Scene) -> list[Task]:
