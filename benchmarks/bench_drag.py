@@ -112,6 +112,7 @@ class Drag:
                 "[...document.querySelectorAll('button')].find((one) => one.textContent === 'Add tip relief')"
             )
             self.browser.until(f"{find} !== null && !document.body.classList.contains('computing')")
+        self._rounds = 0
         self.at = self.browser.run(f"(b => [b.x + b.width / 2, b.y + b.height / 2])({find}.getBoundingClientRect())")
 
     def _mouse(self, kind: str, up: float) -> None:
@@ -119,7 +120,8 @@ class Drag:
         self.browser("Input.dispatchMouseEvent", type=kind, x=x, y=y + up, button="left", buttons=1, clickCount=1)
 
     def drag(self, moves: int, every: float, found: Dragged) -> None:
-        """Take the point, move it so many times up and down, and let go where it was."""
+        """Take the point, move it so many times up and down, and let go where it was; never twice to one place."""
+        self._rounds += 1
         server, browser = self.window.pids()
         parts = [server[:1], server[1:], browser]
         before = [self.bench.processor(one) for one in parts]
@@ -127,7 +129,7 @@ class Drag:
         self._mouse("mousePressed", 0.0)
         for i in range(moves):
             started = time.monotonic()
-            self._mouse("mouseMoved", 3.0 + (i % 8) * 2.0 + 0.3 * (i // 8))
+            self._mouse("mouseMoved", 3.0 + (i % 8) * 2.0 + 0.3 * (i // 8) + 0.07 * self._rounds)
             time.sleep(max(0.0, every - (time.monotonic() - started)))
         for _ in range(100):
             if self.browser.run("unanswered()") == 0:

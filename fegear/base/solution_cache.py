@@ -216,7 +216,8 @@ def cache_on_disk(folder: Path | None = None) -> SolutionCache:
 def arrays_of(value: object, known: Mapping[int, Mapping[int, int]] = MappingProxyType({})) -> dict[int, int]:
     """Bytes of every array that an object holds, however deep, by the array's identity: shared ones are the same.
 
-    `known` has those of objects that have been looked through, by the object's identity.
+    `known` has those of objects that have been looked through, by the object's identity. What lies in a cache that an
+    object recalls from is the cache's, not the object's.
     """
     found: dict[int, int] = {}
     seen: set[int] = set()
@@ -229,7 +230,7 @@ def arrays_of(value: object, known: Mapping[int, Mapping[int, int]] = MappingPro
             found[id(one)] = one.nbytes
             if one.dtype != object:
                 continue
-        if isinstance(one, (str, bytes, int, float, type(None))) or id(one) in seen:
+        if isinstance(one, (str, bytes, int, float, type(None), SolutionCache)) or id(one) in seen:
             continue
         seen.add(id(one))
         if id(one) in known:

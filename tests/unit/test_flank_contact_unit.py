@@ -524,3 +524,18 @@ def test_a_wide_spur_pair_free_to_move_tends_to_the_plane_in_the_middle_of_its_f
     assert 0.0 < deflection[1] < 0.035
     assert 0.35 < stress[1] / stress[0] < 0.65
     assert 0.4 < deflection[1] / deflection[0] < 0.8
+
+
+def test_what_gaps_do_not_change_is_recalled(solved):
+    flanks = flank_pair(solved, positions=4)
+    known = flanks.compliance(1000.0)
+    assert flanks.compliance(1000.0) is known
+    others = (
+        flanks.compliance(1100.0), replace(flanks, positions=5).compliance(1000.0),
+        replace(flanks, coupling=False).compliance(1000.0), replace(flanks, hertz="none").compliance(1000.0),
+        replace(flanks, panel=0.4).compliance(1000.0), replace(flanks, most_gap=1e-5).compliance(1000.0),
+    )  # fmt: skip
+    assert len({id(one) for one in (known, *others)}) == 7
+    alone = replace(flanks, cache=SolutionCache()).compliance(1000.0)
+    assert alone is not known
+    assert np.array_equal(alone.matrix, known.matrix)

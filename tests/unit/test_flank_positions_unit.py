@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.contact.wide.lines import _shared, contact_lines, line_breaks, roll_points, shortest_line
-from fegear.contact.wide.load_factors import load_below, swept_mean
+from fegear.contact.wide.load_factors import _loads_below, load_below, swept_mean
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -132,3 +132,15 @@ def test_which_gear_drives_changes_no_number_of_points_on_a_piece(count):
     assert _shared(lengths[::-1], count) == found[::-1]
     assert max(np.array(lengths) / (np.array(found) - 1)) < 2.0 * min(np.array(lengths) / (np.array(found) - 1))
     assert _shared([0.5, 0.5], 7) == [4, 3]  # nothing else can take the last one
+
+
+def test_loads_below_heights_of_many_lines_at_once_are_those_of_each():
+    rng = np.random.default_rng(7)
+    place = [np.sort(np.concatenate([[0.0, 1.0], rng.random(count)])) for count in (1, 5, 0, 12)]
+    load = [rng.random((one.size, 2)) for one in place]
+    ends = rng.uniform(-0.3, 1.3, (4, 3, 9))
+    ends[:, 0, :4] = [0.0, 1.0, -np.inf, np.inf]
+    ends[3, 1, :] = place[3][3:12]  # at the stations
+    found = _loads_below(place, load, ends)
+    for k in range(4):
+        np.testing.assert_allclose(found[k], load_below(place[k], load[k], ends[k]), rtol=0.0, atol=1e-14)

@@ -151,3 +151,14 @@ def test_memory_is_bounded_by_the_bytes_of_what_is_held_and_shared_arrays_count_
     assert [add(key, big) for key in ("c", "a")] == ["memory", "memory"]
     assert cache.shrink(0)
     assert [add(key, big) for key in ("c", "a", "b")] == ["memory", "memory", "computed"]
+
+
+def test_what_recalls_from_a_cache_does_not_hold_all_that_lies_there():
+    """A loaded pair keeps the cache that it recalls compliances from; it held all pairs before it, each move more."""
+    cache = SolutionCache()
+    for number in range(4):
+        cache.solve(str(number), lambda: {"own": np.zeros(125_000), "recalls from": cache})
+    assert sum(arrays_of(cache.solve("0", dict).value).values()) == 1_000_000
+    cache.shrink(10_000_000)
+    assert cache.shrink(2_500_000)  # two of four are forgotten, not all
+    assert [cache.solve(number, dict).source for number in "301"] == ["memory", "memory", "computed"]

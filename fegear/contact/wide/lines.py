@@ -23,6 +23,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -92,13 +93,13 @@ class ContactLines(ReadOnlyArrays):
         weight = self.weight if self.weight.size else np.full(count, 1.0 / count)
         return np.asarray(np.tensordot(weight, values, axes=1))
 
-    @property
+    @cached_property
     def panel(self) -> Array:
         """Length along the face from each station to the next of its line, 0 where there is none, (P, M - 1) [m]."""
         same = self.present[:, 1:] & self.present[:, :-1] & (self.pair[:, 1:] == self.pair[:, :-1])
         return np.asarray(np.where(same, np.diff(self.z, axis=1), 0.0))
 
-    @property
+    @cached_property
     def support(self) -> Array:
         """Length along the face over which a station's unit of line load gathers its force, shape (P, M) [m]."""
         half = 0.5 * self.panel
@@ -107,7 +108,7 @@ class ContactLines(ReadOnlyArrays):
         total[:, 1:] += half
         return total
 
-    @property
+    @cached_property
     def length(self) -> Array:
         """Of all lines along the face, shape (P,) [m]."""
         return np.asarray(self.panel.sum(axis=1))
@@ -139,11 +140,18 @@ class ContactLines(ReadOnlyArrays):
         """
         return np.asarray(self.present & ~self.at_edge & ~(self.clearance(pair, distance) < 0.0))
 
-    def at(self, position: int) -> list[slice]:
+    def at(self, position: int) -> tuple[slice, ...]:
         """Where the lines of a roll position stand, in the order of their pairs."""
-        count = int(self.present[position].sum())
-        starts = [0, *(1 + np.flatnonzero(np.diff(self.pair[position, :count]))).tolist(), count]
-        return [slice(a, b) for a, b in itertools.pairwise(starts)]
+        return self._spans[position]
+
+    @cached_property
+    def _spans(self) -> tuple[tuple[slice, ...], ...]:
+        found = []
+        for present, pair in zip(self.present, self.pair, strict=True):
+            count = int(present.sum())
+            starts = [0, *(1 + np.flatnonzero(np.diff(pair[:count]))).tolist(), count]
+            found.append(tuple(slice(a, b) for a, b in itertools.pairwise(starts)))
+        return tuple(found)
 
 
 def base_twist(pair: GearPair) -> float:

@@ -212,27 +212,63 @@ def swept_mean(lines: ContactLines, line_load: Array, ends: Array, pitch: float)
     count = lines.roll.size
     known = [{int(lines.pair[p, s.start]): s for s in lines.at(p)} for p in range(count)]
     total = np.zeros((ends.size, line_load.shape[2]))
-    theta = ((np.arange(_BETWEEN) + 0.5) / _BETWEEN)[:, None]
+    moving: list[tuple[float, tuple[int, slice], tuple[int, slice]]] = []
     for p in range(count):
         q, ahead = (p + 1) % count, (p + 1) // count
-        step = (lines.roll[q] + ahead * pitch - lines.roll[p]) / pitch
+        step = float((lines.roll[q] + ahead * pitch - lines.roll[p]) / pitch)
         after = {j - ahead: s for j, s in known[q].items()}  # a base pitch on, every pair is where the one ahead was
         if known[p].keys() != after.keys():
             for where, spans in ((p, known[p]), (q, after)):
                 for s in spans.values():
                     total += 0.5 * step * load_below(lines.z[where, s], line_load[where, s], ends)
             continue
-        for j, s in known[p].items():
-            (low, length, first), (low_, length_, second) = (
-                _along(lines.z[where, span], line_load[where, span]) for where, span in ((p, s), (q, after[j]))
-            )
-            share = (ends - low - theta * (low_ - low)) / (length + theta * (length_ - length))
-            before, behind = load_below(*first, share), load_below(*second, share)
-            total += step * ((1.0 - theta)[:, :, None] * before + theta[:, :, None] * behind).mean(axis=0)
+        moving += [(step, (p, s), (q, after[j])) for j, s in known[p].items()]
+    if moving:
+        total += _moved(lines, line_load, ends, moving)
     return np.diff(total, axis=0)
 
 
-def _along(z: Array, line_load: Array) -> tuple[float, float, tuple[Array, Array]]:
-    """Lower end and length of a line [m]; its stations as shares of the length, and the load per share [N]."""
-    length = float(z[-1] - z[0])
-    return float(z[0]), length, ((z - z[0]) / length, line_load * length)
+def _moved(
+    lines: ContactLines, line_load: Array, ends: Array, moving: list[tuple[float, tuple[int, slice], tuple[int, slice]]]
+) -> Array:
+    """Load below heights, averaged while lines move from where they are at one roll position to the next, (n, L) [N].
+
+    Each is as far on its way as all others; on its length the load is that of both ends of the way in turn.
+    """
+    theta = ((np.arange(_BETWEEN) + 0.5) / _BETWEEN)[:, None]
+    places: tuple[list[Array], list[Array]] = ([], [])
+    loads: tuple[list[Array], list[Array]] = ([], [])
+    low: tuple[list[float], list[float]] = ([], [])
+    length: tuple[list[float], list[float]] = ([], [])
+    for _, *both in moving:
+        for end, (p, s) in enumerate(both):
+            z = lines.z[p, s]
+            low[end].append(z[0])
+            length[end].append(z[-1] - z[0])
+            places[end].append((z - z[0]) / (z[-1] - z[0]))
+            loads[end].append(line_load[p, s] * (z[-1] - z[0]))
+    (low_0, low_1), (length_0, length_1) = (np.array(one)[:, :, None, None] for one in (low, length))
+    share = (ends - low_0 - theta * (low_1 - low_0)) / (length_0 + theta * (length_1 - length_0))
+    before, behind = (_loads_below(place, load, share) for place, load in zip(places, loads, strict=True))
+    step = np.array([one for one, *_ in moving])[:, None, None]
+    way = theta[:, :, None]
+    return np.asarray((step * ((1.0 - way) * before + way * behind).mean(axis=1)).sum(axis=0))
+
+
+def _loads_below(place: list[Array], line_load: list[Array], ends: Array) -> Array:
+    """`load_below` of K lines, each as far as its own places, shape (K, ...), on lines of length 1: (K, ..., L)."""
+    sizes = np.array([one.size for one in place])
+    first = np.cumsum(sizes) - sizes
+    flat, load = np.concatenate(place), np.concatenate(line_load)
+    h, two = np.diff(flat, append=np.nan), 0.5 * (load + np.roll(load, -1, axis=0))
+    piece = h[:, None] * two
+    piece[first + sizes - 1] = 0.0  # from one line to the next
+    whole = np.concatenate([np.zeros((1, load.shape[1])), np.cumsum(piece, axis=0)[:-1]])
+    which = np.arange(sizes.size).reshape(-1, *[1] * (ends.ndim - 1))
+    at = np.clip(ends, 0.0, 1.0)
+    # Lines stand one behind the other, two lengths apart; a station missed by rounding changes nothing of the integral.
+    i = np.searchsorted(flat + 2.0 * np.repeat(np.arange(sizes.size), sizes), at + 2.0 * which, side="right") - 1
+    i = np.clip(i, first[which], (first + sizes - 2)[which])
+    part = ((at - flat[i]) / h[i])[..., None]
+    below = whole[i] - whole[first[which]]
+    return np.asarray(below + h[i][..., None] * part * (load[i] + 0.5 * part * (load[i + 1] - load[i])))

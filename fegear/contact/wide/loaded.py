@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
+from fegear.base.plain import code_version, content_key
 from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.fourier import Panels
@@ -251,16 +252,22 @@ class LoadedFlanks(ReadOnlyArrays):
                 for p in range(lines.roll.size) for s in lines.at(p)]  # fmt: skip
         seen.sort(key=lambda found: found[0])
         ends = [self._along_edge(x_end, values) for x_end in (self.pair.x_start, self.pair.x_end)]
+        # Of every contact line, then of both edges beyond the last roll position that brings a line up to a height.
+        at = np.array([*([roll] * z.size for roll, _, _ in seen), *(x + slope * z for x in
+                       (self.pair.x_start, self.pair.x_end))])  # fmt: skip
+        known, there = np.zeros(at.shape), np.zeros(at.shape, dtype=bool)
+        for row, on, (_, p, s) in zip(known, there, seen, strict=False):
+            own = lines.z[p, s]
+            row[:], on[:] = np.interp(z, own, values[p, s]), (own[0] <= z) & (z <= own[-1])
+        for row, on, (heights, of_edge) in zip(known[len(seen) :], there[len(seen) :], ends, strict=True):
+            if heights.size:
+                row[:], on[:] = np.interp(z, heights, of_edge), True
         found = np.full((z.size, x.size), np.nan)
         for row, height in enumerate(z.tolist()):
-            on = [(at, float(np.interp(height, lines.z[p, s], values[p, s])))
-                  for at, p, s in seen if lines.z[p, s][0] <= height <= lines.z[p, s][-1]]  # fmt: skip
-            for x_end, (heights, known) in zip((self.pair.x_start, self.pair.x_end), ends, strict=True):
-                if heights.size:  # beyond the last roll position that brings a line up to this height
-                    on.append((x_end + slope * height, float(np.interp(height, heights, known))))
-            if len(on) > 1:
-                at, load = np.array(sorted(on)).T
-                found[row] = np.interp(x + slope * height, at, load, left=np.nan, right=np.nan)
+            place, value = at[there[:, row], row], known[there[:, row], row]
+            if place.size > 1:
+                order = np.lexsort((value, place))
+                found[row] = np.interp(x + slope * height, place[order], value[order], left=np.nan, right=np.nan)
         return found
 
     def _along_edge(self, x: float, values: Array) -> tuple[Array, Array]:
@@ -271,8 +278,8 @@ class LoadedFlanks(ReadOnlyArrays):
         return lines.z[on][order], values[on][order]
 
 
-#: Matrices that a pair keeps: three for itself, three for its error, as many for other effects.
-_KEPT = 12
+#: Matrices that a pair keeps: four for itself, four for its error, as many for other effects.
+_KEPT = 16
 
 
 @dataclass(frozen=True)
@@ -316,10 +323,22 @@ class FlankPair:
         return self.points.x
 
     def compliance(self, load: float, roll: Array | None = None) -> FlankCompliance:
-        """Lines and compliances at all roll positions, or at those given; see `flank_compliance` for `load`."""
+        """Lines and compliances at all roll positions, or at those given; see `flank_compliance` for `load`.
+
+        Recalled where they are known: changed gaps change nothing of them.
+        """
         for member in MEMBERS:
             if self.gears[member].reach == 0 and self.coupling:
                 raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
+        if roll is not None:  # places between these, which the next gaps move
+            return self._compliance(load, roll)
+        key = content_key(
+            code_version("contact", "fem", "geometry"), "compliance", self.pair, self.coupling, self.hertz, self.panel,
+            self.positions, self.most_gap, load, [self.gears[member].identity for member in MEMBERS],
+        )  # fmt: skip
+        return self.cache.solve(key, lambda: self._compliance(load, None)).value
+
+    def _compliance(self, load: float, roll: Array | None) -> FlankCompliance:
         if roll is None:
             points = self.points
             roll, weight = points.x, points.weights / points.period

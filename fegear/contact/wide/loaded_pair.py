@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, first_of_largest
+from fegear.base.plain import code_version, content_key
 from fegear.contact.loaded_teeth import (
     ErrorOverPitch,
     FlankLoad,
@@ -38,6 +39,7 @@ from fegear.contact.wide.transmission_error import (
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart
 from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
+from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 #: Places along the face per module, at which root stress is looked for, and how many at least.
@@ -74,9 +76,10 @@ class LoadedWidePair:
     neglected : Neglected
         What the effects that are off would change of mean transmission error and K_Hbeta at the nominal load.
     unloaded : ndarray, shape (P,)
-        Transmission error of the rigid flanks at the roll positions of `found` [m].
+        Transmission error of the rigid flanks at the roll positions of `found` [m]; NaN where no error is estimated.
     beside : float
-        By how much gaps are off because modified flanks touch beside the contact lines of unmodified ones [m].
+        By how much gaps are off because modified flanks touch beside the contact lines of unmodified ones [m]; 0 where
+        no error is estimated.
     missed : float
         Share by which compliances of slices are known to be off; 0 for solids.
     """
@@ -180,11 +183,10 @@ class LoadedWidePair:
                 flank_transmission_errors(over.found, over.points), over.stated.peak_to_peak, strict=True
             )
         ]
-        curves, again = (flank_transmission_errors(one, self.flanks.points) for one in (found, self.error.coarse))
+        curves = flank_transmission_errors(found, self.flanks.points)
+        again = flank_transmission_errors(self.error.coarse, self.flanks.points) if self.estimated else curves
         progress(0.5)
-        perfect = replace(self.flanks, positions=over.found.lines.roll.size).solve(
-            [self.nominal], None, over.found.known
-        )
+        perfect = self._mean_without_gaps()
         shift = _missed_too(flank_transmission_error_shift(each[i], curves[i], again[i]), each[i], self._missed)
         # What is stated of the whole base pitch is stated once.
         shift = replace(shift, mean=float(self.error.mean[i]), peak_to_peak=float(self.error.peak_to_peak[i]))
@@ -210,10 +212,26 @@ class LoadedWidePair:
             te_effective=effective,
             local_stiffness_mean=local,
             mesh_stiffness_mean=each[i].mean_secant,
-            mesh_compliance_mean=float(perfect.mean_transmission_error[0]) / self.nominal,
+            mesh_compliance_mean=perfect / self.nominal,
             te_error=self.error.transmission_error[:, i],
             only=self.gaps.base_pitch if uneven else None,
         )
+
+    def _mean_without_gaps(self) -> float:
+        """Mean transmission error of perfect flanks at the nominal load [m], recalled where it is known."""
+        known, flanks = self.over.found.known, self.flanks
+        key = content_key(
+            code_version("contact", "fem", "geometry"), "without gaps", self.pair, known.lines, self.nominal,
+            [flanks.gears[member].identity for member in MEMBERS], flanks.coupling, flanks.hertz, known.spot,
+            known.line_half_width, known.fixed_half_width,
+        )  # fmt: skip
+        count = known.lines.roll.size
+
+        def solve() -> float:
+            perfect = replace(flanks, positions=count).solve([self.nominal], None, known)
+            return float(perfect.mean_transmission_error[0])
+
+        return flanks.cache.solve(key, solve).value
 
     def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:  # noqa: ARG002
         """See `LoadedTeeth`; the nominal load alone is what was solved before."""
@@ -231,37 +249,54 @@ class LoadedWidePair:
         estimates: bool = True,  # noqa: ARG002  (as in the plane; here errors cost next to nothing)
     ) -> RootStressInMesh:
         """See `LoadedTeeth`; one source for each gear, its solid or its slices, looked at all along the face."""
-        from fegear.contact.wide.root_stress import rooted_lines
-
         stress: dict[Member, dict[str, ToothStress]] = {}
         over_face: dict[Member, dict[Side, StressOverFace]] = {}
         across: dict[Member, tuple[float, float]] = {}
         for number, member in enumerate(MEMBERS):
             ((name, influence),) = sources[member].items()
-            rooted = rooted_lines(self.pair, member, self.found.lines, influence.fine, coupling=self.coupling)
-            stress[member] = {name: self._largest_over_face(rooted, influence, over_face)}
+            largest, helical = self._largest_over_face(member, influence, over_face)
+            stress[member] = {name: largest}
             if self.pair.driver.helix_angle and influence.coarse:  # slices know no shear along the face
-                across[member] = self._across(rooted, stress[member][name])
+                worst = largest.worst(self.at)
+                off = largest.tension_error[worst, self.at] / largest.tension[worst, self.at]
+                across[member] = helical, float(off * helical)
             progress((number + 1) / len(MEMBERS))
         return RootStressInMesh(stress, {}, over_face, across)
 
-    def _largest_over_face(
-        self, rooted: RootedLines, influence: SolidInfluence, over_face: dict[Member, dict[Side, StressOverFace]]
-    ) -> ToothStress:
-        """Largest over the face under every load; what it is all over the face at the nominal one goes to the map."""
-        from fegear.contact.plane.tooth_stress import ToothStress
+    def _rooted(self, member: Member, found: LoadedFlanks, solution: SolidSolution) -> RootedLines:
+        """Recalled where it is known: neither gaps nor loads change it."""
         from fegear.contact.wide.root_stress import rooted_lines
 
-        coarse, z, member = self.error.coarse, self.places_along, rooted.member
-        again = None
+        key = content_key(
+            code_version("contact", "fem", "geometry"), "rooted", self.pair, member, found.lines, solution.identity,
+            self.coupling,
+        )  # fmt: skip
+        return self.flanks.cache.solve(
+            key, lambda: rooted_lines(self.pair, member, found.lines, solution, coupling=self.coupling)
+        ).value
+
+    def _largest_over_face(
+        self, member: Member, influence: SolidInfluence, over_face: dict[Member, dict[Side, StressOverFace]]
+    ) -> tuple[ToothStress, float]:
+        """Largest over the face under every load, and of tension across the root at the nominal one.
+
+        What it is all over the face at the nominal load goes to the map.
+        """
+        from fegear.contact.plane.tooth_stress import ToothStress
+
+        coarse, z = self.error.coarse, self.places_along
+        rooted, again, across = self._rooted(member, self.found, influence.fine), None, 0.0
         if self.estimated and influence.coarse:
-            again = rooted_lines(self.pair, member, coarse.lines, influence.coarse, coupling=self.coupling)
+            again = self._rooted(member, coarse, influence.coarse)
         largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
         off: dict[Side, list[Array]] = {"tension": [], "compression": []}
         for i in range(self.found.load.size):
-            felt = {side: rooted.stress(side, self.found.contact.force[:, :, i], z) for side, _ in _SIDES}
+            force = self.found.contact.force[:, :, i]
+            surface = {side: rooted.surface(side, force, z) for side, _ in _SIDES}
+            felt = {side: rooted.stress(side, force, z, surface[side]) for side, _ in _SIDES}
             if i == self.at:
                 over_face[member] = felt
+                across = rooted.largest("tension", force, z, surface["tension"], across=True)
             for side, sign in _SIDES:
                 largest[side].append(felt[side].largest(sign)[0])
                 if again:
@@ -272,13 +307,7 @@ class LoadedWidePair:
                 else:  # slices know how far they are off
                     off[side].append(influence.error.get(f"root_{side}", np.nan) * np.abs(largest[side][-1]))
         ends = (*largest.values(), *off.values())
-        return ToothStress(rooted.x, *(np.stack(one, axis=1) for one in ends))
-
-    def _across(self, rooted: RootedLines, stress: ToothStress) -> tuple[float, float]:
-        i = self.at
-        largest = rooted.largest("tension", self.found.contact.force[:, :, i], self.places_along, across=True)
-        worst = stress.worst(i)
-        return largest, float(stress.tension_error[worst, i] / stress.tension[worst, i] * largest)
+        return ToothStress(rooted.x, *(np.stack(one, axis=1) for one in ends)), across
 
     def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
         """See `LoadedTeeth`."""

@@ -7,7 +7,7 @@ other.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -88,13 +88,14 @@ class RootedLines:
     loads: Array
     teeth: Index
     sources: dict[int, Index]
+    _known: dict[tuple[Side, bytes], Array] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
     def x(self) -> Array:
         """Positions of the teeth, shape (T,) [m]."""
         return np.asarray(self.lines.roll[self.teeth[:, 0]] + self.teeth[:, 1] * self.pair.base_pitch)
 
-    def stress(self, side: Side, force: Array, z: ArrayLike) -> StressOverFace:
+    def stress(self, side: Side, force: Array, z: ArrayLike, surface: Array | None = None) -> StressOverFace:
         """Stress of the fillets under forces on the stations.
 
         Parameters
@@ -104,10 +105,13 @@ class RootedLines:
             [N].
         z : array_like, shape (Z,)
             Along the face, from the middle of the common one [m].
+        surface : ndarray, optional
+            What `surface` gives for these, where it is at hand.
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         fillet, sign = self.solution.fillets[side], _SIGN[side]
-        total, end = self._felt(side, force, places / m), self._ends(side, places / m)
+        total = (self.surface(side, force, places) if surface is None else surface)[0]
+        end = self._ends(side, places / m)
         value, arc = extreme(total.reshape(fillet.arc.size, -1), fillet.arc, sign, end.ravel())
         radius = np.interp(arc, fillet.arc, np.hypot(*fillet.place)) * m
         shape = places.size, len(self.teeth)
@@ -121,9 +125,11 @@ class RootedLines:
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         root = self.solution.fillets[side].arc[:, None, None] <= self._ends(side, places / m)
-        return np.where(root, self._felt(side, force, places / m) / m**2, np.nan)
+        return np.where(root, self.surface(side, force, places)[0] / m**2, np.nan)
 
-    def largest(self, side: Side, force: Array, z: ArrayLike, *, across: bool = False) -> float:
+    def largest(
+        self, side: Side, force: Array, z: ArrayLike, surface: Array | None = None, *, across: bool = False
+    ) -> float:
         """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone.
 
         With `across` it is that of the stress across the root, at right angles to the helix through the place, which
@@ -131,7 +137,7 @@ class RootedLines:
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         arc, sign = self.solution.fillets[side].arc, _SIGN[side]
-        felt = self._surface(side, force, places / m)
+        felt = self.surface(side, force, places) if surface is None else surface
         total = (_across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]).reshape(
             arc.size, -1
         )
@@ -146,44 +152,57 @@ class RootedLines:
         z : array_like, shape (Z,)
             Along the face, from the middle of the common one [m].
         """
-        m, zeta = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float)) / self.pair.driver.module
+        m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         present, columns = self.lines.present, []
         for station in range(present.shape[1]):
             force = np.zeros(present.shape)
             force[:, station] = 1.0
-            columns.append(self._felt(side, force, zeta))
+            columns.append(self.surface(side, force, places)[0])
         felt = np.stack(columns, axis=-1) / m**2
         at = self.teeth[:, 0]
         parts = tuple(np.ascontiguousarray(felt[:, :, at == p]) for p in range(self.lines.roll.size))
-        ends = self._ends(side, zeta)
+        ends = self._ends(side, places / m)
         order = tuple(np.ascontiguousarray(ends[:, at == p]) for p in range(self.lines.roll.size))
         return RootInfluence(self.solution.fillets[side].arc, _SIGN[side], order, parts)
 
-    def _felt(self, side: Side, force: Array, zeta: Array) -> Array:
-        """Stress up the fillet under forces on the stations, shape (points, Z, T) [1/module^2 times N]."""
-        return np.asarray(self._surface(side, force, zeta)[0])
+    def surface(self, side: Side, force: Array, z: Array) -> Array:
+        """The three stresses of `fegear.fem.solid.fillet.surface_stress` under forces on the stations.
 
-    def _surface(self, side: Side, force: Array, zeta: Array) -> Array:
-        """The three stresses of `fegear.fem.solid.fillet.surface_stress` of each, shape (3, points, Z, T)."""
-        solution, fillet = self.solution, self.solution.fillets[side]
+        Parameters
+        ----------
+        side : {"tension", "compression"}
+        force : ndarray, shape (P, M)
+            [N].
+        z : ndarray, shape (Z,)
+            Along the face, from the middle of the common one [m].
+
+        Returns
+        -------
+        ndarray, shape (3, points, Z, T)
+            At every point up the fillets of every tooth [N/module^2].
+        """
         _, spans = places_of(self.lines)
         on = force[self.lines.present]
         loads = np.stack([self.loads[:, s] @ on[s] for s in spans], axis=1)
-        total = np.zeros((3, fillet.arc.size, zeta.size, len(self.teeth)))
+        moved: Array | float = 0.0
         for k, felt in self.sources.items():
-            used, column = np.unique(felt[:, 1], return_inverse=True)
-            stress = solution.stress_under(k, side, loads[:, used], zeta)
-            total[..., felt[:, 0]] += stress[..., column]  # at most one line is k teeth away
-        return total
+            under = np.zeros((loads.shape[0], len(self.teeth)))
+            under[:, felt[:, 0]] = loads[:, felt[:, 1]]  # at most one line is k teeth away
+            moved = moved + self.solution.moved(k, side, under)
+        return self.solution.surface_stress(side, np.asarray(moved), z / self.pair.driver.module)
 
     def _ends(self, side: Side, zeta: Array) -> Array:
         """How far up the fillet stress is root stress, shape (Z, T): less beside a contact line near its foot."""
+        key = side, zeta.tobytes()
+        if (known := self._known.get(key)) is not None:
+            return known
         found = np.full((zeta.size, len(self.teeth)), self.solution.fillets[side].length)
         _, spans = places_of(self.lines)
         for tooth, line in self.sources[0].tolist():
             own = self.bands.part(spans[line])
             near = (zeta > own.zeta[0] - own.half_width[0]) & (zeta < own.zeta[-1] + own.half_width[-1])
             found[near, tooth] = np.interp(zeta[near], own.zeta, self.solution.root_end(0, side, own))
+        self._known[key] = found
         return found
 
 

@@ -119,23 +119,24 @@ def surface_stress(
         Along the tangent t in the section, across it (b, in the surface, all but along the axis), and the shear
         between both.
     """
-    along = np.einsum("pn,nckr->pckr", fillet.slopes, displacement, optimize=True)
-    here = np.einsum("pn,nckr->pckr", fillet.values, displacement, optimize=True)
-    up = np.einsum("pckr,kz->cpzr", along, values, optimize=True)
-    helix = np.einsum("pckr,kz->cpzr", here, slopes, optimize=True)
-    v = np.einsum("pckr,kz->cpzr", here, values, optimize=True)
-    helix[0] -= tau * v[1]
-    helix[1] += tau * v[0]
-    x, y = fillet.place[:, :, None, None]
-    tx, ty = fillet.tangent[:, :, None, None]
-    gx, gy = -tau * y, tau * x
-    e_ss = tx * up[0] + ty * up[1]
-    e_zz = gx * helix[0] + gy * helix[1] + helix[2]
-    e_sz = 0.5 * (gx * up[0] + gy * up[1] + up[2] + tx * helix[0] + ty * helix[1])
+    (x, y), (tx, ty) = fillet.place, fillet.tangent
+    gx, gy, none = -tau * y, tau * x, np.zeros_like(x)
     skew = tx * gx + ty * gy
     across = np.sqrt(1.0 + gx**2 + gy**2 - skew**2)
+    # Every strain as a sum over what the three displacements change up the section and along the helix, (2, 3, points).
+    e_ss = np.array([[tx, ty, none], [none, none, none]])
+    e_zz = np.array([[none, none, none], [gx, gy, none + 1.0]])
+    e_sz = 0.5 * np.array([[gx, gy, none + 1.0], [tx, ty, none]])
     e_tb = (e_sz - skew * e_ss) / across
     e_bb = (e_zz - skew**2 * e_ss - 2.0 * skew * across * e_tb) / across**2
     nu = poisson_ratio
     modulus = 1.0 / (1.0 - nu * nu)
-    return np.stack([modulus * (e_ss + nu * e_bb), modulus * (e_bb + nu * e_ss), e_tb / (1.0 + nu)])
+    stress = np.stack([modulus * (e_ss + nu * e_bb), modulus * (e_bb + nu * e_ss), e_tb / (1.0 + nu)])
+    # The section turns along the helix, and what moves on it with it.
+    turned = tau * np.stack([stress[:, 1, 1], -stress[:, 1, 0], np.zeros_like(stress[:, 1, 0])], axis=1)
+    moved = np.ascontiguousarray(displacement.transpose(0, 1, 3, 2)).reshape(fillet.nodes.size, -1)
+    shape = fillet.arc.size, 3, displacement.shape[3], displacement.shape[2]
+    along, here = ((matrix @ moved).reshape(shape) for matrix in (fillet.slopes, fillet.values))
+    of_values = np.einsum("scp,pcrk->sprk", stress[:, 0], along) + np.einsum("scp,pcrk->sprk", turned, here)
+    of_slopes = np.einsum("scp,pcrk->sprk", stress[:, 1], here)
+    return np.asarray((of_values @ values + of_slopes @ slopes).swapaxes(2, 3))

@@ -179,24 +179,40 @@ class SolidSolution(TwistedFlank):
         RangeError
             If tooth k is beyond reach, a place lies off the face, or a band off flank or face.
         """
-        return self.stress_under(k, side, loads_of(pressed, self.flank, self.face), zeta)
+        return self.surface_stress(side, self.moved(k, side, loads_of(pressed, self.flank, self.face)), zeta)
 
-    def stress_under(self, k: int, side: Side, loads: Array, zeta: ArrayLike) -> Array:
-        """The same under loads on the flank's ports, shape (n, P), as `loads_of` gives them for bands.
+    def moved(self, k: int, side: Side, loads: Array) -> Array:
+        """Displacements of a fillet of tooth k under loads on tooth 0's flank, shape (nodes, 3, functions, P).
+
+        Parameters
+        ----------
+        k : int
+        side : {"tension", "compression"}
+        loads : ndarray, shape (n, P)
+            On the flank's ports, as `loads_of` gives them for bands.
 
         Raises
         ------
         RangeError
-            If tooth k is beyond reach, or a place lies off the face.
+            If tooth k is beyond reach.
         """
         self._check_tooth(k)
+        return np.asarray(self.displacement[k, side] @ loads)
+
+    def surface_stress(self, side: Side, moved: Array, zeta: ArrayLike) -> Array:
+        """What `fillet_stress` gives, of displacements that `moved` gives, or of a sum of such.
+
+        Raises
+        ------
+        RangeError
+            If a place lies off the face.
+        """
         z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
         if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
             raise RangeError(
                 "zeta", f"{off[0]:.6g} modules", f"lies off the face, which runs from {-half:.6g} to {half:.6g} modules"
             )
         values, slopes = self.face.at(z)
-        moved = self.displacement[k, side] @ loads
         return surface_stress(self.fillets[side], self.tau, self.poisson_ratio, moved, values, slopes)
 
 

@@ -6,6 +6,8 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from fegear.case.built.loaded_flanks import FlanksToLoad, check_flanks_to_load, flanks_to_load
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_inputs import gear_name
@@ -124,8 +126,11 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     }
     stated, i = over.stated, asked.loads.index(asked.nominal)
     changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}
-    unloaded = unloaded_error(asked.pair, gaps.under(asked.nominal), found.lines.roll)
-    beside = beside_the_lines(asked.pair, gaps.under(asked.nominal), found.lines)
+    unloaded, beside = np.full(found.lines.roll.size, math.nan), 0.0
+    if asked.estimates:  # nothing else is found from either; while a value moves neither is looked at
+        rigid = gaps.under(asked.nominal)
+        unloaded = unloaded_error(asked.pair, rigid, found.lines.roll)
+        beside = beside_the_lines(asked.pair, rigid, found.lines)
     apart = asked.gaps(relief=False, misalignment=effects.misalignment)
     return LoadedWidePair(
         flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, Neglected(changes), unloaded,
