@@ -39,6 +39,8 @@ from fegear.window.job_queue import Asked, Job
 _STROKE = 1.5
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.2
+#: Pictures that a page cannot draw wait so long for another move: drawing one, half a second, is not interrupted [s].
+_AT_REST = 1.0
 #: After so many answers to a value being moved what is kept is bounded again.
 _STROKES = 8
 #: Bytes that results in memory may take beside those of the present case; a plane gear takes some 35 MB, and comes
@@ -306,6 +308,8 @@ class Worker:
                 figure = one.made()
                 if figure.drawable_in_page and figure is one:
                     continue
+                self._inbox.wait(_AT_REST)
+                self._inbox.look()
                 with tempfile.TemporaryDirectory() as folder:
                     for number, picture in enumerate(draw_pictures(figure, Path(folder))):
                         self._say(

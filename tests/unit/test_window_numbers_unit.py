@@ -6,8 +6,10 @@ import base64
 import csv
 import json
 import re
+import threading
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +22,7 @@ from fegear.output.folder import write_results
 from fegear.results.catalogue import STAGES
 from fegear.window.bench import Bench
 from fegear.window.computing import whole
-from fegear.window.job_queue import Asked, Compute, Export
+from fegear.window.job_queue import Asked, Compute, Export, Unwanted
 from fegear.window.worker import Worker
 
 if TYPE_CHECKING:
@@ -216,6 +218,27 @@ def test_every_kind_of_export_writes_its_files(tmp_path, wire, worker):
     assert wire.said[-1].what == "refused"
     assert "no gear has one of known amount" in wire.said[-1].content["sentence"]
     assert not (tmp_path / "none").exists()
+
+
+def test_a_picture_that_a_page_cannot_draw_gives_way_to_a_move_soon_after(wire, tmp_path, monkeypatch):
+    """Half a second of drawing stood between the release of a point and the first answer to the next drag."""
+    figure = SimpleNamespace(key="space", drawable_in_page=False)
+    figure.made = lambda: figure
+    results = SimpleNamespace(outcomes={"flanks": SimpleNamespace(figures=(figure,))})
+    drawn = []
+    monkeypatch.setattr("fegear.output.draw_png.draw_pictures", lambda one, _folder: drawn.append(one.key) or ())
+    worker = Worker(wire, tmp_path / "shapes")
+    worker._inbox.watch(lambda _job: True)
+    soon = threading.Timer(0.2, worker._inbox.put, [Compute(2, Asked("", "c", "."))])
+    soon.start()
+    with pytest.raises(Unwanted):
+        worker._pictures(results)
+    assert drawn == []
+    soon.join()
+    worker._inbox.take()
+    worker._inbox.watch(lambda _job: True)
+    worker._pictures(results)  # at rest
+    assert drawn == ["space"]
 
 
 def test_progress_counts_the_tasks_of_the_case_and_not_the_changes_before_it(worker, wire):
