@@ -7,6 +7,7 @@ import pytest
 
 from fegear.contact.wide.lines import _shared, contact_lines, line_breaks, roll_points, shortest_line
 from fegear.contact.wide.load_factors import _loads_below, load_below, swept_mean
+from fegear.contact.wide.transmission_error import curve_through, from_half
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -144,3 +145,15 @@ def test_loads_below_heights_of_many_lines_at_once_are_those_of_each():
     found = _loads_below(place, load, ends)
     for k in range(4):
         np.testing.assert_allclose(found[k], load_below(place[k], load[k], ends[k]), rtol=0.0, atol=1e-14)
+
+
+def test_curves_through_roll_positions_are_the_same_to_the_last_digit_every_time():
+    """scipy's interpolator lays its points in a random order: harmonics differed by 1e-14 from run to run."""
+    points = roll_points(pair(20.0), 33)
+    values = np.cos(2.0 * math.pi * points.x / points.period)
+    x = np.linspace(points.breaks[0], points.breaks[-1], 400)[1:-1]
+    found, half = curve_through(points, values, x), from_half(points, values)
+    for _ in range(8):
+        assert np.array_equal(curve_through(points, values, x), found)
+        assert np.array_equal(from_half(points, values), half)
+    np.testing.assert_allclose(found, np.cos(2.0 * math.pi * x / points.period), atol=1e-3)

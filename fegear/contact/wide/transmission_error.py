@@ -173,7 +173,7 @@ def curve_through(points: Panels, values: Array, x: Array) -> Array:
         at = points.x[own == piece]
         ends = points.breaks[max(piece - 1, 0)], points.breaks[min(piece, points.breaks.size - 1)]
         if max(at[0] - ends[0], ends[1] - at[-1]) < _ON_END * points.period:
-            found[wanted == piece] = BarycentricInterpolator(at, values[own == piece])(x[wanted == piece])
+            found[wanted == piece] = _polynomial(at, values[own == piece])(x[wanted == piece])
     return np.asarray(found)
 
 
@@ -187,5 +187,12 @@ def from_half(points: Panels, values: Array) -> Array:
         x, own = points.x[piece == one], values[piece == one]
         kept = (np.arange(x.size) % 2 == 0) | (np.arange(x.size) == x.size - 1)
         if not kept.all():
-            found[piece == one] = BarycentricInterpolator(x[kept], own[kept])(x)
+            found[piece == one] = _polynomial(x[kept], own[kept])(x)
     return found
+
+
+def _polynomial(x: Array, values: Array) -> BarycentricInterpolator:
+    """Through values at ascending places; weights are made here, for scipy makes them in another order each time."""
+    apart = (x[:, None] - x) * (4.0 / (x[-1] - x[0]) if x.size > 1 else 1.0)
+    np.fill_diagonal(apart, 1.0)
+    return BarycentricInterpolator(x, values, wi=1.0 / apart.prod(axis=1))
