@@ -68,6 +68,13 @@ fegear_prepare() { # the equations of motion become machine code now, half a min
     "$venv/bin/python" -I -m fegear.dynamics.motion.prepare >/dev/null 2>&1 || :
 }
 
+fegear_bytecode() { # keeps the bytecode of tests and of what they load, which every worker of the first run would make for itself
+    (
+        unset PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX
+        cd "$root" && "$venv/bin/python" -m pytest -n 0 --collect-only -qq >/dev/null 2>&1
+    ) || :
+}
+
 fegear_setup() {
     venv=$1 extra=${2:-}
     missing=$(fegear_libraries)
@@ -108,7 +115,9 @@ fegear_setup() {
         fi
     fi
     fegear_pip --editable "$root${extra:+[$extra]}" || return 1
+    case "$extra" in test | dev) fegear_bytecode & ;; esac # on another processor, beside what takes one
     fegear_prepare
+    wait
     # What an extra holds of others is not set up once more: tests have all that the site and the window need.
     case "$extra" in
     dev) served="dev test docs workbench program" ;;

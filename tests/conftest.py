@@ -1,10 +1,11 @@
-"""How many random cases a property is tried on: 40 in the ordinary run, always the same; 1000 in the long run.
+"""How many random cases a property is tried on: 16 in the ordinary run, 40 with the dear tests; 1000 in the long run.
 
 Tests that run another program ask the fixture `program` for it: where it is missing they are skipped, with the line
 that installs it. ``--no-skips`` lets no test be skipped.
 
-Tests marked ``dear`` take seconds of a processor each, a third of the time of all: ``--dear`` runs them too, as
-`.ci/run` does at every change; who names one by its place (``FILE::TEST``) gets it anyway.
+Tests marked ``dear`` take a second of a processor or more each, half of the time of all: ``--dear`` runs them too, as
+`.ci/run` does at every change; who names one by its place (``FILE::TEST``) gets it anyway. ``dear("30", "ring")`` marks
+those of a parametrised test that have these names.
 
 ``--last-bit SEED`` computes as another processor might: with noise of one unit in the last place where rounding enters
 (`helpers/other_processor`). It runs the tests marked ``last_bit`` and every tenth of the others, always the same;
@@ -13,6 +14,7 @@ Tests marked ``dear`` take seconds of a processor each, a third of the time of a
 
 import gc
 import importlib
+import math
 import os
 import re
 import shutil
@@ -24,10 +26,11 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-ORDINARY, LONG = 40, 1000
+FEW, ORDINARY, LONG = 16, 40, 1000
 #: Solves and long chains of laws take their time; what is slow shows in the durations, not as a failure.
 _SHARED = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.filter_too_much]}
 
+settings.register_profile("few", max_examples=FEW, derandomize=True, database=None, **_SHARED)
 settings.register_profile("ordinary", max_examples=ORDINARY, derandomize=True, database=None, **_SHARED)
 settings.register_profile("long", max_examples=LONG, print_blob=True, **_SHARED)
 
@@ -71,7 +74,9 @@ def scheduler():
 
 def pytest_addoption(parser):
     parser.addoption("--no-skips", action="store_true", help="a test that cannot run here has failed")
-    parser.addoption("--dear", action="store_true", help="run the tests that take seconds each, too, as .ci/run does")
+    parser.addoption(
+        "--dear", action="store_true", help="run the dear tests and more random cases, too, as .ci/run does"
+    )
     parser.addoption("--last-bit", type=int, metavar="SEED", help="noise in the last place, of this seed")
     parser.addoption("--last-bit-every", type=int, default=10, metavar="N", help="run every N-th ordinary test with it")
 
@@ -99,8 +104,36 @@ def is_long_run(config):
     return bool(re.search(r"\blong\b", expression)) and not re.search(r"\bnot\s+long\b", expression)
 
 
+def leaves_dear_ones(config):
+    """Whether dear tests are left to `.ci/run`, and with them most of the random cases."""
+    named = any("::" in one for one in config.args)
+    return not (config.getoption("dear") or config.getoption("last_bit") is not None or is_long_run(config) or named)
+
+
+def is_dear(item):
+    """Whether a test is marked ``dear``, itself or by the name of its parameters."""
+    return any(not mark.args or item.callspec.id in mark.args for mark in item.iter_markers("dear"))
+
+
+def _refuse_names_that_no_test_has(items):
+    """A name of parameters that is written wrong would leave a dear test in the ordinary run."""
+    named = {}
+    for item in items:
+        for mark in item.iter_markers("dear"):
+            if mark.args:
+                named.setdefault((item.path, item.originalname), set(mark.args)).discard(item.callspec.id)
+    for (path, name), left in named.items():
+        if left:
+            raise pytest.UsageError(f"{path}: {name} is marked dear for {sorted(left)}, which it does not have")
+
+
+def profile_of(config):
+    """Name of the profile of hypothesis."""
+    return "long" if is_long_run(config) else "few" if leaves_dear_ones(config) else "ordinary"
+
+
 def pytest_configure(config):
-    settings.load_profile("long" if is_long_run(config) else "ordinary")
+    settings.load_profile(profile_of(config))
     if (seed := config.getoption("last_bit")) is not None:
         sys.path.insert(0, str(Path(__file__).parent / "helpers" / "other_processor"))
         importlib.import_module("last_bit").install(seed)
@@ -125,9 +158,9 @@ def pytest_collection():
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Every property belongs to both runs; ``examples(ordinary, long)`` is for those whose cases cost seconds."""
+    """Every property belongs to all runs; ``examples(ordinary, long)`` is for those whose cases cost seconds."""
     long_run = is_long_run(config)
-    profile = settings.get_profile("long" if long_run else "ordinary")
+    profile = settings.get_profile(profile_of(config))
     seen = set()
     for item in items:
         function = getattr(item, "obj", None)
@@ -139,11 +172,13 @@ def pytest_collection_modifyitems(config, items):
         if marker and function not in seen:
             seen.add(function)
             ordinary, many = marker.args
-            settings(profile, max_examples=many if long_run else ordinary)(function)
+            few = math.ceil(ordinary * FEW / ORDINARY) if leaves_dear_ones(config) else ordinary
+            settings(profile, max_examples=many if long_run else few)(function)
     if config.getoption("last_bit") is not None:
         _choose(config, items, lambda item: _is_for_last_bit(config, item))
-    elif not (config.getoption("dear") or long_run or any("::" in one for one in config.args)):
-        _choose(config, items, lambda item: item.get_closest_marker("dear") is None)
+    elif leaves_dear_ones(config):
+        _refuse_names_that_no_test_has(items)
+        _choose(config, items, lambda item: not is_dear(item))
 
 
 def _choose(config, items, wanted):

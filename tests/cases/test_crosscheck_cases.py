@@ -284,6 +284,7 @@ def test_study_finds_what_the_documentation_says(study):
     assert 0.9 < tip.min() < tip.max() < 1.02
 
 
+@pytest.mark.dear
 def test_the_finite_elements_of_the_study_are_fine_enough():
     # The study's coarse meshes against the default ones with a fillet twice as fine, on a sharp and a soft root.
     scene = read_scene(CASES / "root_stress_validation.toml")
@@ -395,6 +396,7 @@ def test_the_command_writes_tables_pictures_and_report(tmp_path):
     assert "crosscheck_root_stress_test" in (tmp_path / "o" / "report.html").read_text("utf-8")
 
 
+@pytest.mark.dear
 def test_the_study_ends_with_its_pictures(tmp_path):
     with pytest.raises(SystemExit):
         app([

@@ -111,6 +111,7 @@ def test_four_square_spectrum_and_root_stress():
         assert sign * worst == pytest.approx(pitch_mm() - 6.8725, abs=0.3)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("coupled", "close"),
     # without coupling each contact is linear about the full load on one pair, as in NASA TM-89901
@@ -375,6 +376,7 @@ def test_a_damping_law_that_means_nothing_is_refused(override, words):
         read_scene(CASES / "lin_dynamic_factor.toml", [override])
 
 
+@pytest.mark.dear
 def test_four_square_from_finite_elements():
     """The rig from finite elements: stiffer teeth than the paper's deflections, hence higher resonances."""
     tables, values, results = run("four_square_fe")
@@ -438,6 +440,7 @@ def test_lin_design_chart(tmp_path):
     assert written <= set(kept)  # nothing was computed again
 
 
+@pytest.mark.dear
 def test_design_chart_with_friction():
     """A coefficient of zero changes nothing; a real one changes the factor as it does that of a sweep over speed."""
     speeds = "dynamics.speeds=['6000 rpm', '10500 rpm']"

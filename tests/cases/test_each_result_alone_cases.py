@@ -103,6 +103,7 @@ def test_a_pair_with_a_width_states_the_same_alone_and_together():
     assert each_alone(CASES / "litvin_under_load.toml", results, *more) == {}
 
 
+@pytest.mark.dear
 def test_plane_and_wide_teeth_of_one_pair_have_numbers_of_their_own(tmp_path):
     """Two models, two numbers, two names: none of them goes with what else is asked for."""
     path = tmp_path / "spur.toml"

@@ -25,6 +25,12 @@ def run(name, *overrides):
     return tables, {value.name: value.value for value in results.values}, results
 
 
+@pytest.mark.dear(
+    "litvin_lead-kinds1-4.3015",
+    "litvin_localised-kinds4-12.3332",
+    "sources/litvin_fig07-kinds5-1.5356",
+    "sources/litvin_fig09-kinds6-0.0",
+)
 @pytest.mark.parametrize(
     ("name", "kinds", "peak_to_peak"),
     [
@@ -58,6 +64,7 @@ def test_without_the_effect_the_drive_is_aligned_or_the_table_refused():
     assert any("ill-defined" in remark for remark in results.remarks)
 
 
+@pytest.mark.dear
 def test_a_lead_error_counts_by_equation_18():
     """TM-107451, Eq. 18; the lead of the pinion that Appendix 2 then makes is told beside it."""
     _, by_lead, results = run("sources/litvin_eq18", "tooth_contact.positions=20")

@@ -76,6 +76,7 @@ def test_tables_sum_to_the_load(outcome):
     np.testing.assert_allclose(places["hertz_pressure [MPa]"][loaded], 2.0 * f / (np.pi * b), rtol=1e-9)
 
 
+@pytest.mark.dear
 def test_the_load_goes_to_the_end_without_a_gap_and_crowning_takes_it_from_there(cache, outcome):
     face = columns(outcome, "load_over_face_I")["factor"]
     assert face[0] > 1.1 > 0.9 > face[-1]
@@ -275,6 +276,7 @@ def test_one_gear_is_not_solved_as_a_solid_and_in_slices():
     assert make_plan(scene, STAGES).steps
 
 
+@pytest.mark.dear
 def test_pressures_beside_stations_that_a_line_lacks_raise_no_warning(cache):
     """With corner contact a line has fewer stations than another: infinity less infinity was computed for the rest."""
     path = CASE.with_name("nasa_relief_design.toml")

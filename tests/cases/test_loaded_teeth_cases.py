@@ -125,6 +125,7 @@ def test_without_corner_contact_the_run_says_what_that_costs():
 NO_CHART = 'results=["load-sharing", "transmission-error", "root-stress-history", "relief", "robustness"]'
 
 
+@pytest.mark.dear
 def test_nasa_gears_relief_with_coupling():
     tables, values, results = run("nasa_relief_design", NO_CHART)
     designed, mean = values["I.te_peak_to_peak.designed"], values["I.te_mean.designed"].value
@@ -172,6 +173,7 @@ def test_a_search_without_tip_corners_says_what_they_would_make_of_it():
             assert f"{values[f'I.{member}.linear_tip_start'].value:.4g} deg" in words
 
 
+@pytest.mark.dear
 def test_chart_and_curves_of_one_case_state_delta_once():
     """Both named it, and a run with both was refused."""
     few = ("design.chart.lengths=[0.5, 1.0]", "design.chart.amounts_over_delta=[1.0]")
@@ -354,6 +356,7 @@ def fed_back(tables, folder):
     return f"gear.test.relief={table}", 'results=["transmission-error"]', "effects.relief=true"
 
 
+@pytest.mark.dear
 def test_a_designed_relief_can_be_fed_back_as_a_table(tmp_path):
     """The relief table that one run writes is the relief of the next: the transmission error is gone."""
     tables, values, _ = run("mark_minimum_excitation")

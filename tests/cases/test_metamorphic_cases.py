@@ -82,7 +82,9 @@ def scaled_file(path, scales, folder):
     return str(copied)
 
 
-@pytest.mark.dear
+@pytest.mark.dear(
+    *(f"{name}-{how}" for name in ("litvin_lead", "blankenship_singh", "pinion_and_wheel") for how in SCALES)
+)
 @pytest.mark.parametrize("how", SCALES)
 @pytest.mark.parametrize("name", cases(*OWN_STEEL))
 def test_mechanics_knows_no_units_of_length_mass_and_time(name, how, monkeypatch, tmp_path):
@@ -121,6 +123,7 @@ def test_other_units_leave_searched_reliefs_and_what_they_leave(searched):
         np.testing.assert_allclose(other, one * factor, rtol=1e-6)
 
 
+@pytest.mark.dear
 def test_curves_of_searched_reliefs_stay_within_half_of_their_errors(searched):
     """Between processors they moved by 6.6e-9 without a stated error."""
     for shape in ("linear", "parabolic"):

@@ -22,6 +22,7 @@ def blocks(kind: str) -> list[str]:
     return re.findall(rf"```{kind}\n(.*?)```", README, re.DOTALL)
 
 
+@pytest.mark.dear
 def test_the_program_prints_what_the_readme_says(tmp_path):
     (program,), (printed,) = blocks("python"), blocks("text")
     assert len([line for line in program.splitlines() if line.strip()]) <= 12

@@ -167,6 +167,7 @@ def test_the_report_needs_neither_plotly_nor_matplotlib_and_plane_gears_are_draw
     assert (tmp_path / "fields" / "a.vtu").is_file()
 
 
+@pytest.mark.dear
 def test_pictures_are_there_and_not_empty(made):
     _, folder = made
     names = {path.stem for path in (folder / "plots").iterdir()}

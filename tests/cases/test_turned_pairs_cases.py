@@ -242,6 +242,7 @@ MIRRORED_AT_ONCE = ("litvin_lead", "two_stage_shafts")
 ONE_DESIGN = "helical_flank_design"
 
 
+@pytest.mark.dear("litvin_lead")
 @pytest.mark.parametrize(
     "name",
     [

@@ -154,6 +154,31 @@ def serve(tmp_path):
             one.end(signal.SIGKILL)
 
 
+def test_a_value_stepped_by_keyboard_changes_the_results_and_one_that_is_refused_leaves_them(browser, serve, tmp_path):
+    """The shortest walk, of the ordinary run; the next tests walk through all of the window."""
+    path = tmp_path / "drive.toml"
+    path.write_text(TEXT)
+    served = serve(str(path))
+    go(browser, served.address)
+    browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
+    before = largest_load(browser)
+    browser.run(f"{field('pair.I.load')}.focus()")
+    press(browser, "ArrowUp", 38)
+    browser.until(f"{field('pair.I.load')}.value === '6 kN'")
+    browser.until(f"{IDLE} && document.querySelector('.values td.number b').textContent !== '{before}'")
+    shown = largest_load(browser)
+    browser.run(f"{field('gear.a.module')}.select()")
+    browser("Input.insertText", text="3 kg")
+    press(browser, "Enter", 13)
+    browser.until("[...document.querySelectorAll('[role=alert]')].some(one => one.textContent.startsWith("
+                  "'gear.a.module = \"3 kg\": is not a length'))")  # fmt: skip
+    assert largest_load(browser) == shown
+    browser.click(button("Undo"))
+    browser.until(f"{field('gear.a.module')}.value === '3 mm'")
+    served.end()
+
+
+@pytest.mark.dear
 def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server(browser, serve, tmp_path):
     path = tmp_path / "drive.toml"
     path.write_text(TEXT)
@@ -414,6 +439,7 @@ def serious(browser) -> list[str]:
     return list(found)
 
 
+@pytest.mark.dear
 def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves(browser, serve, tmp_path):
     path = tmp_path / "drive.toml"
     path.write_text(PLANE)

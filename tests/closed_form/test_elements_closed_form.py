@@ -199,6 +199,7 @@ def _gauss(points):
     return [(x, 2 * (1 - x * x) / (points * mpmath.legendre(points - 1, x)) ** 2) for x in roots]
 
 
+@pytest.mark.dear("4-True-9")
 @pytest.mark.parametrize(
     ("order", "curved", "points"),
     [

@@ -98,6 +98,7 @@ def test_less_material_gives_way_more():
     assert off[0, 0] < thin[0, 0] < off[-1, -1]
 
 
+@pytest.mark.dear
 def test_a_thin_web_bends():
     """Functions along the face that are cut far from the flank leave a web its bending.
 
@@ -113,6 +114,7 @@ def test_a_thin_web_bends():
     assert (cut < 1.001 * whole).all()
 
 
+@pytest.mark.dear
 def test_teeth_of_a_deep_rim_feel_no_breaks(monkeypatch):
     """Functions of their own over the whole face, instead of the body's pieces: what the body does stays."""
     given = GearBody(5.9, HUB, (-1.5, -0.5), FACE)
@@ -161,6 +163,7 @@ def test_the_solution_that_shows_the_error_has_two_degrees_less_on_every_piece()
         assert (fewer <= degrees - 2).all()
 
 
+@pytest.mark.dear
 def test_held_web_and_hub():
     """A hub no wider than the web is the web down to the bore; a wider hub holds it more firmly."""
     web = (-0.5, 0.5)

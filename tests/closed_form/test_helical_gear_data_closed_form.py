@@ -137,6 +137,7 @@ def test_backlash_is_the_gap_between_the_back_flanks(one, teeth, shift, apart):
     assert pair.normal_backlash == pytest.approx(left * math.cos(beta_w) * math.cos(alpha), abs=1e-15)
 
 
+@pytest.mark.dear
 @settings(max_examples=8)
 @given(gears, st.sampled_from([19, 40]), st.sampled_from([-0.1, 0.3]))
 def test_shifted_flanks_touch_without_error_at_the_tight_distance_and_lag_by_the_backlash_beyond_it(one, teeth, shift):

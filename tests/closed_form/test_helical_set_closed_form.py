@@ -134,6 +134,7 @@ def test_every_mesh_gives_way_as_its_flanks_do_under_the_load_that_it_carries():
     assert 0.0 < worst < 5e-3
 
 
+@pytest.mark.dear
 def test_a_set_of_one_planet_gives_way_as_its_two_pairs_do():
     _, found = run("planet-load-sharing", planets=1, stiffness={}, fixed="carrier", torque="62.5 N*m")
     loads = data(found, "planet-load-sharing")
@@ -169,6 +170,7 @@ def test_given_stiffness_shares_the_load_by_the_formula():
     assert np.abs(loads.mesh_force[0, 0] - expected).max() < 1e-6 * force
 
 
+@pytest.mark.dear
 def test_both_fillets_of_a_planet_are_one_place_seen_from_both_ends():
     """A point of the pulled fillet at z is the point of the pressed one at -z, turned half about the tooth."""
     _, found = run(*BOTH)
@@ -185,6 +187,7 @@ def test_both_fillets_of_a_planet_are_one_place_seen_from_both_ends():
             np.testing.assert_allclose(seen[:-1], placed[0][axis][:-1], atol=2e-3)
 
 
+@pytest.mark.dear
 def test_planets_are_bent_to_either_side():
     _, found = run(*BOTH)
     stress = data(found, "planet-root-stress").found
@@ -202,6 +205,7 @@ def test_offset_faces_are_refused():
         run("planet-set", pair={"axial_offset": "1 mm"})
 
 
+@pytest.mark.dear
 def test_the_pressure_on_the_tooth_of_a_ring_is_drawn_on_its_flank():
     """Both teeth of the drawing carry the pressure of the same contact; that of the ring was bare."""
     _, found = run(*BOTH)

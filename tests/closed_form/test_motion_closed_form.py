@@ -220,6 +220,7 @@ def test_zero_damping_at_resonance_is_refused():
     assert steady_state(model(0.7, zeta=0.0)).kind == "periodic"
 
 
+@pytest.mark.dear("1.0-7.5e-06-2e-05-chaotic-0")
 @pytest.mark.parametrize(
     ("ratio", "amplitude", "backlash", "kind", "periods"),
     [

@@ -91,6 +91,7 @@ def answers(loads):
     }
 
 
+@pytest.mark.dear
 def test_stated_errors_cover_what_finer_settings_change(unequal, monkeypatch):
     """Teeth solved to 1e-3, three times the forces and twice the places: within what was stated at 1e-2."""
     rough = answers(loads_of(unequal))

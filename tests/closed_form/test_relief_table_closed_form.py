@@ -69,6 +69,7 @@ def designed_pair(engagement, ratio, ramp, load):
     return minimum_excitation(engagement, loading, load)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("z", "addendum", "ratio", "ramp"),
     [

@@ -55,6 +55,7 @@ def removed(gear, points):
     return base * (half - angle + np.arctan2(string, base)) - string, string / base
 
 
+@pytest.mark.dear("rounded-table", "rounded-both")
 @pytest.mark.parametrize(("gear", "kind"), EACH)
 def test_the_drawn_flank_is_the_involute_less_the_relief(gear, kind, tmp_path):
     """The tangent of the base circle through a point meets the involute at the string's length."""
@@ -77,6 +78,7 @@ def test_the_drawn_flank_is_the_involute_less_the_relief(gear, kind, tmp_path):
     assert r.max() == pytest.approx(gear.tooth.tip_radius, rel=1e-12)
 
 
+@pytest.mark.dear("rounded-table", "rounded-both")
 @pytest.mark.parametrize(("gear", "kind"), EACH)
 def test_pieces_meet_and_splines_follow_them(gear, kind, tmp_path):
     relief = reliefs(gear)[kind]

@@ -82,6 +82,7 @@ def energy(known):
     return np.array([float((load.T @ known.compliance[k] @ load)[0, 0]) for k in (0, 1)])
 
 
+@pytest.mark.dear("2-factors0-2.6")
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
     [(2, (2.8, 2.0, 1.4, 1.0), 2.6), (3, (4.0, 2.8, 2.0, 1.4), 3.6), (4, (4.8, 3.4, 2.4), 4.0)],
@@ -94,6 +95,7 @@ def test_observed_order_of_convergence_in_energy(order, factors, slope):
     assert errors[-1] < {2: 2e-4, 3: 1e-4, 4: 1e-4}[order]
 
 
+@pytest.mark.dear("2-factors0-2.0")
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
     [(2, (4.0, 2.8, 2.0, 1.4, 1.0), 2.0), (3, (5.6, 4.0, 2.8, 2.0, 1.4), 2.7), (4, (4.0, 2.8, 2.0, 1.4), 3.0)],
@@ -118,6 +120,7 @@ def test_plane_strain_is_plane_stress_with_changed_constants():
         assert np.allclose(strain.compliance[k], stress.compliance[k] * (1 - nu**2), rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.dear
 def test_deflection_is_the_mean_over_the_contact_and_a_quarter_of_the_half_plane_s_logarithm():
     # The pressure of a wide contact itself, against mean deflections of wider and narrower ones and closed forms.
     known = four_square(4, 0.7)

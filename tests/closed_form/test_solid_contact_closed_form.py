@@ -108,6 +108,7 @@ def test_narrowed_bands_of_a_plane_tooth_are_the_plane_contacts():
     assert error[1:-1].max() < 1.2e-3
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("twist", [pytest.param(0.0, marks=pytest.mark.long), 0.026])
 def test_a_contact_does_not_know_how_wide_it_was_pressed_nor_on_which_polynomials(twist):
     """Wide bands on few functions and narrow ones on many, both narrowed to the same contacts, at the end faces too."""

@@ -85,6 +85,7 @@ def test_the_file_holds_one_closed_solid_of_the_exact_volume_and_flanks(tmp_path
             assert min(off) < 1e-5 * one.module * 1e3
 
 
+@pytest.mark.dear
 def test_a_relieved_solid_has_less(tmp_path):
     one = gear(8, 15.0, "left", 3.0, profile_shift=0.5)
     relief = tip_relief(one, 5e-6, length=1e-3)

@@ -255,6 +255,7 @@ def test_a_hub_that_holds_less_lets_the_tooth_sink_more():
     assert np.all(np.diff(moved[1:], axis=0) > 0.0)
 
 
+@pytest.mark.dear
 def test_an_even_load_converges_along_the_face_faster_than_any_order():
     pressed = bands([13.6, 14.2], 0.0, 1.0, 0.25, profile="even")
     section = replace(SolidSettings().section.scaled(2.0), order=2)
@@ -272,6 +273,7 @@ def test_an_even_load_converges_along_the_face_faster_than_any_order():
     assert error[2] < 1e-3 * found[11].max()
 
 
+@pytest.mark.dear
 def test_order_of_convergence_in_the_section():
     """Shorter edges and higher orders both pay; what limits the order is the pressure, whose slope ends with a jump."""
     pressed = bands(14.1, 0.0, 0.75, 0.5, profile="even")
@@ -317,6 +319,7 @@ def test_functions_along_the_face_are_lagrange_s_polynomials_in_other_words():
     np.testing.assert_allclose(coefficients @ face.at(z)[0], lagrange(6, (z + 1.5) / 3.0), atol=1e-12)
 
 
+@pytest.mark.dear("ring")
 @pytest.mark.parametrize("tooth", [TOOTH, RING], ids=["external", "ring"])
 def test_motions_that_mirror_at_the_middle_of_the_face_and_the_others_are_all_that_a_spur_disc_does(tooth):
     """Without a twist both are solved apart; with one of no size they are not."""

@@ -59,6 +59,7 @@ def test_under_an_even_load_they_are_the_plane_pair(spur):
             np.testing.assert_allclose(of_line, of_line.mean(), rtol=1e-9)
 
 
+@pytest.mark.dear
 def test_under_an_even_load_a_planet_and_its_ring_are_the_plane_pair():
     outside = Gear(RING, MODULE, (RING.root_radius + 2.5) * MODULE, WIDTH, STEEL)
     planet = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.2)
@@ -71,6 +72,7 @@ def test_under_an_even_load_a_planet_and_its_ring_are_the_plane_pair():
     np.testing.assert_allclose(found.transmission_error, wanted.transmission_error, rtol=1e-3)
 
 
+@pytest.mark.dear
 def test_what_the_pressed_width_leaves_on_a_hollow_flank_goes_with_its_square():
     """The flank's curvature is taken off with its sign: with the other one a first order is left."""
     settings = SolidSettings().scaled(0.3)

@@ -94,6 +94,7 @@ def test_the_range_of_figure_8_is_that_of_a_plain_search():
 angles = st.floats(-6.0, 6.0).map(lambda a: a * ARCMIN)
 
 
+@pytest.mark.dear
 @pytest.mark.examples(25, 1000)
 @given(
     st.integers(19, 60), st.integers(19, 120), st.sampled_from([0.0, 0.5, 12.0, 30.0]), angles, angles, angles,
@@ -143,6 +144,7 @@ def test_corners_and_slivers_where_the_reach_closes(teeth, beta, errors, where):
         assert found.error[0] >= searched - 1e-12
 
 
+@pytest.mark.dear
 @given(st.sampled_from([0.0, 15.0, 30.0]), angles, angles, angles, st.sampled_from([0.0, 2.0]))
 @pytest.mark.examples(8, 150)
 def test_mirrored_hands_with_mirrored_shafts_have_the_same_error(beta, shaft, lead, profile, parabola):

@@ -269,6 +269,7 @@ def integrated(e, rig, speed, coupled):
     return float(carried.max())
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("coupled", "ratio"),
     [(False, 0.85), *(pytest.param(*one, marks=pytest.mark.long) for one in ((True, 1.0), (True, 0.7), (False, 0.7)))],

@@ -69,6 +69,7 @@ LOADS = {
 }
 
 
+@pytest.mark.dear("three pairs-11.2", "steep-11.2")
 @pytest.mark.parametrize("order", [0.7, 3.3, 11.2])
 @pytest.mark.parametrize("load", LOADS)
 def test_a_tooth_answers_a_passage_as_an_oscillator_does(load, order):

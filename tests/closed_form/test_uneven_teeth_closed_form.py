@@ -59,6 +59,7 @@ def test_rotational_harmonics_are_those_of_load_sharing(corner, rtol):
     assert np.delete(amplitudes(error, 5), 4).max() > 0.05 * amplitudes(even, 1)[0]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("number", [4, *(pytest.param(n, marks=pytest.mark.long) for n in (-1, 0, 1, 2, 3))])
 def test_every_tooth_pair_has_its_own_force(number):
     """k (zeta - e) of the pair that is at the pitch point in base pitch `number`: what load sharing gives it."""

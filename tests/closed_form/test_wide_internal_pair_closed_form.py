@@ -143,6 +143,7 @@ def test_exchanged_gears_answer_alike():
         assert {x: f for x, f in here.items() if f} == pytest.approx({x: f for x, f in there.items() if f}, rel=1e-8)
 
 
+@pytest.mark.dear
 def test_a_helix_that_vanishes_leaves_the_spur_pair():
     (_, spur), (_, nearly) = loaded(0.0), loaded(0.002)
     np.testing.assert_allclose(nearly.approach, spur.approach, rtol=1e-3)

@@ -22,6 +22,7 @@ def study():
     return module
 
 
+@pytest.mark.dear
 def test_the_page_says_what_its_tables_say(study):
     page = study.PAGE.read_text("utf-8")
     assert study.filled(page) == page

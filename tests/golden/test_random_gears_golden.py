@@ -74,12 +74,19 @@ def check_honesty(truth, estimate, gears):
     assert (estimate > 10.0 * truth).sum() <= gears / 6
 
 
-#: All thirty in the long run; the first eight in the ordinary one, held to the same shares.
-COUNTS = pytest.mark.parametrize("gears", [8, pytest.param(30, marks=pytest.mark.long)])
+#: All thirty in the long run, the first eight at every change, the first four in the ordinary run: of the same shares.
+COUNTS = pytest.mark.parametrize(
+    "gears", [4, pytest.param(8, marks=pytest.mark.dear), pytest.param(30, marks=pytest.mark.long)]
+)
 
 
 @pytest.mark.parametrize(
-    ("level", "gears"), [(0, 8), *(pytest.param(level, 30, marks=pytest.mark.long) for level in (-1, 0, 1))]
+    ("level", "gears"),
+    [
+        (0, 4),
+        pytest.param(0, 8, marks=pytest.mark.dear),
+        *(pytest.param(level, 30, marks=pytest.mark.long) for level in (-1, 0, 1)),
+    ],
 )
 def test_estimated_errors_of_random_gears_are_honest(level, gears):
     """The largest error of a gear, which a tolerance is about."""

@@ -75,6 +75,7 @@ def test_estimates_hold_entry_by_entry():
     check_honesty(*exceeded(QUICK, at_level(0)))
 
 
+@pytest.mark.dear
 def test_root_stress_of_sharp_fillets_is_right_and_estimated():
     """Default settings; edges no shorter than .0055 modules left 3.3 % of root tension, told as .9 %."""
     for name in SHARP:

@@ -181,6 +181,7 @@ def left_at(e, load, relief):
     return max(np.ptp(values), solved.peak_to_peak)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("shape", ["linear", pytest.param("parabolic", marks=pytest.mark.long)])
 def test_a_relief_on_finite_elements_leaves_what_the_search_says(shape):
     """A pair that parted just before a straight relief's start left .748 um where the search saw .664."""
@@ -215,6 +216,7 @@ def test_extremes_between_positions_are_those_of_a_dense_curve(teeth, addendum, 
     assert more.max() < 2e-4  # a kink halfway between two of them
 
 
+@pytest.mark.dear
 def test_the_two_gears_of_a_like_pair_may_change_places():
     e, load = engaged(28, 28)
     one = grindable(e, load, "parabolic")
@@ -225,6 +227,7 @@ def test_the_two_gears_of_a_like_pair_may_change_places():
     assert one.driver.amount + one.driven.amount == pytest.approx(other.driver.amount + other.driven.amount, rel=1e-3)
 
 
+@pytest.mark.dear
 def test_the_driver_of_a_like_pair_takes_the_deeper_relief_and_both_have_one_band():
     """Under noise of 1e-12 reliefs of like gears changed places, and each gear had a band of its own."""
     e, load = engaged(28, 28, hertz="load-dependent")
@@ -306,6 +309,7 @@ def unchanged(teeth, options, shape, loads, metric, close):
     assert other.objective == pytest.approx(2.7 * found.objective, rel=1e-6)
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(("teeth", "options", "shape", "loads"), PAIRS)
 def test_the_last_digits_of_the_load_and_the_unit_of_length_change_nothing(teeth, options, shape, loads):
     """Loads 1e-10 apart left .895 to .920 um of a pair, with 26.7 to 61.1 um on the driver."""

@@ -38,6 +38,7 @@ def random_rings(count, seed):
     return found
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 31))])
 def test_the_stated_errors_of_a_random_ring_cover_the_true_ones(seed):
     """Those of neighbours were 1.9 times the stated ones, whose share was learned from external gears alone."""

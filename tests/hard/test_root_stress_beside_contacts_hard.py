@@ -67,6 +67,7 @@ def test_root_tension_beside_a_contact_tends_to_a_limit(name):
     assert left[1] < 1.5e-3
 
 
+@pytest.mark.dear("shorter than contacts")
 @EVERY
 def test_root_tension_is_steady_in_the_contact_s_place(name):
     """It jumped by 9.4 % where the end of the search passed a Gauss point."""
@@ -76,6 +77,7 @@ def test_root_tension_is_steady_in_the_contact_s_place(name):
         assert (np.abs(np.diff(found, 2)) < 1e-3 * found[1:-1]).all()
 
 
+@pytest.mark.dear("-1-sharp", "-1-shorter than contacts", "0-shorter than contacts")
 @EVERY
 @pytest.mark.parametrize("level", [-1, 0])
 def test_the_stated_error_covers_contacts_beside_the_fillet(name, level):

@@ -225,6 +225,7 @@ def test_bores_that_no_elements_resolve_are_refused_with_one_that_they_do(bore, 
 
 
 # ---- numbers of teeth -----------------------------------------------------------------------------------------------
+@pytest.mark.dear
 def test_many_teeth_tend_to_the_rack_like_one_over_their_number():
     """On a rim of 2.5 modules; what is left to the rack halves when the number of teeth doubles."""
     c = []
@@ -240,6 +241,7 @@ def test_many_teeth_tend_to_the_rack_like_one_over_their_number():
 
 
 # ---- Poisson's ratio ------------------------------------------------------------------------------------------------
+@pytest.mark.dear
 def test_nearly_incompressible_steel_leads_to_a_limit_and_finer_meshes_confirm_it():
     radii = np.array([13.5, 14.0, 15.0])
     values = {nu: solved(Tooth(28), MeshSettings(), nu=nu).self_compliance(radii, HALF_WIDTH)

@@ -109,6 +109,7 @@ def test_unequal_relief_of_fig_11():
     assert worst(1.0, 1.25, 0.65).dynamic_factor == pytest.approx(1.39, abs=0.02)
 
 
+@pytest.mark.dear
 def test_where_the_paper_is_not_met():
     """Fig. 6(c): "did not exceed 1.5" with 1.25 Delta at 0.52 L_n; 1.74 here, 16 % more.
 
@@ -140,6 +141,7 @@ def test_optimum_length(amount, low, high):
     assert low - 0.02 <= best <= high + 0.02
 
 
+@pytest.mark.dear
 def test_effective_error_ranks_like_the_dynamic_factor():
     """Fig. 7: A_e over the length of relief has its minimum where the dynamic factor has, at 1.00 Delta."""
     lengths = np.arange(0.5, 1.25, 0.1)

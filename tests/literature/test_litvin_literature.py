@@ -46,6 +46,7 @@ def test_aligned_gears_have_no_transmission_error_and_line_contact():
     assert result.mesh.ill_defined.all(), "a line has no one contact point"
 
 
+@pytest.mark.dear("errors0")
 @pytest.mark.parametrize("errors", [{"shaft": 3.0}, {"lead": 3.0}])
 def test_shaft_or_lead_alone_gives_edge_contact_and_two_linear_pieces(errors):
     """Figs. 2 and 3: edge contact, two almost linear pieces of opposite slope."""
@@ -62,6 +63,7 @@ def test_shaft_or_lead_alone_gives_edge_contact_and_two_linear_pieces(errors):
     assert result.peak_to_peak / ARCSEC == pytest.approx(4.30, abs=0.01)
 
 
+@pytest.mark.dear
 def test_shaft_and_lead_alone_give_the_same_function():
     """Fig. 3 is one figure for both errors."""
     shaft, lead = tooth_contact(drive(shaft=3.0), 200, 0.0), tooth_contact(drive(lead=3.0), 200, 0.0)
@@ -136,6 +138,7 @@ def test_a_parabola_too_flat_leaves_the_contact_on_the_edge():
         linear_error(drive(shaft=3.0, parabola=0.005))
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     "errors", [{"shaft": 3.0}, *(pytest.param(one, marks=pytest.mark.long) for one in ({"shaft": -3.0}, {"lead": 2.0}))]
 )

@@ -118,6 +118,7 @@ def test_least_root_stress_beats_every_other_choice(high):
     assert len(best.candidates) == 3
 
 
+@pytest.mark.dear
 def test_pressure_counts_in_the_joint_choice_of_r_and_f(high):
     """Where the flanks are allowed little, F falls to what spreads the pressure; where much, it is that of the root."""
     stress, load = design_stress(high.compliance, 81), 3000.0
@@ -179,6 +180,7 @@ def test_loads_near_the_design_load_leave_less_than_no_relief(nasa):
         )
 
 
+@pytest.mark.dear("parabolic")
 @pytest.mark.parametrize("shape", ["linear", "parabolic"])
 def test_what_a_shop_can_grind(nasa, shape):
     """The best straight and parabolic reliefs leave some error, less than none; confirmed by the exact evaluation."""
@@ -199,6 +201,7 @@ def test_robustness_finds_the_worst_corner(nasa):
     assert nominal == pytest.approx(r.nominal, abs=1e-15)
 
 
+@pytest.mark.dear
 def test_robustness_of_a_ground_relief_agrees_with_the_exact_evaluation(nasa):
     """Peaks sit on kinks: between 120 roll positions the worst cases were up to 3 % low."""
     ground = grindable(minimum_excitation(nasa, loading(nasa, 1.312), LOAD), LOAD)

@@ -85,6 +85,7 @@ def test_the_field_is_the_influence_functions_own_solution():
     assert np.abs(field.displacement[8]).max() < 0.2 * np.abs(field.displacement[0]).max()
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("plane", "face_width"), [("strain", 25.4e-3), pytest.param("stress", 1.5e-5, marks=pytest.mark.long)]
 )

@@ -111,6 +111,7 @@ def test_fmpy_turns_it_through_the_teeth_under_both_interfaces(made, kind):
     )  # fmt: skip
 
 
+@pytest.mark.dear
 def test_one_revolution_moves_as_in_fegear(made):
     """Bodies that the FMU drives against fegear's own motion, as teeth part and meet again (asked: 1e-3; found: 3e-6).
 

@@ -38,6 +38,7 @@ def test_scipy_started_on_the_steady_motion_stays_on_it(name):
         assert np.max(np.abs(after - before)) < 1e-9 * np.max(np.abs(before))
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(
     "name", [name if "backside" in name else pytest.param(name, marks=pytest.mark.long) for name in CASES]
 )

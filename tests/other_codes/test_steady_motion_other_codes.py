@@ -262,6 +262,7 @@ def holds(rig):
 SEEDS = [0, 313, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2, 3, 4, 5, 352))]
 
 
+@pytest.mark.dear("313")
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_rigs_report_the_motion_that_the_reference_settles_on(seed):
     holds(drawn(seed))
@@ -322,6 +323,7 @@ def multiplier(depth, zeta, ratio):
     return float(np.abs(np.linalg.eigvals((ends[1:] - ends[0]).T)).max())
 
 
+@pytest.mark.dear("0.3-0.02")
 @pytest.mark.parametrize(("depth", "zeta"), [
     pytest.param(0.2, 0.02, marks=pytest.mark.long), (0.3, 0.02), (0.25, 0.05),
     pytest.param(0.15, 0.02, marks=pytest.mark.long),
@@ -478,6 +480,7 @@ def slack(zeta, ratio, swing, gap, x, v, periods, steps):
     return largest
 
 
+@pytest.mark.dear
 def test_a_chaotic_motion_is_a_sample_whose_quantiles_the_reference_has():
     """Two discs that hammer both flanks at their natural frequency: a sample, settled before it is measured."""
     radius, inertia, k, force = 0.05, 2e-3, 2e8, 500.0
@@ -505,6 +508,7 @@ def test_a_chaotic_motion_is_a_sample_whose_quantiles_the_reference_has():
     assert largest.max() > 0.98 * state.tooth_force[0] / force
 
 
+@pytest.mark.dear
 def test_a_long_transient_with_impacts_is_no_chaos():
     """With multipliers of the wrong size it was called chaotic after 500 periods; it settles, in thousands."""
     rig = Rig(
@@ -547,6 +551,7 @@ def test_slow_decay_towards_a_motion_that_repeats_is_not_called_quasi_periodic()
 
 
 # ---- low speed ------------------------------------------------------------------------------------------------------
+@pytest.mark.dear
 def test_time_at_low_speed_is_that_of_settling(monkeypatch):
     """At 0.01 rpm a period holds 10^7 natural periods; only what follows a change of teeth is vibration."""
     travel, taken = kernel.compiled(), []

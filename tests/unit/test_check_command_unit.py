@@ -38,6 +38,7 @@ def said(capsys, *arguments):
     return end.value.code or 0, out, err
 
 
+@pytest.mark.dear
 def test_the_whole_gear_by_scikit_fem_agrees_within_the_stated_errors(case, capsys, monkeypatch):
     """Neither ring nor condensation of fegear takes part in what it is compared with."""
     solved = []

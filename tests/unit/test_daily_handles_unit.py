@@ -103,6 +103,7 @@ def test_export_as_json_names_its_files(say, tmp_path):
     assert len(told["files"]) == 4
 
 
+@pytest.mark.dear("40")
 @pytest.mark.parametrize("columns", [40, 80, 200])
 def test_help_shows_every_option_whole(columns):
     program = "import sys\nfrom fegear.cli import main\nsys.argv[0] = 'fegear'\nmain()"
@@ -120,6 +121,7 @@ def test_help_shows_every_option_whole(columns):
             assert "KEY=START:STOP:COUNT" in done.stdout
 
 
+@pytest.mark.dear("fegear run one.toml --results stif-offered1", "fegear effects one.toml --effect cont-offered3")
 @pytest.mark.parametrize(
     ("typed", "offered"),
     [
@@ -138,6 +140,7 @@ def test_bash_completes_commands_results_and_effects(typed, offered):
     assert set(done.stdout.split()) == offered, done.stderr
 
 
+@pytest.mark.dear("zsh-.zfunc/_fegear", "fish-.config/fish/completions/fegear.fish")
 @pytest.mark.parametrize(
     ("shell", "file"),
     [

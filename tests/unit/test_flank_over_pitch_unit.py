@@ -71,6 +71,7 @@ def stated(flanks, bodies, beta, gaps, loads=(LOAD,)):
     return over.stated, flank_error(flanks, found, bodies[beta, "coarse"], gaps, over, LOAD), over
 
 
+@pytest.mark.dear
 def test_short_contact_lines_decide_no_largest_pressure(bodies):
     """Lines at a corner of the face are as short as a panel, and what they bear hangs on its length."""
     gaps = FlankGaps(face_position=np.array([-0.5, 0.5]) * WIDTH, line_gap=np.array([10e-6, 0.0]))

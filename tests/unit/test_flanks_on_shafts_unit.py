@@ -71,6 +71,7 @@ def _meshes(flanks, box):
     ]
 
 
+@pytest.mark.dear
 def test_two_meshes_together_are_the_converged_iteration_of_their_parts(flanks):
     box = _gearbox(flanks)
     meshes = _meshes(flanks, box)

@@ -265,6 +265,7 @@ def over_the_face(cache):
     return run
 
 
+@pytest.mark.dear
 def test_colours_in_sections_of_helical_teeth_are_the_root_stress_through_the_mesh(over_the_face):
     ran = over_the_face(hand="right")
     found, largest = ran.outcomes[WIDE].data, ran.outcomes[WIDE].data.largest
@@ -338,6 +339,7 @@ def test_without_a_helix_sections_show_what_plane_teeth_do(over_the_face, cache)
                 assert np.median(off) < 0.02 * plane.largest.value
 
 
+@pytest.mark.dear
 def test_hardly_any_load_shows_hardly_any_stress(over_the_face):
     loaded, light = (over_the_face(load=load).outcomes[WIDE].data for load in ("2500 N", "2.5e-3 N"))
     assert 0.0 < light.largest.value < 2e-6 * loaded.largest.value

@@ -36,6 +36,7 @@ def test_meshes_are_the_ones_their_page_describes():
         assert hashlib.sha256((MESHES / name).read_bytes()).hexdigest() == digest
 
 
+@pytest.mark.dear("four_square-four_square_test_gear.msh")
 @pytest.mark.parametrize(
     ("make", "name"), [(four_square, "four_square_test_gear.msh"), (shifted, "shifted_40_teeth.inp")]
 )

@@ -49,6 +49,7 @@ def solved():
     return table.to_pandas()["c_self [um.mm/N]"].tolist()
 
 
+@pytest.mark.dear
 @pytest.mark.skipif("last_bit" in sys.modules, reason="the process of this test computes with noise itself")
 def test_a_process_that_is_started_under_noise_computes_with_it():
     paths = os.pathsep.join([str(OTHER), *filter(None, sys.path)])

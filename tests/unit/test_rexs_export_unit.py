@@ -163,6 +163,7 @@ def test_a_gear_that_drives_its_like_becomes_two():
     assert (again.case.pair["I"].torque, again.case.pair["I"].speed) == pytest.approx((50.0, 30.0 * np.pi))
 
 
+@pytest.mark.dear
 def test_the_command_writes_results_of_a_run(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("box.toml").write_text(case_of(model_of(in_json(two_stages()), HERE)), "utf-8")

@@ -133,6 +133,7 @@ def supports(support, known, number, count):
     return held
 
 
+@pytest.mark.dear("support3-4.0-1")
 @pytest.mark.parametrize(
     ("support", "rim", "tooth"),
     [

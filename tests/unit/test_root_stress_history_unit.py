@@ -60,6 +60,7 @@ def test_it_is_smooth_over_the_roll_where_a_tooth_bears_alone(engagement, member
         assert np.abs(np.diff(bend)).max() < 5e-7
 
 
+@pytest.mark.dear
 def test_largest_compression_and_the_range_of_stress_state_errors_that_finer_gears_confirm():
     """Gears of edges three times as short lie within the stated errors, and these are no blanket."""
 

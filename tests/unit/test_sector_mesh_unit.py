@@ -61,6 +61,7 @@ def running():
     gmsh.finalize()
 
 
+@pytest.mark.dear("0")
 @pytest.mark.parametrize("level", [-2, 0])
 def test_a_mesh_does_not_depend_on_what_was_drawn_before(running, level):
     """Gmsh takes tolerances from the size of the model before: gears of a tenth of it got other triangles."""
@@ -108,6 +109,7 @@ def test_the_last_bit_of_the_boundary_changes_no_triangle(name, level):
         assert np.abs(found.points - wanted.points).max() < 1e-13 * tooth.tip_radius
 
 
+@pytest.mark.dear("0-0.4", "1-0.4")
 @pytest.mark.parametrize(("level", "least"), [(-3, 0.12), (-2, 0.3), (-1, 0.4), (0, 0.4), (1, 0.4)])
 def test_no_triangle_is_flat(level, least):
     """Frontal meshes had .04 to .09 at the tip's corner and at sharp fillets."""

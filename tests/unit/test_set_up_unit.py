@@ -100,6 +100,7 @@ def test_a_folder_that_is_no_environment_is_left_alone(machine, tmp_path):
     assert (venv / "chapter1.tex").read_text() == "dear"
 
 
+@pytest.mark.dear("False")
 @pytest.mark.parametrize("strict", [False, True])
 def test_a_missing_program_skips_its_test_or_fails_it(strict, tmp_path):
     (tmp_path / "test_program.py").write_text("def test_it(program):\n    program('ccx')\n")

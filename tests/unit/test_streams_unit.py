@@ -26,6 +26,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.dear("2>/dev/full")
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 @pytest.mark.parametrize(
     "streams", ["<&- >&- 2>&-", "2>/dev/full", *(pytest.param(one, marks=pytest.mark.long) for one in ("2>&-", ">&-"))]
@@ -39,6 +40,7 @@ def test_a_run_does_its_work_whatever_its_streams_are(streams, folder):
     assert not [path for path in folder.iterdir() if path.name not in ("one.toml", "out")]
 
 
+@pytest.mark.dear
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_output_that_nobody_takes_ends_without_a_traceback(folder):
     full = shell(f"{FEGEAR} run one.toml --no-plots --out out >/dev/full", folder)

@@ -205,6 +205,7 @@ def test_sweeps_that_cannot_be_are_refused_before_they_start(arguments, words, c
     assert sorted(path.name for path in tmp_path.iterdir()) == ["two.toml"]
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("points", [14, pytest.param(200, marks=pytest.mark.long)])
 def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case, tmp_path, points):
     asked, early = grid(points), points // 7

@@ -285,6 +285,7 @@ def run(case, cache=None, executor=None):
     )
 
 
+@pytest.mark.dear
 def test_a_draw_is_an_ordinary_case_with_its_deviations_written_down():
     """Relief tables, spacing errors and centre distance of a draw, by the results that know nothing of draws."""
     results = run(CASE)
@@ -464,6 +465,7 @@ def test_what_is_not_drawn_over_the_face_is_refused(part):
     assert refused.value.key == f"robustness.{next(iter(part))}"
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("draws", [60, pytest.param(400, marks=pytest.mark.long)])
 def test_a_stated_percentile_of_a_relief_is_that_of_draws_of_one_s_own(draws):
     """Plain Monte Carlo of another seed; half the 95 % interval is 1.96 standard errors, and so has one's own."""

@@ -229,6 +229,7 @@ rim_support = { kind = "pins", pins = 6, width = "12 mm" }
 """
 
 
+@pytest.mark.dear
 def test_a_case_says_how_far_teeth_on_pins_differ(tmp_path):
     path = tmp_path / "ring.toml"
     path.write_text(CASE)

@@ -153,6 +153,7 @@ rim_support = SUPPORT
 """
 
 
+@pytest.mark.dear
 def test_cases_take_splines_with_a_width(tmp_path):
     path = tmp_path / "ring.toml"
     path.write_text(CASE.replace("SUPPORT", '{ kind = "splined" }'))

@@ -600,6 +600,7 @@ def test_where_a_moved_relief_starts_is_said_by_the_key_that_the_user_chose(tmp_
     assert after.amount == pytest.approx(14.0)
 
 
+@pytest.mark.dear
 def test_the_map_beside_the_slider_of_a_pair_with_a_width_is_that_of_runs_at_its_loads(tmp_path):
     text = TWO.replace("[gear.b]", 'width = "slices"\n[gear.b]').replace(
         'compliance = { source = "weber-banaschek" }', "loads = ['2.5 kN', '7.5 kN']"
@@ -909,6 +910,7 @@ def test_while_a_value_moves_what_it_is_moved_for_is_found_and_the_rest_when_it_
     assert whole(again, geometry[-1])["figures"] == geometry[-1]["figures"]
 
 
+@pytest.mark.dear("load-distribution")
 @pytest.mark.parametrize("result", ["load-distribution", "load-sharing"])
 def test_a_glance_at_a_pair_with_a_width_refuses_nothing_that_the_case_has(tmp_path, result):
     """Load over the face and load sharing both tell the largest pressure: one of them stands beside the other."""
