@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
 from fegear.case.part import Angle, Length, Part, PositiveLength, refuse
-from fegear.geometry.gear_body import GearBody
+from fegear.geometry.gear_body import STEEPEST, GearBody
 from fegear.geometry.rim_support import RimSupport
 
 
 class GearBodyPart(Part):
-    """``body = { rim_thickness, web_thickness, web_offset, hub_radius, hub_width, hub_offset }``."""
+    """``body = { rim_thickness, web_thickness, web_offset, web_inclination, hub_radius, hub_width, hub_offset }``."""
 
     rim_thickness: PositiveLength = Field(
         description="Rim s_R below the root circle, as wide as the face; for the ratings too (Y_B, C_R, K_B)."
@@ -24,6 +26,11 @@ class GearBodyPart(Part):
         default=0.0,
         description="How far the middle of the web lies from the middle of the face, toward end II. An idler "
         "has end II at opposite ends in the mesh that drives it and in the one that it drives: both are refused.",
+    )
+    web_inclination: Angle = Field(
+        default=0.0,
+        description="Of the web, at most 20 deg either way: a positive one meets the hub nearer to end II than the "
+        "rim. web_thickness is along the axis, and web_offset that of its end at the rim.",
     )
     hub_radius: PositiveLength | None = Field(
         default=None, description="Outside of the hub; without it the web goes down to the bore and is held there."
@@ -37,6 +44,12 @@ class GearBodyPart(Part):
 
     @model_validator(mode="after")
     def _hub(self) -> Self:
+        if not abs(self.web_inclination) <= STEEPEST * (1.0 + 1e-9):
+            most = f"{math.degrees(STEEPEST):.6g} deg"
+            raise refuse(
+                f"must lie between -{most} and {most}, for which inclined webs were compared with other programs",
+                key="web_inclination", value=f"{math.degrees(self.web_inclination):.6g} deg",
+            )  # fmt: skip
         if self.hub_radius is None:
             for key in ("hub_width", "hub_offset"):
                 if key in self.model_fields_set:
@@ -50,11 +63,12 @@ class GearBodyPart(Part):
             return offset - 0.5 * width, offset + 0.5 * width
 
         web = part(self.web_thickness, self.web_offset)
-        rim = root_radius - self.rim_thickness
+        rim, lean = root_radius - self.rim_thickness, math.tan(self.web_inclination)
         if self.hub_radius is None:
-            return GearBody(rim, bore_radius, web, web)
+            down = GearBody(rim, bore_radius, web, web, lean)
+            return replace(down, hub=down.foot)
         width = face_width if self.hub_width is None else self.hub_width
-        return GearBody(rim, self.hub_radius, web, part(width, self.hub_offset))
+        return GearBody(rim, self.hub_radius, web, part(width, self.hub_offset), lean)
 
 
 class RimSupportPart(Part):

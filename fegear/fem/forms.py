@@ -166,6 +166,22 @@ def turn(basis: Any, place: Array, tau: float) -> None:
         field.grad = np.stack([x, y, tau * (place[1] * x - place[0] * y)])
 
 
+def shear(basis: Any, place: Array, lean: Array) -> None:
+    """Give the functions as fourth and fifth slope what their slopes in the section gain from changes along the face.
+
+    Parameters
+    ----------
+    basis : skfem.Basis
+    place : ndarray, shape (2, M, q)
+        Of its quadrature points from the axis [modules].
+    lean : ndarray, shape (M,)
+        By how much an element's functions rise along the axis over the way toward it.
+    """
+    outward = lean[:, None] * place / np.hypot(*place)
+    for (field,) in basis.basis:
+        field.grad = np.concatenate([field.grad, outward * np.asarray(field)])
+
+
 def element_matrices(weights: Array, integrals: Array) -> Array:
     """Matrices of elements, shape (M, c n, c n), whose unknown c i + a is component a of function i.
 

@@ -24,6 +24,7 @@ import numpy as np
 import scipy.sparse.linalg
 
 from fegear.base.arrays import Array, distinct
+from fegear.geometry.body_along import BodyAlong, body_along
 
 if TYPE_CHECKING:
     from skfem import Basis
@@ -53,6 +54,9 @@ class RevolvedBody:
     held : (float, float)
         Ends of the part of the face on which it sits fast [m].
     poisson_ratio : float
+    lean : float
+        Tangent of the inclination of the second ring, the web, whose ends are those at the first: positive if it lies
+        at greater places further inward.
     """
 
     outer: float
@@ -60,11 +64,22 @@ class RevolvedBody:
     rings: tuple[tuple[float, float, float], ...]
     held: tuple[float, float]
     poisson_ratio: float = 0.3
+    lean: float = 0.0
 
     @property
     def seat(self) -> float:
         """Radius at which the body sits on its shaft [m]."""
         return self.rings[-1][0]
+
+    @property
+    def along(self) -> BodyAlong | None:
+        """Places that follow an inclined web inward; None of others."""
+        if not self.lean:
+            return None
+        web = self.rings[1]
+        shift = self.lean * (self.rings[0][0] - web[0])
+        foot = web[1] + shift, web[2] + shift
+        return body_along(web[1:], foot if len(self.rings) == 2 else self.rings[2][1:], shift, self.width)
 
 
 @dataclass(frozen=True)
@@ -135,7 +150,10 @@ def _basis(body: RevolvedBody, fineness: int) -> tuple[Basis, Index, Index]:
 
     layers = min(max(_LAYERS, math.ceil(_PER_RADIUS * body.width / body.seat)), _MOST)
     half, size = 0.5 * body.width, body.width / (layers * fineness)
-    ends = distinct(np.array([-half, half]), body.held, *(np.array(one[1:]) for one in body.rings))
+    along, spans, held = body.along, [one[1:] for one in body.rings], np.array(body.held)
+    if along is not None:
+        spans[2:], held = [along.hub] * (len(spans) - 2), along.of_hub(held)
+    ends = distinct(np.array([-half, half]), held, *(np.array(one) for one in spans))
     ends = ends[np.append(True, np.diff(ends) > _NEAR * body.width)]
     radii = [body.outer, *(inner for inner, _, _ in body.rings)]
     z = [np.linspace(a, b, max(1, math.ceil((b - a) / size - 1e-9)) + 1) for a, b in pairwise(ends)]
@@ -143,9 +161,15 @@ def _basis(body: RevolvedBody, fineness: int) -> tuple[Basis, Index, Index]:
     mesh = MeshQuad.init_tensor(np.unique(np.concatenate(r)), np.unique(np.concatenate(z)))
     at = mesh.p[:, mesh.t].mean(axis=1)
     filled = np.zeros(at.shape[1], dtype=bool)
-    for outer, (inner, low, high) in zip(radii, body.rings, strict=False):
+    for outer, inner, (low, high) in zip(radii, radii[1:], spans, strict=False):
         filled |= (at[0] < outer) & (at[0] > inner) & (at[1] > low) & (at[1] < high)
-    basis = Basis(mesh.restrict(np.flatnonzero(filled)), ElementQuad2())
+    mesh = mesh.restrict(np.flatnonzero(filled))
+    if along is not None:
+        r, own = mesh.p
+        hub = r <= radii[2] + _NEAR * body.width
+        leaning = np.where(hub, along.in_hub(own), own + body.lean * np.maximum(radii[1] - r, 0.0))
+        mesh = MeshQuad(np.stack([r, leaning]), mesh.t)
+    basis = Basis(mesh, ElementQuad2())
     place = basis.doflocs
     near = _NEAR * body.width
     on = [np.flatnonzero(np.abs(place[0] - radius) <= near) for radius in (body.seat, body.outer)]

@@ -311,7 +311,8 @@ class Gear:
         """
         inner, outer = sorted((self.pitch_radius, self.bore_radius))
         if self.body is None:
-            return moments([(outer, inner, -0.5 * self.face_width, 0.5 * self.face_width)], self.material.density)
+            half = 0.5 * self.face_width
+            return moments([(outer, inner, -half, half, 0.0)], self.material.density)
         return moments(self.body.cylinders(outer, inner, self.face_width), self.material.density)
 
     @property

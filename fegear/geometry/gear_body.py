@@ -7,17 +7,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fegear.base.errors import GeometryError
+from fegear.geometry.body_along import BodyAlong, body_along
 
-#: Outer and inner radius, and the two ends along the axis.
-Cylinder = tuple[float, float, float, float]
+#: Outer and inner radius, the two ends along the axis at the outer one, and by how much both move toward greater places
+#: from there inward, over the way along the radius.
+Cylinder = tuple[float, float, float, float, float]
 #: Thinnest web, hub and ring between two circles [modules]; thinner ones are shells, which want other elements.
 _THINNEST = 0.2
+#: Steepest web that was compared with other programs [rad].
+STEEPEST = math.radians(20.0)
+#: How long the rim is beside an inclined web's end at least, as a share of the hub there: both have polynomials of one
+#: degree. The hub reaches beyond the web if by more than a share of the width.
+_LEAST_RIM, _NEAR = 0.2, 1e-6
 _ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class GearBody:
-    """Rim, web and hub, all of one length unit; places along the face from its middle.
+    """Rim, web and hub, all of one length unit; places along the face from its middle, positive toward end II.
 
     Parameters
     ----------
@@ -26,28 +33,34 @@ class GearBody:
     hub_radius : float
         Outside of the hub, where the web ends; the bore's radius where there is no hub.
     web, hub : (float, float)
-        The parts of the face that they fill. The bore is held over the hub.
+        The parts of the face that they fill, an inclined web where it meets the rim. The bore is held over the hub.
+    lean : float
+        Tangent of the web's inclination: positive if it meets the hub at greater places than the rim.
     """
 
     rim_radius: float
     hub_radius: float
     web: tuple[float, float]
     hub: tuple[float, float]
+    lean: float = 0.0
 
     @property
-    def spans(self) -> tuple[tuple[float, float], ...]:
-        """Parts of the face that rim (all of it), web and hub fill."""
-        return (-math.inf, math.inf), self.web, self.hub
+    def foot(self) -> tuple[float, float]:
+        """Where the web meets the hub."""
+        if not self.lean:
+            return self.web
+        shift = self.lean * (self.rim_radius - self.hub_radius)
+        return self.web[0] + shift, self.web[1] + shift
 
-    @property
-    def ends(self) -> tuple[float, ...]:
-        """Places along the face where web and hub end."""
-        return *self.web, *self.hub
+    def along(self, width: float) -> BodyAlong:
+        """Where web and hub lie in places that follow the web inward from the rim of a face so wide."""
+        return body_along(self.web, self.hub, self.lean * (self.rim_radius - self.hub_radius), width)
 
     @property
     def even(self) -> bool:
         """Whether it is alike to both sides of the middle of the face."""
-        return all(abs(low + high) <= _ROUND_OFF * (high - low) for low, high in (self.web, self.hub))
+        middle = all(abs(low + high) <= _ROUND_OFF * (high - low) for low, high in (self.web, self.hub))
+        return middle and not self.lean
 
     def is_disc(self, width: float) -> bool:
         """Whether web and hub fill a face, so that the gear is a disc."""
@@ -57,15 +70,16 @@ class GearBody:
         """The same in other units."""
         (a, b), (c, d) = self.web, self.hub
         return GearBody(
-            self.rim_radius * factor, self.hub_radius * factor, (a * factor, b * factor), (c * factor, d * factor)
-        )
+            self.rim_radius * factor, self.hub_radius * factor, (a * factor, b * factor), (c * factor, d * factor),
+            self.lean,
+        )  # fmt: skip
 
     def cylinders(self, outer_radius: float, bore_radius: float, width: float) -> tuple[Cylinder, ...]:
         """The hollow cylinders that the gear consists of, its teeth as a ring up to some radius."""
         face = (-0.5 * width, 0.5 * width)
         return (
-            (outer_radius, self.rim_radius, *face), (self.rim_radius, self.hub_radius, *self.web),
-            (self.hub_radius, bore_radius, *self.hub),
+            (outer_radius, self.rim_radius, *face, 0.0), (self.rim_radius, self.hub_radius, *self.web, self.lean),
+            (self.hub_radius, bore_radius, *self.hub, 0.0),
         )  # fmt: skip
 
     def check(self, module: float, width: float, bore_radius: float, root_radius: float) -> None:
@@ -89,12 +103,27 @@ class GearBody:
                 f"must be at least {_THINNEST * module * 1e3:.6g} mm ({_THINNEST:g} modules)",
                 "a thinner web is a shell, which is not computed",
             )  # fmt: skip
+        if not abs(self.lean) <= math.tan(STEEPEST) * (1.0 + _ROUND_OFF):
+            raise GeometryError(
+                "body.web_inclination", f"{math.degrees(math.atan(self.lean)):.6g} deg",
+                f"must lie between {-math.degrees(STEEPEST):.6g} and {math.degrees(STEEPEST):.6g} deg, for which "
+                "inclined webs were compared with other programs",
+            )  # fmt: skip
         start, end = self.hub
+        low, high = self.foot
+        if self.lean and not -0.5 * width - near <= low < high <= 0.5 * width + near:
+            raise GeometryError(
+                "body.web_inclination", f"{math.degrees(math.atan(self.lean)):.6g} deg",
+                f"leads the web off the face, which runs from {-500 * width:.6g} to {500 * width:.6g} mm: it would end "
+                f"at {low * 1e3:.6g} to {high * 1e3:.6g} mm",
+                "reduce web_inclination, or move the web (web_offset)",
+            )  # fmt: skip
         if not -0.5 * width - near <= start <= low + near or not high - near <= end <= 0.5 * width + near:
             raise GeometryError(
                 "body.hub", f"{start * 1e3:.6g} to {end * 1e3:.6g} mm",
-                f"must reach over the web, from {low * 1e3:.6g} to {high * 1e3:.6g} mm, and not beyond the face",
-                "change hub_width or hub_offset",
+                f"must reach over the web, {'there ' if self.lean else ''}from {low * 1e3:.6g} to {high * 1e3:.6g} mm, "
+                "and not beyond the face",
+                f"change {'web_inclination, ' if self.lean else ''}hub_width or hub_offset",
             )  # fmt: skip
         thin = _THINNEST * module
         if not thin - _ROUND_OFF * root_radius <= root_radius - self.rim_radius <= root_radius - bore_radius - thin:
@@ -110,15 +139,32 @@ class GearBody:
                 f"must lie between the bore, {bore_radius * 1e3:.6g} mm, and the inside of the rim, "
                 f"{self.rim_radius * 1e3:.6g} mm, {thin * 1e3:.6g} mm off both ({_THINNEST:g} modules)",
             )  # fmt: skip
+        self._check_beside(width)
+
+    def _check_beside(self, width: float) -> None:
+        """Refuse an inclined web beside whose end the hub goes on where the face does not."""
+        (low, high), (start, end), half = self.web, self.foot, 0.5 * width
+        for room, hub in ((low + half, start - self.hub[0]), (half - high, self.hub[1] - end)) if self.lean else ():
+            if hub > _NEAR * width and room < _LEAST_RIM * hub:
+                raise GeometryError(
+                    "body.web_offset", f"with {room * 1e3:.6g} mm of the face beside the web",
+                    f"is not computed where the hub reaches {hub * 1e3:.6g} mm beyond an inclined web: there the rim "
+                    f"must by at least {_LEAST_RIM * hub * 1e3:.6g} mm",
+                    "move the web, or let the hub begin where the web meets it (hub_width, hub_offset)",
+                )  # fmt: skip
 
 
 def moments(cylinders: Sequence[Cylinder], density: float) -> tuple[float, float, float]:
     """Mass [kg], inertia about the axis and about a line across it at z = 0 [kg m^2] of hollow cylinders [m]."""
     mass = spin = tilt = 0.0
-    for outer, inner, low, high in cylinders:
+    for outer, inner, low, high, lean in cylinders:
         length, squares = high - low, outer**2 + inner**2
         own = math.pi * density * length * (outer**2 - inner**2)
         mass += own
         spin += own * squares / 2.0
-        tilt += own * ((3.0 * squares + length**2) / 12.0 + (0.5 * (low + high)) ** 2)
+        far = (0.5 * (low + high)) ** 2
+        if lean:  # the middle of the length lies at c - lean r; this is the mean of its square over the area
+            c, cubes = 0.5 * (low + high) + lean * outer, (outer**3 - inner**3) / (outer**2 - inner**2)
+            far = c**2 - 4.0 / 3.0 * c * lean * cubes + 0.5 * lean**2 * squares
+        tilt += own * ((3.0 * squares + length**2) / 12.0 + far)
     return mass, spin, tilt

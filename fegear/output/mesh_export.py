@@ -168,7 +168,7 @@ def write_solid(
         if mesh
         else uneven_section(gear.tooth, gear.bore_radius / one, _COARSENESS, body=body)
     )
-    through = [x for hat in hats for x in hat] + list(() if body is None else body.ends)
+    through = [x for hat in hats for x in hat] + list(() if body is None else body.along(2.0 * half).ends)
     stations = graded_stations(2.0 * half, through, _FIRST_LAYER, _GROWTH, _LAYER)
     nodes = int(1.3 * section.points.shape[1] * stations.size)
     if nodes > _MOST_NODES:

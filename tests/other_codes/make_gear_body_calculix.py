@@ -1,6 +1,6 @@
 """Write gear_body_calculix.json: whole gears on a web by CalculiX, under load and in vibration (run by hand).
 
-python tests/other_codes/make_gear_body_calculix.py [middle|off]...
+python tests/other_codes/make_gear_body_calculix.py [middle|off|inclined|steep]...
 
 Quadratic wedges and hexahedra, all sides joined node by node. Two cores take twenty minutes for the loads of one gear
 (160,000 nodes); its waves are those of one sector with CalculiX' cyclic symmetry (10,000 nodes, the layers finest where
@@ -8,6 +8,7 @@ the web ends).
 """
 
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -30,17 +31,25 @@ from fegear.output.mesh_export import write_solid_inp
 FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "gear_body_calculix.json"
 TOOTH, BORE, FACE = Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), 2.0, 4.0
 RADIUS, PLACES = 8.2, (-2.0, -1.0, 0.0, 1.0, 2.0)
-#: The web in the middle of the face and off it; the hub as wide as the face.
+#: The web in the middle of the face and off it; inclined by 20 degrees, and by 30 between a helical rim and a hub that
+#: is narrower than the face.
 BODIES = {
-    which: GearBody(5.7, 3.0, web, (-2.0, 2.0)) for which, web in {"middle": (-0.5, 0.5), "off": (-1.5, -0.5)}.items()
+    "middle": GearBody(5.7, 3.0, (-0.5, 0.5), (-2.0, 2.0)),
+    "off": GearBody(5.7, 3.0, (-1.5, -0.5), (-2.0, 2.0)),
+    "inclined": GearBody(5.7, 3.0, (-1.5, -0.5), (-2.0, 2.0), math.tan(math.radians(20.0))),
+    "steep": GearBody(5.7, 3.0, (-1.25, -0.5), (-1.0, 2.0), math.tan(math.radians(30.0))),
 }
+#: Twist [rad/module], 15 degrees on the reference circle.
+TWISTS = {"steep": math.tan(math.radians(15.0)) / TOOTH.pitch_radius}
 #: Edges of tooth 0 and of the others as a multiple of the usual ones, under load and for modes; planes along the face.
 EDGES, COARSE = (1.2, 2.0), 3.0
 LOADED = np.unique(np.round([*np.linspace(-2, 2, 17), -1.9, 1.9, -1.6, -1.4, -0.6, -0.4, 0.4, 0.6], 9))
+LEANING = np.unique(np.round([*np.linspace(-2, 2, 17), -1.9, 1.9, -1.6, -1.4, -0.6, -0.4], 9))
 MODES = {
     "middle": [-2, -1.25, -0.75, -0.57, -0.5, -0.43, -0.2, 0.2, 0.43, 0.5, 0.57, 0.75, 1.25, 2],
     "off": [-2, -1.75, -1.57, -1.5, -1.43, -1.2, -0.8, -0.57, -0.5, -0.43, -0.25, 0.2, 1, 2],
 }
+MODES["inclined"] = MODES["off"]
 #: Nodal diameters up to which modes are wanted, and how many with each.
 DIAMETERS, EACH = 3, 2
 
@@ -49,10 +58,12 @@ def hat(place):
     return max(place - 0.5, -2.0), place, min(place + 0.5, 2.0)
 
 
-def under_load(body):
+def under_load(which):
     """Deflections between bands, and the largest root tension along the face of each."""
     calculix.TOOTH, calculix.BORE = TOOTH, BORE
-    mesh = extruded(gear_section.uneven_section(TOOTH, BORE, *EDGES, body), LOADED, 0.0, body)
+    body = BODIES[which]
+    section = gear_section.uneven_section(TOOTH, BORE, *EDGES, body)
+    mesh = extruded(section, LEANING if body.lean else LOADED, TWISTS.get(which, 0.0), body)
     bands = {f"{p:g}": pressed_band(mesh, TOOTH, RADIUS, 0.25, hat(p), 0) for p in PLACES}
     with tempfile.TemporaryDirectory() as folder:
         moved = calculix.solve(Path(folder), "g", mesh, bands, tuple(bands))
@@ -98,5 +109,5 @@ def frequencies(which):
 if __name__ == "__main__":
     for which in sys.argv[1:] or BODIES:
         known = json.loads(FILE.read_text()) if FILE.exists() else {}
-        known[which] = under_load(BODIES[which]) | {"frequencies": frequencies(which)}
+        known[which] = under_load(which) | ({"frequencies": frequencies(which)} if which in MODES else {})
         FILE.write_text(json.dumps(known, indent=1) + "\n")

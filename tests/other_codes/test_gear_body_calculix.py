@@ -1,4 +1,4 @@
-"""Gears on a web against CalculiX: whole gears of 16 teeth on explicit meshes, web in the middle and off it.
+"""Gears on a web against CalculiX: whole gears of 16 teeth on explicit meshes, web in the middle, off it and inclined.
 
 gear_body_calculix.json has what `make_gear_body_calculix.py` found: deflections and root stress under bands at five
 places along the face on 160,000 nodes, and natural frequencies of a sector of 10,000.
@@ -22,6 +22,7 @@ _spec = importlib.util.spec_from_file_location("made", Path(__file__).with_name(
 made = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(made)
 FOUND = json.loads(made.FILE.read_text())
+LOADED = ("middle", "off", "inclined")
 FINE = replace(
     SolidSettings().scaled(0.8), waves_per_module=4.0, section=replace(SolidSettings().scaled(0.8).section, order=4)
 )
@@ -29,7 +30,8 @@ FINE = replace(
 
 def worst(which, settings):
     """Largest differences of deflections over each band's own, and of root tension over its largest."""
-    return apart(which, solve_solid(made.TOOTH, 0.0, made.FACE, 0.3, made.BORE, settings, body=made.BODIES[which]))
+    size = (made.TOOTH, made.TWISTS.get(which, 0.0), made.FACE, 0.3, made.BORE, settings)
+    return apart(which, solve_solid(*size, body=made.BODIES[which]))
 
 
 def apart(which, solved):
@@ -54,17 +56,18 @@ def test_load_on_a_web_off_the_middle():
 
 
 @pytest.mark.long  # the ordinary run compares the degrees of both solutions
-def test_coarse_settings_on_a_thin_rim_tell_their_error():
+@pytest.mark.parametrize("which", LOADED[1:])
+def test_coarse_settings_on_a_thin_rim_tell_their_error(which):
     """At a tolerance of .1; the body's rim is 1.25 modules thick."""
-    size = (made.TOOTH, 0.0, made.FACE, 0.3, made.BORE, solid_settings(0.1))
-    known = solid_influence(*size, reach=0, body=made.BODIES["off"])
-    moved, stress = apart("off", known.fine)
+    size = (made.TOOTH, made.TWISTS.get(which, 0.0), made.FACE, 0.3, made.BORE, solid_settings(0.1))
+    known = solid_influence(*size, reach=0, body=made.BODIES[which])
+    moved, stress = apart(which, known.fine)
     assert 0.01 < moved < known.error["contact"]
     assert 0.01 < stress < known.error["root_tension"]
 
 
 @pytest.mark.long  # the ordinary run has the web off the middle with coarser settings
-@pytest.mark.parametrize("which", ["middle", "off"])
+@pytest.mark.parametrize("which", LOADED)
 def test_loads_with_fine_settings(which):
     moved, stress = worst(which, FINE)
     assert moved < 0.006
@@ -80,8 +83,8 @@ def frequencies(which, edges, **more):
 
 
 @pytest.mark.long  # a row of `fegear verify` has two of them with coarse elements
-@pytest.mark.parametrize("which", ["middle", "off"])
+@pytest.mark.parametrize("which", made.MODES)
 def test_two_natural_frequencies_with_each_number_of_nodal_diameters(which):
-    """With the edges that `body-modes` takes: 8e-4 at most."""
+    """With the edges that `body-modes` takes: 8e-4 at most, and 1.2e-3 on an inclined web."""
     found = frequencies(which, 2.0, diameters=made.DIAMETERS, each=made.EACH)
     assert np.array(found) == pytest.approx(np.array(FOUND[which]["frequencies"]), rel=0.002)

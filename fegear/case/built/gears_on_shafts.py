@@ -87,18 +87,22 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
 def _body(gear: Gear, place: GearPlacePart, sense: int) -> RevolvedBody:
     """What lies between the held radius of a gear and its root circle, along its shaft."""
     half = 0.5 * gear.face_width
-    rings = [(gear.bore_radius, -half, half)]
+    rings, lean = [(gear.bore_radius, -half, half)], 0.0
     if gear.body is not None:
+        lean = gear.body.lean
         rings = [(gear.body.rim_radius, -half, half), (gear.body.hub_radius, *gear.body.web)]
         if gear.body.hub_radius > gear.bore_radius * (1.0 + _PIECE):
             rings.append((gear.bore_radius, *gear.body.hub))
     if sense > 0:  # toward end II is toward the left end of the shaft
-        rings = [(inner, -high, -low) for inner, low, high in rings]
+        rings, lean = [(inner, -high, -low) for inner, low, high in rings], -lean
     low, high = rings[-1][1:]
+    if len(rings) == 2:  # a web that is its own hub
+        shift = lean * (rings[0][0] - rings[1][0])
+        low, high = low + shift, high + shift
     reach = half if place.seat is None else 0.5 * place.seat
     return RevolvedBody(
         gear.root_radius, gear.face_width, tuple(rings), (max(low, -reach), min(high, reach)),
-        gear.material.poisson_ratio,
+        gear.material.poisson_ratio, lean,
     )  # fmt: skip
 
 

@@ -158,6 +158,11 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     said: list[str] = []
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
     driver, driven = (gear_body(scene, gear, said, fixed=_stands_still(scene, name, gear)) for gear in gears)
+    said += [
+        f"Gear {gear}: C_R takes its inclined web for a straight one of its thickness along the axis."
+        for gear in gears
+        if (body := scene.gears[gear].body) is not None and body.lean
+    ]
     geometry = of_pair(pair, (driver, driven))
     if geometry.internal:
         said.append(f"Pair {name}: {_RECALLED_OF_RINGS}.")

@@ -189,7 +189,7 @@ def check_solid_gear(scene: Scene, name: str) -> None:
 
 
 def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
-    """Refuse a web or hub off the middle of a gear that is driven in one of some loaded pairs and drives in another.
+    """Refuse uneven bodies of gears that are driven in one of some loaded pairs and drive in another.
 
     Raises
     ------
@@ -203,10 +203,10 @@ def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
     drives = next((key for key, one in meshes if one.driver == name), None)
     if driven is not None and drives is not None:
         raise InputError(
-            f"gear.{name}.body", "off the middle of the face",
+            f"gear.{name}.body", "web_inclination" if body.lean else "off the middle of the face",
             f"counts toward end II, which pairs {driven} and {drives} have at opposite ends of gear {name}: "
             "it is driven in one and drives in the other",
-            "load each pair in a case of its own, web_offset and hub_offset with the other sign in one of them",
+            "load each pair in a case of its own; in one all of web_offset, web_inclination and hub_offset change sign",
         )  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from fegear.fem.solid.face import FaceFunctions, face_functions, solid_unknowns
 from fegear.fem.solid.section import Section, make_section, turned_matrices
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import section_mesh
+from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
 
@@ -112,15 +113,16 @@ def body_modes(
         raise InputError("diameters", diameters, f"must lie between 0 and {tooth.teeth // 2}, half the number of teeth")
     with one_thread():
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True, layer=_LAYER / fineness)
+        along = None if body is None else body.along(width)
         section = make_section(
-            mesh, settings.section.order, tau, poisson_ratio, tooth.base_radius, body, side=tooth.side
+            mesh, settings.section.order, tau, poisson_ratio, tooth.base_radius, body, side=tooth.side, along=along
         )
         degree = max(3, round(fineness * (_DEGREE + math.ceil(_PER_MODULE * width))))
-        face = face_functions(width, degree, () if body is None else _cuts(body, width))
-        known = solid_unknowns(section, face, settings, None if body is None else body.hub, all_waves=True)
+        face = face_functions(width, degree, () if along is None else _cuts(along, width))
+        known = solid_unknowns(section, face, settings, None if along is None else along.hub, all_waves=True)
         stiffness, mass, parts = _matrices(mesh, section, face, known.number)
         sides = [(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in (section.side_a, section.side_b)]
-        at = face.values(np.array([0.0 if body is None else 0.5 * sum(body.web)]))[:, 0]
+        at = face.values(np.array([0.0 if along is None else 0.5 * sum(along.web)]))[:, 0]
         vertices = sector_elements(mesh, settings.section.order).point_nodes[: mesh.vertex_count]
         found = []
         for n in range(diameters + 1):
@@ -140,7 +142,7 @@ def body_modes(
     return BodyModes(tuple(found), mesh, known.size)
 
 
-def _cuts(body: GearBody, width: float) -> list[float]:
+def _cuts(body: BodyAlong, width: float) -> list[float]:
     """Where web and hub end, and a little beside each of the web's ends unless something ends there."""
     short, ends = _BESIDE_ENDS * (body.web[1] - body.web[0]), (*body.ends, -0.5 * width, 0.5 * width)
     beside = [end + way * short for end in body.web for way in (-1.0, 1.0)]
@@ -179,15 +181,15 @@ def _matrices(mesh: SectorMesh, section: Section, face: FaceFunctions, number: I
     def solid(terms: list[tuple[Array, int, bool]]) -> Any:
         """Sum over the zones of section matrices times products along the face: which, and whether transposed."""
         total: Any = 0
-        for zone, span in enumerate(section.spans):
+        for zone, along in enumerate(over):
             chosen = section.zone == zone
-            along = face.products_over(*span)
             for matrices, which, across in terms if chosen.any() else ():
                 one, other = assembled(matrices, chosen), along[which]
                 part = kron(one.T, other.T) if across else kron(one, other)
                 total = part + total
         return total.tocsr()[known][:, known].tocsc()
 
+    over = section.products_along(face)
     a00, a01, a11 = section.stiffness
     stiffness = solid([(a00, 0, False), (a01, 1, False), (a01, 1, True), (a11, 2, False)])
     parts = []

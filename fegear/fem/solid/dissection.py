@@ -108,7 +108,7 @@ def condense_solid(
     natural[number[number >= 0]] = known.number[known.number >= 0]
     steps: list[Eliminated] | None = [] if expandable else None
     members = [np.flatnonzero(leaf == i) for i in range(1 << depth)]
-    products = [face.products_over(*span) for span in section.spans]
+    products = section.products_along(face)
 
     def part(level: int, i: int) -> tuple[Index, Array]:
         if level == 0:

@@ -6,7 +6,7 @@ a spur gear has tau = 0, a right hand a positive one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -16,9 +16,12 @@ from fegear.base.arrays import Array, Index, Mask
 from fegear.base.errors import InputError, RangeError
 from fegear.fem.plane.body import zones
 from fegear.fem.plane.gear_section import Section
+from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
 
+#: How near to a circle a point lies on it, as a share of its radius.
+_NEAR = 1e-9
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
 
@@ -99,7 +102,7 @@ def extruded(
     ----------
     section : Section
     stations : array_like, shape (L + 1,)
-        [modules], ascending.
+        [modules], ascending; under the rim they follow an inclined web.
     twist : float
         [rad/module], positive for a right hand.
     body : GearBody, optional
@@ -112,17 +115,19 @@ def extruded(
     Raises
     ------
     InputError
-        If the stations do not ascend, or web or hub end inside a layer.
+        If the stations do not ascend, or web or hub end inside a layer (`GearBody.along` says where).
     """
     z = np.asarray(stations, dtype=float)
     if z.ndim != 1 or z.size < 2 or not (np.diff(z) > 0.0).all():
         raise InputError("stations", str(stations), "must ascend", "give at least the two ends of the face")
     corners, size = _corners(section), section.points.shape[1]
+    along = None if body is None else body.along(float(z[-1] - z[0]))
+    heights = _heights(section.points, body, along)
     planes = []
     for i, place in enumerate(z):
-        planes.append(_turned_up(section.points, place, twist))
+        planes.append(_turned_up(section.points, heights(place), twist))
         if i < z.size - 1:
-            planes.append(_turned_up(section.points[:, corners], 0.5 * (place + z[i + 1]), twist))
+            planes.append(_turned_up(section.points[:, corners], heights(0.5 * (place + z[i + 1]))[corners], twist))
     rank, step = _rank(section), size + corners.size
     low = step * np.arange(z.size - 1)
 
@@ -131,20 +136,32 @@ def extruded(
         bottom, middle, rise = elements[:n], elements[n:], size + rank[elements[:n]]
         one = np.concatenate([bottom, bottom + step, middle, middle + step, rise])
         drawn = one[:, None] + low[:, None]
-        return drawn.reshape(one.shape[0], -1) if body is None else drawn[:, _filled(body, section, bottom, z)]
+        if body is None or along is None:
+            return drawn.reshape(one.shape[0], -1)
+        return drawn[:, _filled(along, zones(body, section.points, bottom), z)]
 
     return SolidMesh(
         section, z, twist, np.hstack(planes), solid(section.triangles, 3), solid(section.quadrilaterals, 4)
     )
 
 
-def _filled(body: GearBody, section: Section, corners: Index, stations: Array) -> Mask:
+def _heights(points: Array, body: GearBody | None, along: BodyAlong | None) -> Callable[[float], Array]:
+    """What a place of the rim is along the face at each point of the section, shape (N,): more where a web leans."""
+    none = np.zeros(points.shape[1])
+    if body is None or along is None or not along.inclined:
+        return lambda place: none + place
+    radius = np.hypot(*points)
+    rise, hub = body.lean * np.maximum(body.rim_radius - radius, 0.0), radius <= body.hub_radius * (1.0 + _NEAR)
+    return lambda place: np.where(hub, along.in_hub(np.asarray(place)), place + rise)
+
+
+def _filled(along: BodyAlong, zone: Index, stations: Array) -> Mask:
     """Which elements of each layer are material, shape (L, M)."""
-    if np.abs(np.subtract.outer(body.ends, stations)).min(axis=1).max() > 1e-9 * np.ptp(stations):
+    if np.abs(np.subtract.outer(along.ends, stations)).min(axis=1).max() > 1e-9 * np.ptp(stations):
         raise InputError("stations", str(stations), "must hold the places where web and hub end")
     middle = 0.5 * (stations[1:] + stations[:-1])
-    there = np.array([(middle > low) & (middle < high) for low, high in body.spans])
-    return np.asarray(there[zones(body, section.points, corners)].T)
+    there = np.array([(middle > low) & (middle < high) for low, high in along.spans])
+    return np.asarray(there[zone].T)
 
 
 def planes_of(mesh: SolidMesh) -> list[tuple[float, Index]]:
@@ -156,9 +173,9 @@ def planes_of(mesh: SolidMesh) -> list[tuple[float, Index]]:
     return [*found, (float(mesh.stations[-1]), every)]
 
 
-def _turned_up(points: Array, place: float, twist: float) -> Array:
-    s, c = np.sin(twist * place), np.cos(twist * place)
-    return np.stack([c * points[0] - s * points[1], s * points[0] + c * points[1], np.full(points.shape[1], place)])
+def _turned_up(points: Array, height: Array, twist: float) -> Array:
+    s, c = np.sin(twist * height), np.cos(twist * height)
+    return np.stack([c * points[0] - s * points[1], s * points[0] + c * points[1], height])
 
 
 def with_stations(stations: Array, more: Sequence[float]) -> Array:

@@ -6,7 +6,7 @@ How many functions along the face each node of the section needs: short waves di
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,6 +19,8 @@ from fegear.fem.solid.section import Section, upward
 from fegear.fem.solid.settings import SolidSettings, whole
 from fegear.geometry.gear_body import GearBody
 
+#: By what length along the axis is greater than places, at these.
+Stretch = Callable[[Array], Array]
 #: Coefficients of a function's series that are smaller than this share of its largest are none.
 _NOISE = 1e-10
 #: Places along the face this near to each other, as a share of its width, are one.
@@ -144,10 +146,10 @@ class FaceFunctions:
         """Integrals of P_k P_l, P_k P_l' and P_k' P_l', shape (count, count) each; entries of no size are zero."""
         return self.products_over(-math.inf, math.inf)
 
-    def products_over(self, low: float, high: float) -> tuple[Array, Array, Array]:
-        """The same from one break to another."""
+    def products_over(self, low: float, high: float, stretched: Stretch | None = None) -> tuple[Array, Array, Array]:
+        """The same from one break to another, where places may be stretched by a factor that is even on every piece."""
         place, weight = self.quadrature(low, high)
-        return _products(*self.at(place), weight)
+        return _products(*self.at(place), weight, None if stretched is None else stretched(place))
 
     def quadrature(self, low: float = -math.inf, high: float = math.inf, least: int = 0) -> tuple[Array, Array]:
         """Gauss points and weights that integrate products of two functions exactly, shape (q,) each [modules].
@@ -178,7 +180,9 @@ class FaceFunctions:
         return [i for i in range(len(self.degrees)) if ends[i] >= low - near and ends[i + 1] <= high + near]
 
 
-def _products(values: Array, slopes: Array, weight: Array) -> tuple[Array, Array, Array]:
+def _products(values: Array, slopes: Array, weight: Array, stretch: Array | None = None) -> tuple[Array, Array, Array]:
+    if stretch is not None:
+        slopes, weight = slopes / stretch, weight * stretch
     found = [(values * weight) @ values.T, (values * weight) @ slopes.T, (slopes * weight) @ slopes.T]
     for matrix in found:
         matrix[np.abs(matrix) < 1e-13 * np.abs(matrix).max()] = 0.0
@@ -198,11 +202,11 @@ class JoinedFunctions:
     body: FaceFunctions
     teeth: FaceFunctions
 
-    def products_over(self, low: float, high: float) -> tuple[Array, Array, Array]:
+    def products_over(self, low: float, high: float, stretched: Stretch | None = None) -> tuple[Array, Array, Array]:
         """Integrals of products of all functions from one break to another, as `FaceFunctions` has them."""
         place, weight = self.body.quadrature(low, high, max(self.teeth.degrees))
         values, slopes = (np.vstack(both) for both in zip(self.body.at(place), self.teeth.at(place), strict=True))
-        return _products(values, slopes, weight)
+        return _products(values, slopes, weight, None if stretched is None else stretched(place))
 
 
 def face_functions(

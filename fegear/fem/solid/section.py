@@ -3,12 +3,17 @@
 In the helicoid's own coordinates every section is alike (`fem.forms.turned_strains`): no coefficient depends on z. With
 a function N of the section times a function P along the face, every strain is B0 P + B1 P', and a stiffness is a short
 sum of products of section and face integrals.
+
+An inclined web is a sheared straight one: its functions are those of the place z - s (r_rim - r) at which the inclined
+line through a point meets the rim, s the tangent of the inclination. With them B1 gets slopes s N / r (xi, eta, 0), and
+no volume changes. The hub has the functions of the places that the web leads to it.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,10 +23,16 @@ from fegear.fem.plane.body import zones
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import SectorElements, sector_elements
 from fegear.fem.plane.mesh import SectorMesh
+from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
+
+if TYPE_CHECKING:
+    from fegear.fem.solid.face import FaceFunctions, JoinedFunctions
 
 #: From where to where a disc fills the face: all of it.
 _WHOLE_FACE = ((-math.inf, math.inf),)
+#: Numbers of zones.
+WEB, HUB = 1, 2
 
 
 @dataclass(frozen=True)
@@ -57,9 +68,13 @@ class Section:
         Rim and teeth (0), web (1) or hub (2) that each element belongs to.
     spans : tuple of (float, float)
         Along the face, from where to where each zone is material [modules]; the first has no ends but those of the
-        face.
+        face. Those of an inclined web and its hub are places of the rim that lead there.
     side : {1, -1}
         Of an external or an internal tooth.
+    lean : ndarray, shape (M,), or None
+        Tangent of the inclination of the web that each element belongs to; None if no web is inclined.
+    along : BodyAlong or None
+        Places in the hub under an inclined web.
     """
 
     stiffness: tuple[Array, Array, Array]
@@ -77,6 +92,8 @@ class Section:
     zone: Index
     spans: tuple[tuple[float, float], ...]
     side: int = 1
+    lean: Array | None = None
+    along: BodyAlong | None = None
 
     @property
     def size(self) -> int:
@@ -87,6 +104,11 @@ class Section:
         """Nodes of boundaries, each once, ascending."""
         found = [self.edge_nodes[name].ravel() for name in names if name in self.edge_nodes]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
+
+    def products_along(self, face: FaceFunctions | JoinedFunctions) -> list[tuple[Array, Array, Array]]:
+        """Integrals of products of functions along the face over what each zone fills, as `FaceFunctions` has them."""
+        hub = None if self.along is None else self.along.stretched
+        return [face.products_over(*span, hub if zone == HUB else None) for zone, span in enumerate(self.spans)]
 
 
 def upward(section: Section, name: str) -> tuple[Index, Array]:
@@ -132,6 +154,7 @@ def make_section(
     body: GearBody | None = None,
     *,
     side: int = 1,
+    along: BodyAlong | None = None,
 ) -> Section:
     """Integrate the section's matrices.
 
@@ -149,6 +172,8 @@ def make_section(
         Web and hub; without it the section is material over the whole face.
     side : {1, -1}
         Of an external or an internal tooth.
+    along : BodyAlong, optional
+        Where web and hub of the body lie along the face.
 
     Returns
     -------
@@ -166,8 +191,10 @@ def make_section(
     _check_sides(side_a, side_b, places, mesh.teeth)
     count = nodes.shape[0]
     axes = _axes(places, np.concatenate([side_a, side_b]), np.unique(edge_nodes["flank"]), (base_radius, side), tau)
+    zone = np.zeros(count, dtype=np.int64) if body is None else zones(body, mesh.points, mesh.triangles[:3])
+    lean = body.lean * (zone == WEB) if body is not None and body.lean else None
     return Section(
-        stiffness=_stiffness(elements, axes[nodes], tau, poisson_ratio),
+        stiffness=_stiffness(elements, axes[nodes], tau, poisson_ratio, lean),
         element_dofs=(3 * nodes[:, :, None] + np.arange(3)).reshape(count, -1),
         centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
         axes=axes,
@@ -179,9 +206,11 @@ def make_section(
         order=order,
         tau=tau,
         poisson_ratio=poisson_ratio,
-        zone=np.zeros(count, dtype=np.int64) if body is None else zones(body, mesh.points, mesh.triangles[:3]),
-        spans=_WHOLE_FACE if body is None else body.spans,
+        zone=zone,
+        spans=_WHOLE_FACE if along is None else along.spans,
         side=side,
+        lean=lean,
+        along=None if lean is None else along,
     )
 
 
@@ -228,19 +257,26 @@ def _axes(places: Array, sides: Index, flank: Index, base: tuple[float, int], ta
     return axes
 
 
-def _stiffness(elements: SectorElements, axes: Array, tau: float, poisson_ratio: float) -> tuple[Array, Array, Array]:
+def _stiffness(
+    elements: SectorElements, axes: Array, tau: float, poisson_ratio: float, lean: Array | None
+) -> tuple[Array, Array, Array]:
     """The section's matrices for unknowns along axes of shape (M, n, 3, 3)."""
-    from fegear.fem.forms import coefficients, element_matrices, products, turn, turned_elasticity
+    from fegear.fem.forms import coefficients, element_matrices, products, shear, turn, turned_elasticity
 
     basis = elements.basis()
-    turn(basis, basis.mapping.F(basis.X) + elements.tip, tau)
-    integrals = products(basis, (0, 1, 2, 3))
+    place = basis.mapping.F(basis.X) + elements.tip
+    turn(basis, place, tau)
+    # What changes along the face adds P' times the function itself to its D, and in an inclined web to its slopes.
+    slots, along, gained = 4, [0], 3
+    if lean is not None:
+        shear(basis, place, lean)
+        slots, along, gained = 6, [4, 5, 0], 1
+    integrals = products(basis, tuple(range(slots)))
     lam, mu = lame(poisson_ratio, "strain")
     weights = coefficients(turned_elasticity, 3, 3, lam=lam, mu=mu, tau=tau)
-    # What changes along the face adds P' times the function itself to its D.
-    in_section = element_matrices(weights, integrals)
-    mixed = element_matrices(weights[..., 3:], integrals[:, :1])
-    along_face = element_matrices(weights[:, 3:, :, 3:], integrals[:1, :1])
+    in_section = element_matrices(weights, integrals[:4, :4])
+    mixed = element_matrices(weights[..., gained:], integrals[:4][:, along])
+    along_face = element_matrices(weights[:, gained:, :, gained:], integrals[np.ix_(along, along)])
     return turned_matrices(in_section, axes), turned_matrices(mixed, axes), turned_matrices(along_face, axes)
 
 

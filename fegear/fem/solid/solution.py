@@ -295,9 +295,10 @@ def _solve(
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
     if mesh is None:
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True, fewest=settings.body_layers)
-    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body, side=tooth.side)
-    held = held if body is None else body.hub
-    cuts = (held or ()) if body is None else body.ends
+    along = None if body is None else body.along(width)
+    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body, side=tooth.side, along=along)
+    held = held if along is None else along.hub
+    cuts = (held or ()) if along is None else along.ends
     face = face_functions(width, settings.degree(width), cuts, settings.least_piece_degree, settings.fewer_on_pieces)
     beyond = own_of_teeth(face, body, tooth.root_radius)
     own = face_functions(width, settings.degree(width)) if math.isfinite(beyond) else face
@@ -373,7 +374,8 @@ def _solve(
 
     displacement = {(k, side): in_space(side, moved) for (k, side), moved in local.items()}
     found = SolidSolution(
-        tooth, tau, width, bore_radius, held, body, nu, plane_strain, own, flank, compliance, fillets, displacement,
+        tooth, tau, width, bore_radius, held if body is None else body.hub, body, nu, plane_strain, own, flank,
+        compliance, fillets, displacement,
         reach, known.size, settings, seconds, support,
     )  # fmt: skip
     if pins is None:
