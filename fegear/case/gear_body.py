@@ -8,13 +8,39 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, Length, Part, PositiveLength, refuse
-from fegear.geometry.gear_body import STEEPEST, GearBody
+from fegear.case.part import Angle, Length, Part, PositiveLength, Table, refuse
+from fegear.geometry.gear_body import STEEPEST, GearBody, WebHoles
 from fegear.geometry.rim_support import RimSupport
 
 
+class WebHolesPart(Part):
+    """``body.holes = { count, circle_diameter, diameter, angle, tooth }``: round holes in a web, evenly spaced."""
+
+    count: int = Field(description="Number of holes, any: it need not divide the number of teeth.")
+    circle_diameter: PositiveLength = Field(description="Diameter of the circle of the holes' middles.")
+    diameter: PositiveLength = Field(description="Diameter of each hole.")
+    angle: Angle = Field(
+        default=0.0,
+        description="Of the first hole's middle from the centre line of tooth 0 in the middle of the face, positive "
+        "the way that its loaded flank faces; without it a hole lies below the middle of tooth 0.",
+    )
+
+    tooth: int | None = Field(
+        default=None,
+        description="Tooth, counted clockwise from tooth 0, that tables, pairs and sets take for all teeth; without it "
+        "they take the mean over all.",
+    )
+
+    def build(self) -> WebHoles:
+        """Make the holes [m]."""
+        return WebHoles(self.count, 0.5 * self.circle_diameter, 0.5 * self.diameter, self.angle, self.tooth)
+
+
 class GearBodyPart(Part):
-    """``body = { rim_thickness, web_thickness, web_offset, web_inclination, hub_radius, hub_width, hub_offset }``."""
+    """``body = { rim_thickness, web_thickness, web_offset, web_inclination, hub_radius, hub_width, hub_offset }``.
+
+    And ``holes``.
+    """
 
     rim_thickness: PositiveLength = Field(
         description="Rim s_R below the root circle, as wide as the face; for the ratings too (Y_B, C_R, K_B)."
@@ -42,6 +68,12 @@ class GearBodyPart(Part):
         default=0.0, description="How far the middle of the hub lies from the middle of the face, toward end II."
     )
 
+    holes: Table[WebHolesPart] | None = Field(
+        default=None,
+        description="Round holes through the web, evenly spaced. Teeth differ then: how far is reported, and tables, "
+        "pairs and sets take the mean over all teeth, or one of them.",
+    )
+
     @model_validator(mode="after")
     def _hub(self) -> Self:
         if not abs(self.web_inclination) <= STEEPEST * (1.0 + 1e-9):
@@ -64,11 +96,12 @@ class GearBodyPart(Part):
 
         web = part(self.web_thickness, self.web_offset)
         rim, lean = root_radius - self.rim_thickness, math.tan(self.web_inclination)
+        holes = None if self.holes is None else self.holes.build()
         if self.hub_radius is None:
-            down = GearBody(rim, bore_radius, web, web, lean)
+            down = GearBody(rim, bore_radius, web, web, lean, holes)
             return replace(down, hub=down.foot)
         width = face_width if self.hub_width is None else self.hub_width
-        return GearBody(rim, self.hub_radius, web, part(width, self.hub_offset), lean)
+        return GearBody(rim, self.hub_radius, web, part(width, self.hub_offset), lean, holes)
 
 
 class RimSupportPart(Part):

@@ -122,7 +122,7 @@ class Gear:
             refuse_material(self.material)
         self._check_held_radius()
         if self.body is not None:
-            self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius)
+            self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius, self.teeth)
         if self.support is not None:
             if not self.tooth.internal:
                 raise GeometryError("rim_support", "of an external gear", "has a meaning only for internal gears")
@@ -313,7 +313,7 @@ class Gear:
         if self.body is None:
             half = 0.5 * self.face_width
             return moments([(outer, inner, -half, half, 0.0)], self.material.density)
-        return moments(self.body.cylinders(outer, inner, self.face_width), self.material.density)
+        return moments(self.body.cylinders(outer, inner, self.face_width), self.material.density, self.body)
 
     @property
     def body_in_modules(self) -> GearBody | None:

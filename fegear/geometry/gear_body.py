@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.body_along import BodyAlong, body_along
@@ -20,6 +20,94 @@ STEEPEST = math.radians(20.0)
 #: degree. The hub reaches beyond the web if by more than a share of the width.
 _LEAST_RIM, _NEAR = 0.2, 1e-6
 _ROUND_OFF = 1e-9
+#: How near holes come to the root circle, as a share of its radius: a hundred waves round the gear feel them.
+_NEAREST = 0.06
+#: How far from rim and hub the part of a web that holes lie in begins: a share of the web's thickness, off the corners
+#: that it makes with them, and at most a share of what is left beside a hole.
+_OFF_CORNER, _OFF_HOLE = 0.3, 0.4
+
+
+@dataclass(frozen=True, slots=True)
+class WebHoles:
+    """Round holes in a web, evenly spaced on a circle about the gear's axis.
+
+    Parameters
+    ----------
+    count : int
+    circle_radius : float
+        Of the circle of their middles, in the unit of the gear.
+    radius : float
+        Of each hole.
+    angle : float
+        Of the first hole's middle from the centre line of tooth 0, positive the way that the loaded flank faces [rad].
+    tooth : int, optional
+        Clockwise from tooth 0, the tooth that is taken for all; without one the mean over all is.
+    """
+
+    count: int
+    circle_radius: float
+    radius: float
+    angle: float = 0.0
+    tooth: int | None = None
+
+    def scaled(self, factor: float) -> WebHoles:
+        """The same in other units."""
+        return replace(self, circle_radius=self.circle_radius * factor, radius=self.radius * factor)
+
+    def different_teeth(self, teeth: int) -> int:
+        """How many teeth in a row stand differently to the holes before the first of them comes again."""
+        return teeth // math.gcd(teeth, self.count)
+
+    def check(self, body: GearBody, module: float, root_radius: float, teeth: int | None) -> None:
+        """Refuse holes that have no room in a web; all lengths in the body's unit [m].
+
+        Raises
+        ------
+        GeometryError
+        """
+        least, key = _THINNEST * module, "body.holes.diameter"
+        size = f"{2e3 * self.radius:.6g} mm"
+        if self.count < 1:
+            raise GeometryError("body.holes.count", self.count, "must be at least 1", "leave holes out for none")
+        if body.lean:
+            raise GeometryError(
+                "body.holes", self.count, "are not computed in an inclined web", "leave web_inclination or holes out"
+            )
+        if self.tooth is not None and teeth is not None and not 0 <= self.tooth < teeth:
+            rule = f"must lie between 0 and {teeth - 1}"
+            raise GeometryError("body.holes.tooth", self.tooth, rule, "count clockwise from tooth 0")
+        if not math.isfinite(self.angle):
+            raise GeometryError("body.holes.angle", self.angle, "must be finite")
+        if 2.0 * self.radius < least:
+            raise GeometryError(
+                key, size, f"must be at least {least * 1e3:.6g} mm ({_THINNEST:g} modules)",
+                "smaller holes change nothing that is computed: leave them out",
+            )  # fmt: skip
+        reach, least = self.radius + least, least * 1e3
+        circle = f"on their circle of {2e3 * self.circle_radius:.6g} mm, {least:.6g} mm off it ({_THINNEST:g} modules)"
+        if self.circle_radius + reach > body.rim_radius * (1.0 + _ROUND_OFF):
+            raise GeometryError(
+                key, size, f"leaves no web to the inside of the rim, {2e3 * body.rim_radius:.6g} mm across, {circle}",
+                "make holes or circle_diameter smaller",
+            )  # fmt: skip
+        if self.circle_radius - reach < body.hub_radius * (1.0 - _ROUND_OFF):
+            raise GeometryError(
+                key, size, f"leaves no web to the hub, {2e3 * body.hub_radius:.6g} mm across, {circle}",
+                "make holes smaller or circle_diameter larger",
+            )  # fmt: skip
+        apart = 2.0 * self.circle_radius * math.sin(math.pi / self.count)
+        if self.count > 1 and apart < 2.0 * self.radius + least * 1e-3:
+            raise GeometryError(
+                key, size, f"leaves no web between {self.count} holes, whose middles lie {apart * 1e3:.6g} mm apart "
+                f"{circle}", "make holes smaller or fewer",
+            )  # fmt: skip
+        edge = self.circle_radius + self.radius
+        if root_radius - edge < _NEAREST * root_radius:
+            raise GeometryError(
+                key, size, f"must stay {_NEAREST * root_radius * 1e3:.4g} mm ({_NEAREST:.0%} of its radius) below the "
+                f"root circle; these reach within {(root_radius - edge) * 1e3:.4g} mm",
+                "what is so near to the teeth takes too many waves round the gear",
+            )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +124,8 @@ class GearBody:
         The parts of the face that they fill, an inclined web where it meets the rim. The bore is held over the hub.
     lean : float
         Tangent of the web's inclination: positive if it meets the hub at greater places than the rim.
+    holes : WebHoles, optional
+        In the web.
     """
 
     rim_radius: float
@@ -43,6 +133,7 @@ class GearBody:
     web: tuple[float, float]
     hub: tuple[float, float]
     lean: float = 0.0
+    holes: WebHoles | None = None
 
     @property
     def foot(self) -> tuple[float, float]:
@@ -62,16 +153,29 @@ class GearBody:
         middle = all(abs(low + high) <= _ROUND_OFF * (high - low) for low, high in (self.web, self.hub))
         return middle and not self.lean
 
+    @property
+    def holed_ring(self) -> tuple[float, float] | None:
+        """Inside and outside of the part of the web that its holes lie in, off rim and hub; None without holes."""
+        if self.holes is None:
+            return None
+        thickness, holes = self.web[1] - self.web[0], self.holes
+        inner = holes.circle_radius - holes.radius - self.hub_radius
+        outer = self.rim_radius - holes.circle_radius - holes.radius
+        off = (min(_OFF_CORNER * thickness, _OFF_HOLE * room) for room in (inner, outer))
+        return self.hub_radius + next(off), self.rim_radius - next(off)
+
     def is_disc(self, width: float) -> bool:
-        """Whether web and hub fill a face, so that the gear is a disc."""
-        return all(high - low >= (1.0 - _ROUND_OFF) * width for low, high in (self.web, self.hub))
+        """Whether web and hub fill a face and have no holes, so that the gear is a disc."""
+        return self.holes is None and all(
+            high - low >= (1.0 - _ROUND_OFF) * width for low, high in (self.web, self.hub)
+        )
 
     def scaled(self, factor: float) -> GearBody:
         """The same in other units."""
         (a, b), (c, d) = self.web, self.hub
         return GearBody(
             self.rim_radius * factor, self.hub_radius * factor, (a * factor, b * factor), (c * factor, d * factor),
-            self.lean,
+            self.lean, None if self.holes is None else self.holes.scaled(factor),
         )  # fmt: skip
 
     def cylinders(self, outer_radius: float, bore_radius: float, width: float) -> tuple[Cylinder, ...]:
@@ -82,7 +186,9 @@ class GearBody:
             (self.hub_radius, bore_radius, *self.hub, 0.0),
         )  # fmt: skip
 
-    def check(self, module: float, width: float, bore_radius: float, root_radius: float) -> None:
+    def check(
+        self, module: float, width: float, bore_radius: float, root_radius: float, teeth: int | None = None
+    ) -> None:
         """Refuse bodies that do not fit their gear; all lengths in the body's unit [m].
 
         Raises
@@ -140,6 +246,8 @@ class GearBody:
                 f"{self.rim_radius * 1e3:.6g} mm, {thin * 1e3:.6g} mm off both ({_THINNEST:g} modules)",
             )  # fmt: skip
         self._check_beside(width)
+        if self.holes is not None:
+            self.holes.check(self, module, root_radius, teeth)
 
     def _check_beside(self, width: float) -> None:
         """Refuse an inclined web beside whose end the hub goes on where the face does not."""
@@ -154,8 +262,12 @@ class GearBody:
                 )  # fmt: skip
 
 
-def moments(cylinders: Sequence[Cylinder], density: float) -> tuple[float, float, float]:
-    """Mass [kg], inertia about the axis and about a line across it at z = 0 [kg m^2] of hollow cylinders [m]."""
+def moments(cylinders: Sequence[Cylinder], density: float, body: GearBody | None = None) -> tuple[float, float, float]:
+    """Mass [kg], inertia about the axis and about a line across it at z = 0 [kg m^2] of hollow cylinders [m].
+
+    Less those of the holes that a body has; across the axis on average over all directions, which three holes and more
+    are alike to.
+    """
     mass = spin = tilt = 0.0
     for outer, inner, low, high, lean in cylinders:
         length, squares = high - low, outer**2 + inner**2
@@ -167,4 +279,11 @@ def moments(cylinders: Sequence[Cylinder], density: float) -> tuple[float, float
             c, cubes = 0.5 * (low + high) + lean * outer, (outer**3 - inner**3) / (outer**2 - inner**2)
             far = c**2 - 4.0 / 3.0 * c * lean * cubes + 0.5 * lean**2 * squares
         tilt += own * ((3.0 * squares + length**2) / 12.0 + far)
+    if body is not None and body.holes is not None:
+        (low, high), holes = body.web, body.holes
+        own = math.pi * density * (high - low) * holes.radius**2 * holes.count
+        mass -= own
+        spin -= own * (0.5 * holes.radius**2 + holes.circle_radius**2)
+        tilt -= own * ((3.0 * holes.radius**2 + (high - low) ** 2) / 12.0 + (0.5 * (low + high)) ** 2)
+        tilt -= 0.5 * own * holes.circle_radius**2
     return mass, spin, tilt

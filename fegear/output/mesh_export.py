@@ -163,6 +163,9 @@ def write_solid(
         raise InputError("face_positions", f"{off[0] * one * _MM:.6g} mm", rule)
     hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
     body = gear.body_in_modules
+    if body is not None and body.holes is not None:
+        rule = "makes meshes of webs without holes alone"
+        raise InputError("--format", "solid", rule, "leave body.holes out, or take another format")
     section = (
         gear_section(dict.fromkeys(range(gear.teeth), mesh))
         if mesh

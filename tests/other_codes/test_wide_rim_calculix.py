@@ -62,7 +62,7 @@ def test_a_whole_wide_ring_on_pins_is_that_of_calculix(tmp_path, program):
     known = solve_solid(
         ring.RING.tooth, calculix.twist_of(beta, ring.RING), calculix.FACE, calculix.NU, ring.RING.bore, WAVES,
         support=PINS, compared=band("middle"),
-    ).pins  # fmt: skip
+    ).uneven  # fmt: skip
     mesh, named = calculix.solid(beta, 1.0, (0.5,), 0.5, shape=ring.RING)
     for tooth in (0, 1):  # the second gives way half as much
         held = ring.held_by_pins(mesh, replace(PINS, angle=PINS.angle - tooth * pitch), 5)

@@ -66,9 +66,9 @@ def test_without_axial_motion_it_is_the_plane_ring_on_pins(support, rim):
         np.testing.assert_allclose(WIDTH * stress, wanted, atol=1e-7 * np.abs(wanted).max())
     each = [tooth_on_pins(plane, tooth) for tooth in range(plane.pins.teeth)]
     wanted = [(loads.T @ one.compliance[0] @ loads)[1, 1] for one in each]
-    np.testing.assert_allclose(WIDTH * solid.pins.deflection, wanted, atol=1e-7 * size)
+    np.testing.assert_allclose(WIDTH * solid.uneven.deflection, wanted, atol=1e-7 * size)
     wanted = [(one.stress[0, "compression"] @ loads[:, 1]).min() for one in each]
-    np.testing.assert_allclose(WIDTH * solid.pins.root_compression, wanted, rtol=0.02)  # of points, and between them
+    np.testing.assert_allclose(WIDTH * solid.uneven.root_compression, wanted, rtol=0.02)  # of points, and between them
 
 
 def parts(tau, support, width=WIDTH, rim=1.0, settings=COARSE):
@@ -119,7 +119,7 @@ def test_whole_rings_on_pins_solved_at_once_answer_alike(tau):
         force[number[tooth, flank]] = np.column_stack([load, bands_load])
         moved = system.solve(force)
         alone = load @ moved[number[tooth, flank], 0]
-        assert alone == pytest.approx(solid.pins.deflection[tooth], rel=1e-7)
+        assert alone == pytest.approx(solid.uneven.deflection[tooth], rel=1e-7)
         for k in mean:
             mean[k] += bands_load.T @ moved[number[(tooth + k) % TEETH, flank]][:, 1:] / TEETH
     for k, wanted in mean.items():
@@ -162,10 +162,10 @@ def test_a_ring_turned_under_its_pins_is_the_next_tooth():
     pitch = 2.0 * math.pi / TEETH
     one, other = solved(FIVE, compared=ONE), solved(RimSupport(5, 2.0, 0.3 - pitch), compared=ONE)
     for name in ("deflection", "root_tension", "root_compression"):
-        there, here = getattr(one.pins, name), getattr(other.pins, name)
+        there, here = getattr(one.uneven, name), getattr(other.uneven, name)
         np.testing.assert_allclose(np.roll(there, -1), here, rtol=1e-8)
     size = np.abs(one.compliance[0]).max()
-    assert one.pins.deflection.mean() == pytest.approx(one.deflection(0, ONE, ONE)[0, 0], rel=1e-9)
+    assert one.uneven.deflection.mean() == pytest.approx(one.deflection(0, ONE, ONE)[0, 0], rel=1e-9)
     for k in (0, 1):
         np.testing.assert_allclose(one.compliance[k], other.compliance[k], atol=1e-9 * size)
         np.testing.assert_allclose(one.compliance[k], one.compliance[-k].T, atol=1e-9 * size)
@@ -178,7 +178,7 @@ def test_the_other_hand_is_its_mirror_image():
     for k in (0, 1):
         found, wanted = other.deflection(k, mirrored, mirrored), one.deflection(k, PRESSED, PRESSED)
         np.testing.assert_allclose(found, wanted, atol=1e-8 * np.abs(wanted).max())
-    np.testing.assert_allclose(one.pins.root_tension, other.pins.root_tension, rtol=1e-7)
+    np.testing.assert_allclose(one.uneven.root_tension, other.uneven.root_tension, rtol=1e-7)
 
 
 @pytest.mark.long
@@ -187,7 +187,7 @@ def test_a_spur_ring_of_vanishing_twist_is_the_one_that_is_solved_in_two_halves(
     for k in (0, 1):
         one, other = (known.deflection(k, PRESSED, PRESSED) for known in (apart, together))
         np.testing.assert_allclose(other, one, rtol=1e-5)
-    np.testing.assert_allclose(apart.pins.root_tension, together.pins.root_tension, rtol=1e-5)
+    np.testing.assert_allclose(apart.uneven.root_tension, together.uneven.root_tension, rtol=1e-5)
 
 
 @pytest.mark.long
@@ -201,7 +201,7 @@ def test_pins_all_over_the_circle_are_the_held_circle():
         assert apart < 0.7 * last
         last = apart
     assert last < 0.02
-    assert every.pins.deflection.size == 1
+    assert every.uneven.deflection.size == 1
 
 
 def test_supports_that_only_whole_rings_have_are_refused_of_others():

@@ -64,6 +64,8 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
         if not place.stiffens or gear.tooth.internal:
             continue
         found = _body(gear, place, senses.get(place.gear, 1))
+        if gear.body is not None and gear.body.holes is not None:
+            said.append(f"{place.gear} stiffens it as if its web had no holes")
         low, high = (min(max(place.at + end, 0.0), bare.length) for end in found.held)
         if not high - low > _PIECE * bare.length:
             said.append(f"{place.gear} sits on no part of its shaft and does not stiffen it")

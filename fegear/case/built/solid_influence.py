@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.fem.solid.influence import SolidInfluence
     from fegear.fem.solid.settings import SolidSettings
+    from fegear.fem.solid.uneven_teeth import UnevenTeeth
     from fegear.geometry.gear import Gear
+    from fegear.geometry.gear_body import WebHoles
     from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Tolerance that the usual settings are for, how edges and wavelengths follow another and how far; from the last on
@@ -35,6 +37,8 @@ _APART = 0.35
 _SECONDS_OF_SLICES = 0.6
 #: How many times as long one on a web takes.
 _ON_A_WEB = 3.0
+#: And on one with holes.
+_HOLED = 1.4
 #: And a ring whose rim is not held.
 _RIM_FREE = 1.8
 
@@ -250,7 +254,13 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
 
 
 def seconds_of_solid_gear(
-    settings: SolidSettings, width: float, *, twisted: bool = True, on_a_web: bool = False, rim_free: bool = False
+    settings: SolidSettings,
+    width: float,
+    *,
+    twisted: bool = True,
+    on_a_web: bool = False,
+    rim_free: bool = False,
+    holed: bool = False,
 ) -> float:
     """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
     from fegear.fem.solid.settings import SolidSettings
@@ -259,12 +269,19 @@ def seconds_of_solid_gear(
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
     by_width = _BY_WIDTH * width**_WIDER * (1.0 if twisted or on_a_web else _APART)
     alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + by_width
-    return alone * finer**_GROWTH * (_ON_A_WEB if on_a_web else _RIM_FREE if rim_free else 1.0)
+    return (
+        alone
+        * finer**_GROWTH
+        * (_ON_A_WEB if on_a_web else _RIM_FREE if rim_free else 1.0)
+        * (_HOLED if holed else 1.0)
+    )
 
 
-def solid_support_remarks(name: str, influence: SolidInfluence) -> tuple[str, ...]:
-    """How the teeth of a ring on pins differ, and what a ring that is not held all round leaves out."""
-    support, teeth = influence.fine.support, influence.fine.pins
+def solid_support_remarks(name: str, influence: SolidInfluence, tooth: int | None = None) -> tuple[str, ...]:
+    """How teeth on pins or over holes differ, and what a ring that is not held all round leaves out."""
+    support, teeth, body = influence.fine.support, influence.fine.uneven, influence.fine.body
+    if body is not None and body.holes is not None and teeth is not None:
+        return (_over_holes(name, body.holes, teeth, tooth),)
     if support is None:
         return ()
     if teeth is None:
@@ -273,6 +290,26 @@ def solid_support_remarks(name: str, influence: SolidInfluence) -> tuple[str, ..
         name, support.pins, "at half height in the middle of the face", teeth.deflection, teeth.root_tension
     )
     return spread, planets_taken_alone(name)
+
+
+def _over_holes(name: str, holes: WebHoles, teeth: UnevenTeeth, tooth: int | None) -> str:
+    """How far teeth over holes depart from their mean, and which of them most."""
+    c, tension, count = teeth.deflection, teeth.root_tension, holes.count
+    what = f"{count} holes of its web" if count > 1 else "the hole of its web"
+    if c.size == 1:
+        return f"Gear {name}: all teeth stand alike to the {what}; the stress at the holes' edges is neglected."
+    off, under = c / c.mean() - 1.0, tension / tension.mean() - 1.0
+    stiff, soft, low, high = (int(i) for i in (off.argmin(), off.argmax(), under.argmin(), under.argmax()))
+    taken = "the mean compliance and stress of all teeth"
+    if tooth is not None:
+        taken = f"all teeth as if they stood to the holes as tooth {tooth} does"
+    return (
+        f"Gear {name}: over the {what} {c.size} teeth in a row differ. Loaded at half height in the middle of the "
+        f"face, c_self of tooth {stiff}, the stiffest, is {off[stiff]:+.2%} of its mean over the teeth, of tooth "
+        f"{soft}, the softest, {off[soft]:+.2%}; root tension {under[low]:+.2%} (tooth {low}) to {under[high]:+.2%} "
+        f"(tooth {high}). Tables, pairs and sets take {taken}; what holes add to the "
+        "transmission error at their own frequency, and the stress at their edges, are neglected."
+    )
 
 
 def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:

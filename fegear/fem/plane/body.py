@@ -22,6 +22,8 @@ _FEWEST, _SLENDER = 2, 2
 #: it is clamped its stress changes over a part of its thickness.
 _CLAMPED = 0.65
 _ROUND_OFF = 1e-9
+#: Names of the circles inside and outside of the part of a web that holes lie in.
+RING = ("holes_inside", "holes_outside")
 
 
 def zones(body: GearBody, points: Array, corners: Index) -> Index:
@@ -53,23 +55,30 @@ def with_body(rim: SectorMesh, body: GearBody, bore_radius: float, share: float,
     fewest : int
         Layers through web and through hub at least.
     """
-    radii = [body.rim_radius]
     fewest = max(fewest, math.ceil(1.0 / share))
     clamped = _CLAMPED * share * (body.web[1] - body.web[0]) / (body.rim_radius - body.hub_radius)
     slender = math.ceil(math.pi / math.acos(1.0 - 2.0 * min(clamped, 1.0)) - _ROUND_OFF)
     web = min(max(slender, fewest), _SLENDER * fewest)
-    for outside, inside, count in (
-        (body.rim_radius, body.hub_radius, web), (body.hub_radius, bore_radius, fewest),
-    ):  # fmt: skip
+    parts = [(body.rim_radius, body.hub_radius, web), (body.hub_radius, bore_radius, fewest)]
+    if body.holed_ring is not None:
+        inner, outer = body.holed_ring
+        parts = [
+            (body.rim_radius, outer, 1), (outer, inner, max(web - 2, fewest)), (inner, body.hub_radius, 1), parts[-1],
+        ]  # fmt: skip
+    radii = [body.rim_radius]
+    for outside, inside, count in parts:
         if outside - inside > _NEAR * outside:
             # Fine at both circles, where the body's thickness jumps and its stress has no bound.
             depths = 0.5 * (1.0 - np.cos(np.pi * np.arange(1, count + 1) / count))
             radii += [float(outside + (inside - outside) * s) for s in depths]
-    return _drawn_inward(rim, np.array(radii))
+    return _drawn_inward(rim, np.array(radii), body.holed_ring)
 
 
-def _drawn_inward(mesh: SectorMesh, radii: Array) -> SectorMesh:
-    """A section with layers of triangles inside its bore, at circles of descending radii, the first its own."""
+def _drawn_inward(mesh: SectorMesh, radii: Array, ring: tuple[float, float] | None = None) -> SectorMesh:
+    """A section with layers of triangles inside its bore, at circles of descending radii, the first its own.
+
+    Two of them may be the inside and the outside of a ring that has names of its own.
+    """
     layers, count = radii.size - 1, mesh.vertex_count
     order = _in_line(mesh.edges["bore"])
     first, second, middle = mesh.edges["bore"][:, order]
@@ -100,6 +109,11 @@ def _drawn_inward(mesh: SectorMesh, radii: Array) -> SectorMesh:
     edges["bore"] = np.stack([at[-1, :-1], at[-1, 1:], arcs[-1]])
     if "bore" in bends:
         bends |= {"rim_inside": bends["bore"][:, :, order], "bore": bends["bore"][:, :, order] * scale[-1]}
+    for name, radius in zip(RING, ring or (), strict=False):
+        layer = int(np.abs(radii - radius).argmin())
+        edges[name] = np.stack([at[layer, :-1], at[layer, 1:], arcs[layer]])
+        if "bore" in bends:
+            bends[name] = bends["rim_inside"] * (radii[layer] / radii[0])
     for column, way in ((0, 1), (-1, -1)):  # the outline comes down the side on which the bore begins
         name = next(key for key in ("side_a", "side_b") if chain[column] in mesh.edges[key][:2])
         edges[name] = np.hstack([edges[name], np.stack([*(at[:-1, column], at[1:, column])[::way], radial[:, column]])])

@@ -174,6 +174,10 @@ class FaceFunctions:
         """Functions of at most a degree that are not zero between two breaks."""
         return np.concatenate([self._numbers[i][: degree + 1] for i in self._between(low, high)])
 
+    def degree_on(self, low: float, high: float) -> int:
+        """Highest degree of the pieces between two breaks."""
+        return max(self.degrees[i] for i in self._between(low, high))
+
     def _between(self, low: float, high: float) -> list[int]:
         """Pieces between two breaks."""
         ends, near = self.breaks, _NEAR * self.width

@@ -24,19 +24,21 @@ from fegear.fem.solid.bands import Bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
-from fegear.fem.solid.pinned_rim import TeethOnPins
+from fegear.fem.solid.holed_teeth import HoledTeeth
 from fegear.fem.solid.settings import SolidSettings, check_solid, whole
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
-from fegear.geometry.gear_body import GearBody
+from fegear.fem.solid.tooth_over_holes import as_if_all_were
+from fegear.fem.solid.uneven_teeth import UnevenTeeth
+from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rim_support import RimSupport
 
 #: What a solution consists of, for those that keep it.
 _KINDS = (
-    SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody, RimSupport,
-    TeethOnPins,
+    SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody, WebHoles,
+    RimSupport, UnevenTeeth, HoledTeeth,
 )  # fmt: skip
 #: Where errors are looked for: contact lines through these shares of the flank's length in the middle of the face,
 #: where they stay off its ends by a share of it; root tension of what stands above another share.
@@ -265,7 +267,8 @@ def solid_influence(
     held : (float, float), optional
         Part of the face, between -width / 2 and width / 2, on which the bore is held [modules]; by default all of it.
     body : GearBody, optional
-        Rim, web and hub, whose bore is held over the hub [modules]; by default a disc as wide as the face.
+        Rim, web and hub, whose bore is held over the hub [modules]; by default a disc as wide as the face. Where its
+        web has holes, one tooth or the mean over all is taken for all teeth.
     support : RimSupport, optional
         Of a ring gear's rim, pins or a spline; by default its whole outer cylinder is held.
     estimate_error : bool
@@ -289,8 +292,12 @@ def solid_influence(
     by = solver_of(settings)
     estimate_error &= settings.source == "solid"  # that of slices is known from the gears that they were compared with
 
+    tooth = None if body is None or body.holes is None else body.holes.tooth
+    if body is not None and body.holes is not None:  # each tooth follows from one solution
+        body = replace(body, holes=replace(body.holes, tooth=None))
+
     def solve(chosen: SolidSettings) -> SolidSolution:
-        return known_or_solved(
+        found = known_or_solved(
             cache or SolutionCache(),
             section,
             ("solid", tau, width, poisson_ratio, bore_radius, chosen, reach, held, body, support),
@@ -308,6 +315,7 @@ def solid_influence(
             ),
             _KINDS,
         )
+        return found if tooth is None else as_if_all_were(found, tooth)
 
     fine = solve(settings)
     coarse = solve(settings.coarser(width)) if estimate_error else None

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fegear.base.arrays import Array, Index, ReadOnlyArrays
+from fegear.base.arrays import Array, Index
 from fegear.fem.plane.trace import lagrange
 
 if TYPE_CHECKING:
@@ -126,18 +126,6 @@ def pins_on(section: Section, face: FaceFunctions, counts: Index, support: RimSu
             found[pin, sector] = row.reshape(-1, face.count, 2 * full + 1)
     dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
     return Pins(found, support.pins // common, common, support.different_teeth(teeth), dofs)
-
-
-@dataclass(frozen=True)
-class TeethOnPins(ReadOnlyArrays):
-    """Each tooth that stands differently to the pins under the same load, clockwise from tooth 0, shape (T,); E = 1.
-
-    `deflection` of the load's own band, and the largest tension and compression of the tooth's fillets over the face.
-    """
-
-    deflection: Array
-    root_tension: Array
-    root_compression: Array
 
 
 class _Waves:

@@ -12,6 +12,7 @@ no volume changes. The hub has the functions of the places that the web leads to
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -155,6 +156,7 @@ def make_section(
     *,
     side: int = 1,
     along: BodyAlong | None = None,
+    polar: Sequence[str] = (),
 ) -> Section:
     """Integrate the section's matrices.
 
@@ -174,6 +176,8 @@ def make_section(
         Of an external or an internal tooth.
     along : BodyAlong, optional
         Where web and hub of the body lie along the face.
+    polar : sequence of str
+        Boundaries besides the sides whose nodes have polar axes.
 
     Returns
     -------
@@ -190,7 +194,9 @@ def make_section(
     side_a, side_b = (_outward(edge_nodes[name], places) for name in ("side_a", "side_b"))
     _check_sides(side_a, side_b, places, mesh.teeth)
     count = nodes.shape[0]
-    axes = _axes(places, np.concatenate([side_a, side_b]), np.unique(edge_nodes["flank"]), (base_radius, side), tau)
+    flank = np.unique(edge_nodes.get("flank", np.zeros(0, dtype=np.int64)))
+    turned = np.unique(np.concatenate([side_a, side_b, *(edge_nodes[name].ravel() for name in polar)]))
+    axes = _axes(places, turned, flank, (base_radius, side), tau)
     zone = np.zeros(count, dtype=np.int64) if body is None else zones(body, mesh.points, mesh.triangles[:3])
     lean = body.lean * (zone == WEB) if body is not None and body.lean else None
     return Section(

@@ -14,7 +14,7 @@ from fegear.base.arrays import Array, Index, Mask
 from fegear.base.errors import RangeError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
-from fegear.fem.plane.body import with_body
+from fegear.fem.plane.body import RING, with_body
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring import closed_ring
@@ -28,18 +28,19 @@ from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions, JoinedFunctions, face_functions, own_of_teeth, solid_unknowns
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
 from fegear.fem.solid.flank_body import TwistedFlank
-from fegear.fem.solid.pinned_rim import TeethOnPins, pinned_response, pins_on
+from fegear.fem.solid.holed_teeth import HoledHalf, HoledTeeth, holed_teeth
+from fegear.fem.solid.holed_web import holes_of
+from fegear.fem.solid.pinned_rim import pinned_response, pins_on
 from fegear.fem.solid.rim import free_ring, solid_rim, splined_response
 from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.uneven_teeth import UnevenTeeth, teeth_apart
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rim_support import RimSupport
 
 #: How far below the edge of a pressed band root tension begins [modules].
 _CLEARANCE = 0.25
-#: Places along the face at which the root stress of teeth on pins is compared.
-_PLACES = 17
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
@@ -78,8 +79,10 @@ class SolidSolution(TwistedFlank):
     support : RimSupport or None
         Of a ring gear's rim; None of an outer cylinder that is held, and of external gears. On pins compliance and
         displacement are the mean over all teeth.
-    pins : TeethOnPins or None
+    uneven : UnevenTeeth or None
         How the teeth differ.
+    holed : HoledTeeth or None
+        What each tooth owes to the holes of its web; compliance and displacement are the mean over all teeth.
     """
 
     tooth: InvoluteTooth
@@ -100,7 +103,8 @@ class SolidSolution(TwistedFlank):
     settings: SolidSettings
     seconds: Mapping[str, float]
     support: RimSupport | None = None
-    pins: TeethOnPins | None = None
+    uneven: UnevenTeeth | None = None
+    holed: HoledTeeth | None = None
 
     def deflection(self, k: int, watched: Bands, pressed: Bands) -> Array:
         """c_k: mean approach of bands on tooth k under a unit force on bands of tooth 0, shape (P, Q) [1/(E module)].
@@ -274,9 +278,11 @@ def solve_solid(
     Raises
     ------
     RangeError
-        If a support is asked for that a whole ring alone can have.
+        If a support or holes are asked for that a whole ring alone can have.
     """
     settings = settings or SolidSettings()
+    if body is not None and body.holes is not None and (sector_teeth or plane_strain):
+        raise RangeError("body.holes", body.holes.count, "are known to whole gears alone, not to plane or open ones")
     if support is not None:
         _check_support(support, tooth, alone=held is None and body is None and not sector_teeth)
     with one_thread():
@@ -323,9 +329,10 @@ def _solve(
     rim = None if support is None else solid_rim(section, face, counts, plane_strain=plane_strain)
     pins = pins_on(section, face, counts, support, tooth.teeth) if support is not None and support.pins else None
     band = _half_height(tooth, flank, own, settings, tau) if compared is None else compared
-    reference = loads_of(band, flank, own)[:, 0] if pins is not None else np.zeros(0)
-    outer = np.zeros(0, np.int64) if rim is None else (3 * section.nodes_of("bore")[:, None] + every).ravel()
-    inner = np.setdiff1d(np.concatenate([ports, *seen, outer]), np.concatenate(sides))
+    holes = holes_of(body, section, face, settings, tooth.root_radius, nu)
+    reference = np.zeros(0) if pins is None and holes is None else loads_of(band, flank, own)[:, 0]
+    others = (3 * section.nodes_of(*(RING if rim is None else ("bore",)))[:, None] + every).ravel()
+    inner = np.setdiff1d(np.concatenate([ports, *seen, others]), np.concatenate(sides))
     on_flank = known.number[ports] >= 0
     size = int(on_flank.sum())
     compliance = {k: np.zeros((size, size)) for k in range(-reach, reach + 1)}
@@ -334,6 +341,7 @@ def _solve(
     teeth = 1 if pins is None else pins.different
     each = {side: np.zeros((part.size, own.count, teeth)) for side, part in zip(_FILLETS, seen, strict=True)}
     approach = np.zeros(teeth)
+    halves: list[HoledHalf] = []
     seconds = {"section": integrated - started, "condensation": 0.0, "ring": 0.0, "influence": 0.0}
     symmetric = tau == 0.0 and body is None and held is None
     for alone in known.split(_mirrored(section, face)) if symmetric else (known,):
@@ -346,6 +354,10 @@ def _solve(
         if rim is None:
             ring = closed_ring(condensed, joint, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=begun)
             response = ring.respond(loaded, watch)
+            if holes is not None:
+                there = [np.nonzero(alone.number[part][:, columns] >= 0) for part in seen]
+                halves.append(holes.closed(ring, alone, watch, mine, there))
+                response = halves[-1].added_to(response)
         else:
             free = free_ring(condensed, joint, rim, alone, tooth.teeth, reach, begun)
             ring = free.ring
@@ -378,38 +390,13 @@ def _solve(
         compliance, fillets, displacement,
         reach, known.size, settings, seconds, support,
     )  # fmt: skip
-    if pins is None:
-        return found
     moved = {side: in_space(side, apart) for side, apart in each.items()}
-    return replace(found, pins=_teeth_on_pins(found, band, reference, approach, moved))
-
-
-def _teeth_on_pins(
-    solution: SolidSolution, band: Bands, load: Array, approach: Array, moved: Mapping[Side, Array]
-) -> TeethOnPins:
-    """Each tooth under one load, from how it departs from the mean over all.
-
-    Parameters
-    ----------
-    solution : SolidSolution
-        The mean.
-    band : Bands
-    load : ndarray, shape (n,)
-        That of the band.
-    approach : ndarray, shape (T,)
-    moved : mapping of side to ndarray, shape (nodes, 3, functions, T)
-    """
-    places = np.linspace(-0.5, 0.5, _PLACES) * solution.width
-    values, slopes = solution.face.at(places)
-    root = {}
-    for side, fillet in solution.fillets.items():
-        every = (solution.displacement[0, side] @ load)[..., None] + moved[side]
-        stress = surface_stress(fillet, solution.tau, solution.poisson_ratio, every, values, slopes)[0]
-        flat, sign = stress.reshape(stress.shape[0], -1), 1.0 if side == "tension" else -1.0
-        end = np.full(flat.shape[1], float(solution.root_end(0, side, band)[0]))
-        largest = sign * extreme(flat, fillet.arc, sign, end)[0].reshape(stress.shape[1:])
-        root[side] = sign * largest.max(axis=0)
-    return TeethOnPins(float(load @ solution.compliance[0] @ load) + approach, root["tension"], root["compression"])
+    if halves:
+        shapes = {side: (part.size, own.count) for side, part in zip(_FILLETS, seen, strict=True)}
+        holed = holed_teeth(halves, size, shapes, in_space)
+        approach, moved = holed.apart(reference)
+        found = replace(found, holed=holed)
+    return replace(found, uneven=teeth_apart(found, band, reference, approach, moved)) if reference.size else found
 
 
 def _half_height(

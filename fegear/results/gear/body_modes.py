@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.errors import InputError
 from fegear.case.built.solid_influence import check_solid_gear, solid_settings_of
 from fegear.engine.citation import citing
 from fegear.engine.declared import column_of, error_column
@@ -65,9 +66,14 @@ class SolvedBody:
 
 
 def _inputs(scene: Scene, name: str) -> BodyToSolve:
-    settings = solid_settings_of(scene, name)
+    gear, settings = scene.gears[name], solid_settings_of(scene, name)
+    if gear.body is not None and gear.body.holes is not None:
+        raise InputError(
+            f"gear.{name}.body.holes", gear.body.holes.count, "are not known to body-modes, whose waves are those of "
+            "equal teeth", "leave body-modes or the holes out",
+        )  # fmt: skip
     section = replace(settings.section.scaled(_COARSER), order=2)
-    return BodyToSolve(scene.gears[name], replace(settings, section=section), name, _gears(scene, internal=True))
+    return BodyToSolve(gear, replace(settings, section=section), name, _gears(scene, internal=True))
 
 
 def _gears(scene: Scene, *, internal: bool) -> tuple[str, ...]:

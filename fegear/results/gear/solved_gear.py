@@ -92,7 +92,9 @@ def _solve_solid(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> So
 
 
 def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcome:
-    remarks = solid_support_remarks(asked.name, influence)
+    body = asked.gear.body
+    tooth = None if body is None or body.holes is None else body.holes.tooth
+    remarks = solid_support_remarks(asked.name, influence, tooth)
     return Outcome(influence, settings=solid_solution_settings(influence), remarks=remarks)
 
 
@@ -100,8 +102,9 @@ def _forecast_solid(scene: Scene, name: str) -> Forecast:
     settings, gear = solid_settings_of(scene, name), scene.gears[name]
     width, twisted = gear.face_width / gear.module, gear.flank_twist != 0.0
     seconds = seconds_of_solid_gear(
-        settings, width, twisted=twisted, on_a_web=gear.body is not None, rim_free=gear.support is not None
-    )
+        settings, width, twisted=twisted, on_a_web=gear.body is not None, rim_free=gear.support is not None,
+        holed=gear.body is not None and gear.body.holes is not None,
+    )  # fmt: skip
     return Forecast(asdict(settings), seconds)
 
 

@@ -25,6 +25,7 @@ from fegear.results.forecasts import RING
 from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, stiffness_inputs
 from fegear.results.gear.solved_gear import needs_solid_solution
 from fegear.results.gear.stiffness import compliance_errors, tolerance_remarks
+from fegear.results.gear.teeth_over_holes import teeth_over_holes
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -104,12 +105,13 @@ def _present(table: SolidTable, asked: StiffnessInputs) -> Outcome:
         f"over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
         f"half-width; neighbours and root stress are for a pressure of {width} mm half-width up the flank."
     )
+    tables, figures = teeth_over_holes(name, table.influence.fine)
     return Outcome(
         table,
-        (_table(name, table),),
+        (_table(name, table), *tables),
         _values(name, table),
         remarks=(bands, *_sliced(table, asked), *_missed(table, asked), *asked.assumed),
-        figures=solid_figures(name, asked.gear, table, _USUAL_FORCE * m / 1e-3),
+        figures=(*solid_figures(name, asked.gear, table, _USUAL_FORCE * m / 1e-3), *figures),
     )
 
 
@@ -282,11 +284,14 @@ def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure
         floor=(gear.tooth.root_radius - _DEPTH) * m,
     )
     camera = ((0.9, 0.75, 1.3), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    holed = fine.body is not None and fine.body.holes is not None
+    holes = " The holes of its web are neglected here." if holed else ""
     return Figure(
         f"deformed_tooth_{name}",
         f"Deformed tooth of gear {name}",
         f"Gear {name} under {force:.4g} N on a band ({where}), displacements "
-        f"{scale:.3g} times as large. The colour scale ends at {top:.3g} MPa; under the band the stress is higher.",
+        f"{scale:.3g} times as large. The colour scale ends at {top:.3g} MPa; under the band the stress is "
+        f"higher.{holes}",
         (Panel(Axis(), Axis(), (shown,), height=1.5, camera=camera),),
         field=SolidMeshField(f"{name}_tooth", rest, field.mesh.wedges, {"displacement": moved.T, "von_mises": stress}),
         under=f"{force:.4g} N",

@@ -1,0 +1,85 @@
+"""Holes in the web of a gear in a case: keys, refusals, inertia, and results that do without them."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from fegear.base.errors import GeometryError, InputError
+from fegear.case.reading import build_scene
+from fegear.geometry.gear_body import GearBody, WebHoles, moments
+from fegear.output.mesh_export import write_solid
+from fegear.results.gear import body_modes
+
+HOLES = {"count": 5, "circle_diameter": "27 mm", "diameter": "6 mm"}
+
+
+def scene(results="stiffness", inclination="0 deg", **holes):
+    body = {"rim_thickness": "3 mm", "web_thickness": "3 mm", "hub_radius": "8 mm", "holes": HOLES | holes}
+    body["web_inclination"] = inclination
+    gear = {"teeth": 24, "module": "2 mm", "bore_radius": "6 mm", "face_width": "8 mm", "body": body}
+    case = {"results": [results], "gear": {"a": gear}, "stiffness": {"face_positions": 3}}
+    return build_scene(case, "case", Path())
+
+
+def test_holes_of_a_case():
+    gear = scene(angle="12 deg", tooth=23).gears["a"]
+    assert gear.body.holes == WebHoles(
+        5, pytest.approx(13.5e-3), pytest.approx(3e-3), pytest.approx(math.radians(12)), 23
+    )
+    holes = gear.body_in_modules.holes
+    assert (holes.circle_radius, holes.radius) == pytest.approx((6.75, 1.5))
+    assert holes.different_teeth(24) == 24
+    assert replace(holes, count=16).different_teeth(24) == 3
+
+
+@pytest.mark.parametrize(
+    ("holes", "key", "words"),
+    [
+        ({"diameter": "12 mm"}, "diameter", "inside of the rim"),
+        ({"circle_diameter": "21 mm"}, "diameter", "to the hub"),
+        ({"count": 13, "diameter": "6.4 mm"}, "diameter", "between 13 holes"),
+        ({"diameter": "0.1 mm"}, "diameter", "at least 0.4 mm"),
+        ({"count": 0}, "count", "at least 1"),
+        ({"tooth": 24}, "tooth", "between 0 and 23"),
+        ({"tooth": -1}, "tooth", "between 0 and 23"),
+    ],
+)
+def test_holes_without_room_are_refused(holes, key, words):
+    with pytest.raises(InputError, match=words) as found:
+        scene(**holes)
+    assert found.value.key == f"gear.a.body.holes.{key}"
+
+
+def test_holes_in_an_inclined_web_are_refused():
+    with pytest.raises(InputError, match="not computed in an inclined web"):
+        scene(inclination="5 deg")
+
+
+def test_holes_beside_the_teeth_are_refused():
+    body = GearBody(97e-3, 50e-3, (-2e-3, 2e-3), (-5e-3, 5e-3), holes=WebHoles(8, 80e-3, 16.5e-3))
+    with pytest.raises(GeometryError, match="below the root circle"):
+        body.check(1e-3, 10e-3, 20e-3, 100e-3)
+
+
+def test_what_knows_no_holes_refuses_them(tmp_path):
+    with pytest.raises(InputError, match="body-modes"):
+        body_modes.BODY_MODES.inputs(scene("body-modes"), "a")
+    with pytest.raises(InputError, match="without holes alone"):
+        write_solid(scene().gears["a"], tmp_path, "a", {"solid-inp"})
+
+
+def test_inertia_lacks_what_is_drilled_out():
+    body = GearBody(5.0, 2.0, (-0.5, 1.0), (-2.0, 2.0))
+    holes = WebHoles(6, 3.5, 0.8)
+    cylinders = body.cylinders(6.0, 1.0, 4.0)
+    plain, drilled = moments(cylinders, 3.0), moments(cylinders, 3.0, replace(body, holes=holes))
+    one = 3.0 * math.pi * 0.8**2 * 1.5
+    assert plain[0] - drilled[0] == pytest.approx(6 * one)
+    assert plain[1] - drilled[1] == pytest.approx(6 * one * (0.8**2 / 2 + 3.5**2))
+    # About x: each hole's own, and how far its middle lies from the axis.
+    across = sum(
+        one * ((3 * 0.8**2 + 1.5**2) / 12 + 0.25**2 + (3.5 * math.sin(math.pi * i / 3)) ** 2) for i in range(6)
+    )
+    assert plain[2] - drilled[2] == pytest.approx(across)
