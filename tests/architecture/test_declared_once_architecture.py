@@ -28,6 +28,8 @@ TWO_UNITS = {
 
 
 def _calls(source: str, *names: str) -> list[ast.Call]:
+    if not any(name in source for name in names):
+        return []
     return [
         node
         for node in ast.walk(ast.parse(source))

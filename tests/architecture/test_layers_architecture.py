@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import fnmatch
 import importlib.util
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -242,7 +243,7 @@ def test_the_window_computes_and_draws_nothing_of_its_own(imports):
 
 def _reads_wanted_results(source: str) -> bool:
     """Whether it looks at ``case.results``, the list of what a case asks for."""
-    return any(
+    return re.search(r"\.\s*results\b", source) is not None and any(
         isinstance(node, ast.Attribute) and node.attr == "results"
         and (node.value.attr if isinstance(node.value, ast.Attribute) else getattr(node.value, "id", "")) == "case"
         for node in ast.walk(ast.parse(source))

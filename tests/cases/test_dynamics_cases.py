@@ -58,6 +58,7 @@ def test_four_square_tooth_force():
     assert 5.0 < values["I.largest_increment_from_II"] / POUND < 7.5
 
 
+@pytest.mark.dear
 def test_no_phase_of_the_other_mesh_gives_more_than_the_largest_of_any_phase():
     """Force and root tension of the four-square rig, the slave gears meshing an eighth of a pitch later each time."""
     largest = {}

@@ -184,6 +184,7 @@ def test_chart_and_curves_of_one_case_state_delta_once():
     assert values["I.best_length"].value in (0.5, 1.0)
 
 
+@pytest.mark.dear
 def test_lins_gears_with_tip_relief():
     tables, values, _ = run("lin_tip_relief")
     chart, optimum = tables["relief_chart_I"], tables["relief_optimum_I"]
@@ -365,6 +366,7 @@ def test_a_designed_relief_can_be_fed_back_as_a_table(tmp_path):
     assert again["transmission_error_I"]["te"].mean() == pytest.approx(values["I.te_mean.designed"].value, rel=1e-2)
 
 
+@pytest.mark.dear
 def test_a_relief_designed_with_finite_elements_survives_its_own_table(tmp_path):
     """121 even nodes left .07 um. Stated is what the tables leave; read back through the case file, they leave that.
 

@@ -63,6 +63,7 @@ def test_the_report_s_own_loading_of_the_test_gears():
     assert table["load"].max() == 1615.0
 
 
+@pytest.mark.dear("mark_fig06_11", "mark_fig05_10")
 @pytest.mark.parametrize("case", sorted(path.stem for path in SOURCES.glob("mark_fig0*.toml")))
 def test_cases_of_the_report_run(case):
     results = found(read_scene(SOURCES / f"{case}.toml"))

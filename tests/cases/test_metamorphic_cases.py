@@ -133,6 +133,7 @@ def test_curves_of_searched_reliefs_stay_within_half_of_their_errors(searched):
         assert (error < 1e-4 * one.max()).all()
 
 
+@pytest.mark.dear("litvin_lead")
 @pytest.mark.parametrize("name", cases())
 def test_names_of_gears_change_nothing(name, monkeypatch):
     document = case(name)
@@ -167,6 +168,7 @@ def reversed_keys(node, path=()):
     return [reversed_keys(v) for v in node] if isinstance(node, list) else node
 
 
+@pytest.mark.dear("litvin_lead")
 @pytest.mark.parametrize("name", cases())
 def test_the_order_of_keys_changes_nothing(name, monkeypatch):
     document = case(name)
@@ -196,6 +198,7 @@ def with_defaults(part, table):
     return written
 
 
+@pytest.mark.dear("litvin_lead")
 @pytest.mark.parametrize("name", cases())
 def test_defaults_that_are_written_out_change_nothing(name, monkeypatch):
     document = case(name)

@@ -206,6 +206,7 @@ def test_values_and_gear_data_fit_a_telephone(page):
     assert page.run(f"{parts}.length") >= 2
 
 
+@pytest.mark.dear
 def test_the_menu_of_a_harris_map_changes_its_curves(page, relief):
     page.open(relief / "report.html")
     assert page.complaints == []

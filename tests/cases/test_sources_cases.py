@@ -29,7 +29,14 @@ def test_every_item_of_a_paper_has_its_row(paper):
     assert rows.sources()[paper].faults() == []
 
 
-@pytest.mark.dear("sources/blankenship_singh_helical", "sources/litvin_eq18", "sources/lin_townsend_oswald_fig6c")
+@pytest.mark.dear(
+    "litvin_localised",
+    "sources/litvin_fig07",
+    "sources/litvin_fig09",
+    "sources/blankenship_singh_helical",
+    "sources/litvin_eq18",
+    "sources/lin_townsend_oswald_fig6c",
+)
 @pytest.mark.parametrize("case", CASES)
 def test_the_numbers_of_a_case_hold(case):
     run = Run.of(fegear.run(ROOT / "cases" / f"{case}.toml", cache=CACHE))

@@ -189,6 +189,7 @@ MESHES = (
 )
 
 
+@pytest.mark.dear("both", "slipping damper")
 @pytest.mark.parametrize(
     "dampers",
     [

@@ -49,6 +49,7 @@ def both(beta, errors=None, parabola=0.0, crown=0.0, hands=("right", "left"), po
     return cycle.error, found, (pair, gaps, roll)
 
 
+@pytest.mark.dear("15.0-errors2-0.0-3.0", "30.0-errors3-1.0-3.0", "30.0-errors4-0.0-2.0")
 @pytest.mark.parametrize(
     ("beta", "errors", "parabola", "crown"),
     [

@@ -38,10 +38,9 @@ def test_every_hard_case_has_a_line(case):
 
 def test_every_line_s_tests_exist_once():
     written = [
-        node.name
+        name
         for path in (ROOT / "tests").rglob("test_*.py")
-        for node in ast.parse(path.read_text(encoding="utf-8")).body
-        if isinstance(node, ast.FunctionDef)
+        for name in re.findall(r"^def (test_\w+)\(", path.read_text(encoding="utf-8"), re.MULTILINE)
     ]
     named = [name for row in lines() for name in re.findall(r"`(test_\w+)`", row[2])]
     assert len(named) > 60

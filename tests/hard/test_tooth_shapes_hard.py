@@ -163,6 +163,7 @@ def test_full_fillets_lower_the_root_stress_of_every_gear(teeth):
     assert (rounded > 0.5 * sharp).all()
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("rack", [
     BasicRack(1.213, 0.34, 0.0, math.radians(19.07)), pytest.param(BasicRack(1.0, 1.25, 0.0), marks=pytest.mark.long),
 ])  # fmt: skip

@@ -82,6 +82,7 @@ def _by_place(places, wanted):
     return np.array([numbers[tuple(np.round(p, 7) + 0.0)] for p in wanted.T])
 
 
+@pytest.mark.dear("4-quadratic", "4-cubic", "4-straight", "3-quadratic")
 @pytest.mark.parametrize("edges", ["straight", "quadratic", "cubic"])
 @pytest.mark.parametrize("order", [2, 3, 4])
 def test_stiffness_of_one_sector_is_the_textbook_s(order, edges):

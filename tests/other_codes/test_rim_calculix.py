@@ -21,6 +21,7 @@ import rim_by_calculix as calculix
 TOLD = kept("rim_calculix")
 
 
+@pytest.mark.dear("pins, near one")
 @pytest.mark.parametrize("ring", list(calculix.RINGS))
 def test_deflections_and_root_stress(ring):
     support, plane, tooth = calculix.RINGS[ring]

@@ -214,7 +214,6 @@ def test_nobody_waits_for_what_is_under_way_when_a_run_is_stopped(tmp_path):
     assert run.wait(timeout=60) != 0
 
 
-@pytest.mark.dear
 def test_no_worker_outlives_a_killed_parent(tmp_path):
     program = (
         "from fegear.engine.executor import Executor, map_points\n"

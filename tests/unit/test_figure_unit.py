@@ -88,6 +88,7 @@ def test_bars_of_one_place_stand_on_each_other_or_side_by_side():
     assert not foot.any()
 
 
+@pytest.mark.dear("svg")
 @pytest.mark.parametrize("kind", ["png", "svg"])
 def test_a_picture_of_everything_can_be_read(tmp_path, kind):
     (picture,) = draw_pictures(everything(), tmp_path, kind)

@@ -159,6 +159,7 @@ def test_peaks_between_positions_are_looked_for_where_both_sides_meet():
     assert height.max() <= 0.0
 
 
+@pytest.mark.dear("1.0")
 @pytest.mark.parametrize("longer", [1.0, 4.0, 20.0])
 def test_spots_are_hertz_ellipses_within_what_is_stated(bodies, longer):
     """Crowning as round as the profiles, and flatter (Johnson, Contact Mechanics, 4.2)."""

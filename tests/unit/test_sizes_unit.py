@@ -28,6 +28,7 @@ def lengths(n: int) -> list[str]:
     return [f"{i + 1} um" for i in range(n)]
 
 
+@pytest.mark.dear("part4-100,001 load positions")
 @pytest.mark.parametrize(
     ("part", "words"),
     [
