@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import RangeError
+from fegear.base.solution_cache import SolutionCache
+from fegear.base.store import Store
 from fegear.fem.plane.elements import check_cubic_edges, sector_elements
 from fegear.fem.plane.holed_ring import holed_ring
 from fegear.fem.solid.bands import bands
@@ -76,6 +78,16 @@ def test_one_tooth_may_stand_for_all(eight):
     known = solid_influence(TOOTH, 0.0, FACE, 0.3, BORE, SETTINGS, body=last, estimate_error=False).fine
     wanted = as_if_all_were(solve_solid(TOOTH, 0.0, FACE, 0.3, BORE, SETTINGS, body=BODY), 2)
     alike(wanted, known, 1e-12)
+
+
+def test_what_is_kept_on_disk_has_all_teeth(tmp_path):
+    def found():
+        cache = SolutionCache(Store(tmp_path))
+        return solid_influence(TOOTH, 0.0, FACE, 0.3, BORE, SETTINGS, body=BODY, estimate_error=False, cache=cache).fine
+
+    first, again = found(), found()
+    assert again.seconds == first.seconds
+    alike(tooth_over_holes(first, 2), tooth_over_holes(again, 2), 1e-12)
 
 
 def test_holes_turned_by_a_pitch_meet_the_next_tooth(eight):

@@ -257,17 +257,20 @@ def seconds_of_solid_gear(
     settings: SolidSettings,
     width: float,
     *,
-    twisted: bool = True,
+    apart: bool = False,
     on_a_web: bool = False,
     rim_free: bool = False,
     holed: bool = False,
 ) -> float:
-    """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
+    """About how many seconds a solid gear takes, with its error estimate; `width` in modules.
+
+    Less where motions that mirror at the middle of the face are solved `apart`.
+    """
     from fegear.fem.solid.settings import SolidSettings
 
     usual, section = SolidSettings().section, settings.section
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
-    by_width = _BY_WIDTH * width**_WIDER * (1.0 if twisted or on_a_web else _APART)
+    by_width = _BY_WIDTH * width**_WIDER * (_APART if apart else 1.0)
     alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + by_width
     return (
         alone

@@ -52,10 +52,13 @@ class FaceFunctions:
         Ends of the pieces, from one end face to the other [modules].
     degrees : tuple of int
         Of the polynomials on each piece, at least 3.
+    mirrored : bool
+        Whether functions of pieces that mirror each other at the middle of the face are joined to even and odd ones.
     """
 
     breaks: tuple[float, ...]
     degrees: tuple[int, ...]
+    mirrored: bool = False
 
     @property
     def width(self) -> float:
@@ -110,8 +113,32 @@ class FaceFunctions:
 
     @cached_property
     def odd(self) -> Mask:
-        """Which functions are odd about the middle of a face of one piece, shape (count,); all others are even."""
-        return np.arange(self.count) % 2 == 1
+        """Which functions are odd about the middle of the face, shape (count,); all others are even.
+
+        Of a face of one piece, or of several that mirror each other.
+        """
+        if len(self.degrees) == 1:
+            return np.arange(self.count) % 2 == 1
+        return np.array([other < i or (other == i and sign < 0.0) for i, (other, sign) in enumerate(self._mirror)])
+
+    @cached_property
+    def _mirror(self) -> list[tuple[int, float]]:
+        """Which function each becomes where the face is mirrored at its middle, and with which sign."""
+        ends, pieces = len(self.breaks), len(self.degrees)
+        found = [(ends - 1 - i, 1.0) for i in range(ends)]
+        for _, i, n in self._inner:
+            found.append((int(self._numbers[pieces - 1 - i][n]), (-1.0) ** n))
+        return found
+
+    def _joined(self, own: Array) -> Array:
+        """Even and odd functions, the even one of each pair first, from those of single pieces, shape (count, P)."""
+        if not self.mirrored or len(self.degrees) == 1:
+            return own
+        found = own.copy()
+        for i, (other, sign) in enumerate(self._mirror):
+            if i < other:
+                found[i], found[other] = own[i] + sign * own[other], own[i] - sign * own[other]
+        return found
 
     def at(self, zeta: Array) -> tuple[Array, Array]:
         """Values and slopes of every function at places on the face, shape (count, P) each."""
@@ -120,7 +147,7 @@ class FaceFunctions:
             falling = np.polynomial.legendre.legder(self._series[i], axis=1)
             found = falling @ np.polynomial.legendre.legvander(x, self.degrees[i] - 1).T
             slopes[self._numbers[i][:, None], here] = found * (2.0 / (self.breaks[i + 1] - self.breaks[i]))
-        return self.values(zeta), slopes
+        return self.values(zeta), self._joined(slopes)
 
     def values(self, zeta: Array) -> Array:
         """Values of every function at places on the face, shape (count, P)."""
@@ -129,7 +156,7 @@ class FaceFunctions:
             values[self._numbers[i][:, None], here] = (
                 self._series[i] @ np.polynomial.legendre.legvander(x, self.degrees[i]).T
             )
-        return values
+        return self._joined(values)
 
     def _pieces(self, zeta: Array) -> Iterator[tuple[int, Index, Array]]:
         """Each piece with places on it: its number, which places, and where they lie on (-1, 1)."""
@@ -206,6 +233,11 @@ class JoinedFunctions:
     body: FaceFunctions
     teeth: FaceFunctions
 
+    @property
+    def odd(self) -> Mask:
+        """Which functions are odd about the middle of the face, shape (count,)."""
+        return np.concatenate([self.body.odd, self.teeth.odd])
+
     def products_over(self, low: float, high: float, stretched: Stretch | None = None) -> tuple[Array, Array, Array]:
         """Integrals of products of all functions from one break to another, as `FaceFunctions` has them."""
         place, weight = self.body.quadrature(low, high, max(self.teeth.degrees))
@@ -214,7 +246,7 @@ class JoinedFunctions:
 
 
 def face_functions(
-    width: float, degree: int, cuts: Sequence[float] = (), least: int = 4, fewer: int = 0
+    width: float, degree: int, cuts: Sequence[float] = (), least: int = 4, fewer: int = 0, *, mirrored: bool = False
 ) -> FaceFunctions:
     """Functions over a face width.
 
@@ -229,6 +261,8 @@ def face_functions(
         root of their lengths or somewhat less: what changes there needs short waves beside it.
     least, fewer : int
         Lowest degree of a piece, and by how much it is lower than that.
+    mirrored : bool
+        Whether pieces, which mirror each other at the middle of the face, have even and odd functions.
 
     Returns
     -------
@@ -244,7 +278,8 @@ def face_functions(
         return FaceFunctions((-half, half), (degree,))
     breaks.append(half)
     share = (np.diff(breaks) / width) ** _BY_LENGTH
-    return FaceFunctions(tuple(breaks), tuple(max(least, whole(degree * float(s)) - fewer) for s in share))
+    degrees = tuple(max(least, whole(degree * float(s)) - fewer) for s in share)
+    return FaceFunctions(tuple(breaks), degrees, mirrored)
 
 
 def solid_unknowns(

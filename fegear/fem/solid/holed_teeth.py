@@ -16,7 +16,7 @@ from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.fem.plane.influence import Side
 
 #: Waves of which no more is felt than this share of what is felt of others are no use.
-_SMALL = 1e-4
+_SMALL = 2e-5
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,10 @@ class HoledRing(ReadOnlyArrays):
 
     def without_small(self) -> HoledRing:
         """The same without waves that change nothing."""
-        size = np.sqrt(np.abs(np.diagonal(self.lost))) * np.abs(self.follow).max(axis=0)
-        large = size > _SMALL * size.max()
-        kept = np.flatnonzero(large | large[self.partner])
+        # Cosine and sine together: where the holes are turned, one becomes the other.
+        taken, felt = np.abs(np.diagonal(self.lost)), np.abs(self.follow).max(axis=0)
+        size = np.sqrt(taken + taken[self.partner]) * np.maximum(felt, felt[self.partner])
+        kept = np.flatnonzero(size > _SMALL * size.max())
         place = np.full(size.size, -1)
         place[kept] = np.arange(kept.size)
         return replace(

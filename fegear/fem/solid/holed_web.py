@@ -50,6 +50,8 @@ _LEAST_DEGREE, _PER_MODULE = 4, 1.0
 _OF_DEPTH, _PER_WAVE = 0.33, 2.0
 #: Layers round a hole, and the share of the ring's depth below which each half of a radius takes one more.
 _ROUND_HOLE, _SMALL_HOLE = 3, 0.3
+#: Waves that unknowns take part in by less than this share of the largest are round-off.
+_NONE = 1e-9
 _CIRCLES = ("inner", "outer")
 
 
@@ -289,9 +291,14 @@ def _holed_ring(ring: Ring, known: Unknowns, holes: Holes, watch: Index) -> Hole
     there = number >= 0
     own, ports, rows = weights[:, there], place[number[there]], place[watch]
     sides = sector.stiffness[: 2 * m] @ np.hstack([ring.follow_a, ring.follow_b])
-    orders, mirrored = waves.orders, waves.mirrored
-    compliance = np.zeros((waves.size, waves.size), dtype=complex)
-    follow = np.zeros((rows.size, waves.size), dtype=complex)
+    # Half of the waves belong to the other half of a split.
+    size = np.abs(own).max(axis=1)
+    some = np.flatnonzero(size > _NONE * size.max())
+    renumbered = np.full(waves.size, -1)
+    renumbered[some] = np.arange(some.size)
+    own, orders, mirrored = own[some], waves.orders[some], renumbered[waves.mirrored[some]]
+    compliance = np.zeros((some.size, some.size), dtype=complex)
+    follow = np.zeros((rows.size, some.size), dtype=complex)
     for n in range(z // 2 + 1):
         mine = np.flatnonzero((orders - n) % z == 0)
         if not mine.size:
@@ -306,8 +313,8 @@ def _holed_ring(ring: Ring, known: Unknowns, holes: Holes, watch: Index) -> Hole
         if 2 * n % z:
             at = mirrored[mine]
             compliance[np.ix_(at, at)], follow[:, at] = part.conj(), seen.conj()
-    c, d = (_real(matrix, orders, mirrored) for matrix in (compliance, holes.lost))
-    x = np.linalg.solve(np.eye(waves.size) + d @ c, d)
+    c, d = (_real(matrix, orders, mirrored) for matrix in (compliance, holes.lost[np.ix_(some, some)]))
+    x = np.linalg.solve(np.eye(some.size) + d @ c, d)
     seen = math.sqrt(2.0) * np.where(orders < 0, -follow.imag, follow.real)
     seen[:, orders == 0] /= math.sqrt(2.0)
     return HoledRing(seen, 0.5 * (x + x.T), orders, mirrored, z, holes.count).without_small()

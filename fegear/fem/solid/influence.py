@@ -24,7 +24,7 @@ from fegear.fem.solid.bands import Bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
-from fegear.fem.solid.holed_teeth import HoledTeeth
+from fegear.fem.solid.holed_teeth import HoledRing, HoledTeeth
 from fegear.fem.solid.settings import SolidSettings, check_solid, whole
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
@@ -38,7 +38,7 @@ from fegear.geometry.rim_support import RimSupport
 #: What a solution consists of, for those that keep it.
 _KINDS = (
     SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings, GearBody, WebHoles,
-    RimSupport, UnevenTeeth, HoledTeeth,
+    RimSupport, UnevenTeeth, HoledTeeth, HoledRing,
 )  # fmt: skip
 #: Where errors are looked for: contact lines through these shares of the flank's length in the middle of the face,
 #: where they stay off its ends by a share of it; root tension of what stands above another share.

@@ -305,7 +305,10 @@ def _solve(
     section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body, side=tooth.side, along=along)
     held = held if along is None else along.hub
     cuts = (held or ()) if along is None else along.ends
-    face = face_functions(width, settings.degree(width), cuts, settings.least_piece_degree, settings.fewer_on_pieces)
+    symmetric = tau == 0.0 and (held is None if body is None else body.even)
+    face = face_functions(
+        width, settings.degree(width), cuts, settings.least_piece_degree, settings.fewer_on_pieces, mirrored=symmetric
+    )
     beyond = own_of_teeth(face, body, tooth.root_radius)
     own = face_functions(width, settings.degree(width)) if math.isfinite(beyond) else face
     joined, columns = (face, slice(None)) if own is face else (JoinedFunctions(face, own), slice(face.count, None))
@@ -343,8 +346,7 @@ def _solve(
     approach = np.zeros(teeth)
     halves: list[HoledHalf] = []
     seconds = {"section": integrated - started, "condensation": 0.0, "ring": 0.0, "influence": 0.0}
-    symmetric = tau == 0.0 and body is None and held is None
-    for alone in known.split(_mirrored(section, face)) if symmetric else (known,):
+    for alone in known.split(_mirrored(section, joined)) if symmetric else (known,):
         begun = time.perf_counter()
         condensed = condense_solid(section, joined, alone, np.concatenate([*sides, inner]))
         joint, loaded = alone.of(sides[0]).size, alone.of(ports)
@@ -418,7 +420,7 @@ def _check_support(support: RimSupport, tooth: InvoluteTooth, *, alone: bool) ->
         )
 
 
-def _mirrored(section: Section, face: FaceFunctions) -> Mask:
+def _mirrored(section: Section, face: FaceFunctions | JoinedFunctions) -> Mask:
     """Unknowns of a motion that mirrors itself at the middle of the face, shape (size of the section, functions).
 
     A body that does so and has no twist moves in such motions and in those of all other unknowns, each by itself:

@@ -100,10 +100,11 @@ def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcom
 
 def _forecast_solid(scene: Scene, name: str) -> Forecast:
     settings, gear = solid_settings_of(scene, name), scene.gears[name]
-    width, twisted = gear.face_width / gear.module, gear.flank_twist != 0.0
+    body, width = gear.body, gear.face_width / gear.module
+    apart = gear.flank_twist == 0.0 and (body is None or body.even)
     seconds = seconds_of_solid_gear(
-        settings, width, twisted=twisted, on_a_web=gear.body is not None, rim_free=gear.support is not None,
-        holed=gear.body is not None and gear.body.holes is not None,
+        settings, width, apart=apart, on_a_web=body is not None, rim_free=gear.support is not None,
+        holed=body is not None and body.holes is not None,
     )  # fmt: skip
     return Forecast(asdict(settings), seconds)
 
