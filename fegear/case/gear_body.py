@@ -55,7 +55,7 @@ class GearBodyPart(Part):
     )
     web_inclination: Angle = Field(
         default=0.0,
-        description="Of the web, at most 20 deg either way: a positive one meets the hub nearer to end II than the "
+        description="Of the web, at most 30 deg either way: a positive one meets the hub nearer to end II than the "
         "rim. web_thickness is along the axis, and web_offset that of its end at the rim.",
     )
     hub_radius: PositiveLength | None = Field(

@@ -15,7 +15,7 @@ Cylinder = tuple[float, float, float, float, float]
 #: Thinnest web, hub and ring between two circles [modules]; thinner ones are shells, which want other elements.
 _THINNEST = 0.2
 #: Steepest web that was compared with other programs [rad].
-STEEPEST = math.radians(20.0)
+STEEPEST = math.radians(30.0)
 #: How long the rim is beside an inclined web's end at least, as a share of the hub there: both have polynomials of one
 #: degree. The hub reaches beyond the web if by more than a share of the width.
 _LEAST_RIM, _NEAR = 0.2, 1e-6

@@ -157,6 +157,7 @@ face_width = "12 mm"
 rim_thickness = "3 mm"
 web_thickness = "3 mm"
 web_offset = "1.5 mm"
+web_inclination = "-8 deg"
 hub_radius = "11 mm"
 hub_width = "10 mm"
 [accuracy]
