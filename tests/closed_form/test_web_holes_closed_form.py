@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.base.errors import RangeError
+from fegear.base.errors import GeometryError, RangeError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.fem.plane.elements import check_cubic_edges, sector_elements
@@ -160,6 +160,28 @@ def test_a_part_of_a_ring_has_its_area(holes, ring, middle, hole):
     whole = math.pi * (ring[1] ** 2 - ring[0] ** 2) / holes
     assert area.sum() == pytest.approx(whole, rel=1e-4)
     assert area[part.filled].sum() == pytest.approx(math.pi * hole**2, rel=2e-3)
+
+
+def test_whatever_is_not_refused_is_drawn():
+    """Random webs and holes; what is drawn inside out is refused by the mesh itself."""
+    rng, drawn = np.random.default_rng(7), 0
+    while drawn < 60:
+        root = rng.uniform(6.0, 120.0)
+        rim = root - rng.uniform(0.3, 4.0)
+        hub = rng.uniform(0.1, 0.9) * rim
+        radius = rng.uniform(0.02, 0.5) * (rim - hub)
+        middle = rng.uniform(hub + radius, rim - radius)
+        count = int(rng.integers(1, math.pi / math.asin(min(1.0, radius / middle)) + 1))
+        holes = WebHoles(count, middle, radius)
+        body = GearBody(rim, hub, (-1.0, 1.0), (-1.0, 1.0), holes=holes)
+        try:
+            holes.check(body, 1.0, root, None)
+        except GeometryError:
+            continue
+        drawn += 1
+        ring = body.holed_ring
+        part = holed_ring(count, ring, middle, radius, rng.uniform(0.1, 0.4) * (ring[1] - ring[0]), 3)
+        assert (part.mesh.jacobians > 0.0).all()
 
 
 def test_open_rows_of_teeth_have_no_holes():

@@ -13,15 +13,22 @@ from itertools import pairwise
 import numpy as np
 
 from fegear.base.arrays import Array, Mask
+from fegear.base.errors import InputError
+from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 
-#: Half the angle of a cell, as a share of that under which the ring's inside is seen whole from the hole's middle, and
-#: the cell's half length over its depth.
-_SEEN, _LONG = 0.7, 0.9
+#: Half the angle of a cell, as a share of that under which the whole inside of the ring is seen from the middle of the
+#: hole: as is wanted, and at most. The half length of a cell over its depth, its half angle over that of the hole at
+#: least, and how many columns more are tried.
+_SEEN, _MOST_SEEN, _LONG, _ROOM, _MORE = 0.7, 0.85, 0.9, 1.3, 60
 #: Rings of elements in the disc that fills the hole, from its edge to its middle, as shares of its radius.
 _FILL = (1.0, 0.55)
 #: By how much each layer round the hole is deeper than the one inside it.
 _DEEPER = 1.5
+#: Edges of a cell over their distance from the hole's middle; how often they are shortened, and by what factor, where
+#: elements turn inside out.
+_TURN, _ATTEMPTS, _FINER = 0.5, 4, 0.6
+_ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
@@ -58,20 +65,34 @@ def holed_ring(
     layers : int
         Between hole and cell's edge.
     """
+    for attempt in range(_ATTEMPTS - 1):
+        try:
+            return _drawn(holes, radii, middle, hole, edge, layers, _TURN * _FINER**attempt)
+        except InputError:
+            continue
+    return _drawn(holes, radii, middle, hole, edge, layers, _TURN * _FINER ** (_ATTEMPTS - 1))
+
+
+def _drawn(
+    holes: int, radii: tuple[float, float], middle: float, hole: float, edge: float, layers: int, turn: float
+) -> HoledRing:  # fmt: skip
+    """The same, where no edge of the cell is longer than a share of its distance from the hole's middle."""
     inside, outside = radii
     half = math.pi / holes
-    seen = _SEEN * math.acos(inside / middle)
-    wanted = max(_LONG * (outside - inside) / (2.0 * middle), 1.3 * math.asin(hole / middle))
-    across = max(4, 2 * math.ceil(half * outside / edge))  # over the whole part, even: a node stands above the hole
+    across, own = _columns(inside, outside, middle, hole, half, edge)
     step = 2.0 * half / across
-    own = min(across, 2 * math.ceil(min(wanted, max(seen, 1.3 * math.asin(hole / middle))) / step))
     beside, cell = (across - own) // 2, 0.5 * own * step
-    deep = max(2, math.ceil((outside - inside) / (1.5 * edge)))
+    depths = _depths(inside, outside, middle, cell, 1.5 * edge, turn)
+    deep = depths.size - 1
     angles = np.linspace(-half, half, across + 1)
-    depths = np.linspace(outside, inside, deep + 1)
+    lengths = (step * outside / (outside - middle), step * inside / (middle - inside))
+    finer = math.ceil(max(lengths) / turn - _ROUND_OFF)
+    angles = np.concatenate([angles[:beside], np.linspace(-cell, cell, own * finer + 1), angles[beside + own + 1 :]])
+    own *= finer
+    across = angles.size - 1
 
     # Round the cell, clockwise from its upper left corner, which runs up the tooth's side A first.
-    run = np.linspace(-cell, cell, own + 1)
+    run = angles[beside : beside + own + 1]
     rim = [
         *((outside, a) for a in run[:-1]), *((r, cell) for r in depths[:-1]),
         *((inside, a) for a in run[:0:-1]), *((r, -cell) for r in depths[:0:-1]),
@@ -87,10 +108,11 @@ def holed_ring(
     vertices = [*rings]
     number = np.arange((layers + 1) * count).reshape(layers + 1, count)
     triangles: list[tuple[int, int, int]] = []
-    for low, high in pairwise(number):  # clockwise round, so outward and back is counterclockwise
+    every = np.hstack(vertices)
+    for low, high in pairwise(number):
         for i in range(count):
             j = (i + 1) % count
-            triangles += _cut(low[i], high[i], high[j], low[j], np.hstack(vertices))
+            triangles += _cut(low[i], high[i], high[j], low[j], every)
     total, layered = number.size, len(triangles)
 
     # Beside the cell, column by column outward from it; node (depth, column).
@@ -153,8 +175,40 @@ def holed_ring(
         halfway = (one != other).astype(np.int64)
         inner = centre + hole * ways[halfway, :, start].T
         points[:, six[3 + edge, :layered]] = inner + (borders[halfway, :, start].T - inner) * mean
+    # Beside the cell, too, edges run along circles.
+    polar = np.zeros((2, every.shape[1]))
+    polar[0, grid], polar[1, grid] = depths[:, None], angles
+    beside_it = six[:, layered:whole]
+    for edge in range(3):
+        r, a = 0.5 * (polar[:, beside_it[edge]] + polar[:, beside_it[(edge + 1) % 3]])
+        points[:, beside_it[3 + edge]] = r * np.sin(a), r * np.cos(a)
     mesh = SectorMesh(points, six, edges, holes, bends=bends)
+    check_cubic_edges(mesh)
     return HoledRing(mesh, np.arange(len(triangles)) >= whole)
+
+
+def _columns(inside: float, outside: float, middle: float, hole: float, half: float, edge: float) -> tuple[int, int]:
+    """Columns of a part and of its cell: even, for a node stands above the hole; more where so few show the inside."""
+    seen, least = math.acos(inside / middle), _ROOM * math.asin(hole / middle)
+    wanted = min(max(_LONG * (outside - inside) / (2.0 * middle), least), max(_SEEN * seen, least))
+    fewest = max(4, 2 * math.ceil(half * outside / edge))
+    for across in range(fewest, fewest + _MORE, 2):
+        own = min(across, 2 * math.ceil(wanted * across / (2.0 * half)))
+        if own * half <= _MOST_SEEN * seen * across:
+            return across, own
+    return fewest, min(fewest, 2 * math.ceil(wanted * fewest / (2.0 * half)))
+
+
+def _depths(inside: float, outside: float, middle: float, cell: float, longest: float, turn: float) -> Array:
+    """Radii of a cell's nodes on its sides, descending: closer where a side passes the hole."""
+    r = np.linspace(outside, inside, 257)
+    off, along = middle * math.sin(cell), r - middle * math.cos(cell)
+    density = np.maximum(1.0 / longest, off / (turn * (off**2 + along**2)))
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * -np.diff(r))])
+    deep = max(2, math.ceil(count[-1] - _ROUND_OFF))
+    found = np.interp(np.linspace(0.0, count[-1], deep + 1), count, r)
+    found[[0, -1]] = outside, inside
+    return np.asarray(found)
 
 
 def _between(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
