@@ -13,8 +13,9 @@ from fegear.fem.plane.elements import check_cubic_edges, sector_elements
 from fegear.fem.plane.holed_ring import holed_ring
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.face import FaceFunctions
-from fegear.fem.solid.holed_web import Waves, lost_stiffness
+from fegear.fem.solid.holed_web import Waves, lost_stiffness, wave_weights
 from fegear.fem.solid.influence import solid_influence
+from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import section_mesh, solve_solid
 from fegear.fem.solid.tooth_over_holes import as_if_all_were, tooth_over_holes
@@ -124,6 +125,34 @@ def test_a_helical_gear_sees_straight_holes():
     np.testing.assert_allclose(
         there.compliance[1].T, back.compliance[-1], atol=1e-9 * np.abs(there.compliance[0]).max()
     )
+
+
+@pytest.mark.parametrize("tau", [0.0, 0.25])
+def test_waves_are_straight_in_a_helical_gear(tau):
+    """A radial motion cos(3 phi) and an axial one sin(phi) z of straight lines, seen by a section that turns with z."""
+    section = make_section(section_mesh(TOOTH, BORE, SETTINGS.section, BODY), 3, tau, 0.3, TOOTH.base_radius, BODY)
+    face, waves = FaceFunctions((-0.5, 0.5), (9,)), Waves((5, 5), FaceFunctions((-0.5, 0.5), (4,)))
+    weights, circles = wave_weights(section, face, waves)
+    nodes, (z, weight) = circles[::3] // 3, face.quadrature(least=20)
+    values, own = face.values(z), waves.face.values(z)
+    along = np.linalg.solve((values * weight) @ values.T, values * weight)
+    x, y = section.places[:, nodes]
+    phi, found = np.arctan2(x, y), np.zeros(waves.size, dtype=complex)
+    for tooth in range(TOOTH.teeth):
+        there = phi[:, None] + tooth * PITCH - tau * z
+        radial = np.stack([np.sin(phi), np.cos(phi), 0.0 * phi])
+        moved = radial[:, :, None] * np.cos(3.0 * there) + np.eye(3)[2][:, None, None] * np.sin(there) * z
+        moved = np.linalg.solve(section.axes[nodes], np.einsum("cnq,fq->ncf", moved, along))
+        found += np.exp(-1.0j * waves.orders * tooth * PITCH) * np.einsum(
+            "wuf,uf->w", weights, moved.reshape(-1, values.shape[0])
+        )
+    wanted = np.zeros(waves.size, dtype=complex)
+    line = np.linalg.lstsq(own.T, z, rcond=None)[0]
+    for order in (3, -3):
+        wanted[waves.number[:, 5 + order, 0, 0]] = 0.5
+    for order in (1, -1):
+        wanted[waves.number[:, 5 + order, 2]] = -0.5j * order * line
+    np.testing.assert_allclose(found, wanted, atol=2e-3)
 
 
 def test_holes_take_stiffness_and_none_against_rigid_motions():
