@@ -87,6 +87,19 @@ def test_symmetries(tau):
 
 
 @pytest.mark.long
+def test_no_random_inclined_body_is_stiffer_with_a_thinner_web():
+    """A thin web within a thick one, spur and helical: at five places along the face, under a force at each of them."""
+    rng = np.random.default_rng(31)
+    for i in range(12):
+        thick, lean, tau = rng.uniform(0.5, 1.0), rng.uniform(-0.57, 0.57), rng.choice([0.0, 0.02])
+        shift = lean * (RIM - HUB)
+        low = rng.uniform(max(-1.0, -1.0 - shift), min(1.0, 1.0 - shift) - thick)
+        first, last = low + np.array([rng.uniform(0.0, 0.2), 1.0 - rng.uniform(0.05, 0.2)]) * thick
+        found = [np.diag(deflections(solved(body(lean, span), tau))) for span in ((low, low + thick), (first, last))]
+        assert (found[1] > found[0]).all(), i
+
+
+@pytest.mark.long
 def test_modes_of_the_mirrored_gear_are_the_same():
     settings = replace(COARSE, section=COARSE.section.scaled(2.0))
 

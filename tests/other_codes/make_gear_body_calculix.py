@@ -50,6 +50,8 @@ MODES = {
     "off": [-2, -1.75, -1.57, -1.5, -1.43, -1.2, -0.8, -0.57, -0.5, -0.43, -0.25, 0.2, 1, 2],
 }
 MODES["inclined"] = MODES["off"]
+#: Of spur teeth: a twisted sector has no plane sides.
+MODES["steep"] = [-2, -1.6, -1.33, -1.25, -1.17, -1, -0.75, -0.58, -0.5, -0.42, -0.25, 0.2, 1, 2]
 #: Nodal diameters up to which modes are wanted, and how many with each.
 DIAMETERS, EACH = 3, 2
 
