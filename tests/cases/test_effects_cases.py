@@ -51,6 +51,7 @@ def study(effect: str) -> Switched:
     return found
 
 
+@pytest.mark.dear("misalignment", "friction", "contact_loss")
 @pytest.mark.parametrize("effect", SCENES)
 def test_what_is_off_runs_none_of_its_kernels(effect):
     found = study(effect)
@@ -59,6 +60,7 @@ def test_what_is_off_runs_none_of_its_kernels(effect):
         assert found.without.kernels.get(kernel, 0) == 0, kernel
 
 
+@pytest.mark.dear("misalignment", "friction", "contact_loss")
 @pytest.mark.parametrize("effect", SCENES)
 def test_switching_an_effect_off_calls_no_other_effect_s_kernels(effect):
     """Kernels that belong to other effects run with them, on or off alike: none appears that was not there."""
@@ -69,6 +71,7 @@ def test_switching_an_effect_off_calls_no_other_effect_s_kernels(effect):
             assert found.without.kernels.get(kernel, 0) == 0, kernel
 
 
+@pytest.mark.dear
 def test_every_effect_changes_an_answer_and_every_kernel_counts_somewhere():
     seen = set()
     for effect in SCENES:

@@ -53,14 +53,19 @@ def rows(folder, name):
         return list(csv.DictReader(stream))
 
 
+def shortened(patch):
+    """Give the study a ladder of a few coarse configurations."""
+    patch.setattr(ladders, "_QUICK_FACTORS", {2: (4.0, 2.8, 2.0)})
+    patch.setattr(ladders, "_QUICK_PATCHES", (2.0,))
+    patch.setattr(ladders, "_QUICKER", 3.0)
+    patch.setattr(ladders, "_TOLERANCES", (1e-1,))
+
+
 @pytest.fixture(scope="module")
 def short(case):
     """The command on a ladder of a few coarse configurations."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ladders, "_QUICK_FACTORS", {2: (4.0, 2.8, 2.0)})
-        patch.setattr(ladders, "_QUICK_PATCHES", (2.0,))
-        patch.setattr(ladders, "_QUICKER", 3.0)
-        patch.setattr(ladders, "_TOLERANCES", (1e-1,))
+        shortened(patch)
         out = case.parent / "o"
         with pytest.raises(SystemExit) as left:
             app(["cost", str(case), "--quick", "--out", str(out)])
@@ -68,6 +73,28 @@ def short(case):
     return out
 
 
+def test_finer_meshes_have_smaller_errors_and_the_cheapest_within_a_tolerance_is_one_of_them(
+    case, tmp_path, monkeypatch
+):
+    """The shortest study, of the ordinary run; the next tests read all that a longer one writes."""
+    shortened(monkeypatch)
+    asked_for = ["--quick", "--no-plots", "--set", 'results=["stiffness"]', "--out", str(tmp_path / "o")]
+    with pytest.raises(SystemExit) as left:
+        app(["cost", str(case), *asked_for])
+    assert left.value.code in (0, None)
+    found = {row["configuration"]: row for row in rows(tmp_path / "o", "cost") if row["quantity"] == "c_0"}
+    errors = [float(row["error"]) for name, row in found.items() if name.startswith("whole gear, order 2")]
+    assert len(errors) == 3
+    assert errors == sorted(errors, reverse=True)
+    within = {name: float(row["error"]) for name, row in found.items() if row["answered"] == "1"}
+    cheapest = [row for row in rows(tmp_path / "o", "cost_cheapest") if row["quantity"] == "c_0"]
+    assert len(cheapest) > 3
+    for name, tolerance in ((row["configuration"], float(row["tolerance"])) for row in cheapest):
+        assert (name == "not reached") == (min(within.values()) > tolerance)
+        assert name == "not reached" or within[name] <= tolerance
+
+
+@pytest.mark.dear
 def test_tables_hold_every_configuration_with_error_and_seconds(short):
     found = rows(short, "cost")
     assert {row["quantity"] for row in found} == set(NAMES)
@@ -100,6 +127,7 @@ def test_tables_hold_every_configuration_with_error_and_seconds(short):
     assert {(row["error"], row["below_floor"]) for row in force if not row["reason"]} == {("1e-13", "1")}
 
 
+@pytest.mark.dear
 def test_front_and_cheapest_follow_from_the_table(short):
     found = [row for row in rows(short, "cost") if row["family"] != "tolerance"]
     cheapest = {(row["quantity"], float(row["tolerance"])): row for row in rows(short, "cost_cheapest")}
@@ -120,6 +148,7 @@ def test_front_and_cheapest_follow_from_the_table(short):
             assert (row["configuration"], row["seconds [s]"]) in [(r["configuration"], r["seconds [s]"]) for r in near]
 
 
+@pytest.mark.dear
 def test_a_formula_that_is_right_with_a_wrong_compliance_is_not_the_cheapest(short):
     """Statics alone decides the largest tooth force: every formula has it, with a c_0 that is 5 to 50 % off."""
     found = [r for r in rows(short, "cost") if r["quantity"] == "tooth-force" and not r["reason"]]
@@ -131,6 +160,7 @@ def test_a_formula_that_is_right_with_a_wrong_compliance_is_not_the_cheapest(sho
     assert best[1e-2]["configuration"] in [*(r["configuration"] for r in within), *["not reached"] * (not within)]
 
 
+@pytest.mark.dear
 def test_seconds_common_to_all_configurations_are_not_compared(short):
     """One row is cheapest for all quantities by what its gears take, whatever the dynamics took that time."""
     results = [r for r in rows(short, "cost") if r["quantity"] == "tooth-force" and not r["reason"]]
@@ -142,6 +172,7 @@ def test_seconds_common_to_all_configurations_are_not_compared(short):
         assert float(row["seconds_fixed [s]"]) == 0.0
 
 
+@pytest.mark.dear
 def test_all_quantities_at_once_are_cheapest_for_a_configuration(short):
     cheapest = {(row["quantity"], float(row["tolerance"])): row for row in rows(short, "cost_cheapest")}
     at_once = cheapest["all", 1e-1]
@@ -149,6 +180,7 @@ def test_all_quantities_at_once_are_cheapest_for_a_configuration(short):
     assert float(at_once["seconds [s]"]) >= float(cheapest["c_1", 1e-1]["seconds [s]"])
 
 
+@pytest.mark.dear
 def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
     import tomllib
 
@@ -163,6 +195,7 @@ def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
     assert any(row["case_line"].startswith("accuracy") for row in rows(short, "cost_cheapest"))
 
 
+@pytest.mark.dear
 def test_orders_tell_what_they_rest_on(short):
     found = rows(short, "cost_orders")
     knobs = {(row["quantity"], row["knob"]) for row in found}
@@ -176,6 +209,7 @@ def test_orders_tell_what_they_rest_on(short):
     assert float(jumps["order"]) == pytest.approx(1.0, abs=0.25)
 
 
+@pytest.mark.dear
 def test_summary_and_pictures(short):
     summary = json.loads((short / "summary.json").read_text())
     assert summary["configurations"]["planned"] == summary["configurations"]["finished"]

@@ -130,7 +130,7 @@ def test_relief_is_the_case_s(pair, design):
     same(design, CASE, {"pair.I.torque": "90 N*m", "design": {"grind": ["linear"]}}, ["relief"])
 
 
-@pytest.mark.dear("designed-relief_tables")
+@pytest.mark.dear
 @pytest.mark.parametrize(
     ("shape", "left"),
     [("designed", "relief_tables"), ("linear", "linear_tip_relief")],

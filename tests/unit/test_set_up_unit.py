@@ -115,6 +115,25 @@ def test_a_missing_program_skips_its_test_or_fails_it(strict, tmp_path):
     assert ("1 failed" if strict else "1 skipped") in done.stdout
 
 
+@pytest.mark.dear("wrong-()-does not have", "b-('--dear',)-2 passed")
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [("b", (), "1 passed, 1 deselected"), ("b", ("--dear",), "2 passed"), ("wrong", (), "does not have")],
+    ids=str,
+)
+def test_dear_parameters_are_left_to_ci_and_a_name_that_no_test_has_is_refused(name, options, words, tmp_path):
+    text = (
+        f"import pytest\n@pytest.mark.dear('{name}')\n@pytest.mark.parametrize('x', 'ab')\ndef test_it(x):\n    pass\n"
+    )
+    (tmp_path / "test_dear.py").write_text(text)
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "conftest", "--rootdir", tmp_path, *options, tmp_path],
+        env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
+        capture_output=True, text=True, check=False, cwd=tmp_path, timeout=60,
+    )  # fmt: skip
+    assert words in done.stdout + done.stderr
+
+
 def test_what_is_set_up_for_development_serves_tests_and_site(machine, tmp_path):
     script = tmp_path / "both.sh"
     calls = "".join(f'fegear_setup "$FEGEAR_VENV" {extra}\n' for extra in ("dev", "test", "docs"))

@@ -20,7 +20,18 @@ DEAR = {
 }  # fmt: skip
 
 
-@pytest.mark.dear("planetary-phases", "two-meshes-in-turn", "calculix-planet-and-ring", "calculix-ring-corner", "fmu")
+@pytest.mark.dear(
+    "planetary-phases",
+    "two-meshes-in-turn",
+    "calculix-planet-and-ring",
+    "calculix-ring-corner",
+    "internal-teeth-rolled",
+    "ring-compliance",
+    "planetary-contact-states",
+    "calculix-transmission-error",
+    "fillets-rolled",
+    "fmu",
+)
 @pytest.mark.parametrize(
     "row",
     [pytest.param(row, marks=[pytest.mark.long] * (row.name in DEAR)) for row in ALL],

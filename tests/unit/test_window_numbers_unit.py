@@ -205,6 +205,7 @@ def test_the_page_of_every_case_has_the_numbers_of_its_run(tmp_path, path, wire,
     hold(folder, path.read_text("utf-8"), [], wire, worker)
 
 
+@pytest.mark.dear
 def test_every_kind_of_export_writes_its_files(tmp_path, wire, worker):
     text = PAIR.replace(', "transmission-error", "root-stress-history"', "")
     endings = {"drawings": ".dxf", "relief": ".csv", "tables": ".csv"}
