@@ -6,8 +6,9 @@ import copy
 import os
 import signal
 import sys
+import threading
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,6 +25,9 @@ from fegear.commands.run import plan, run
 from fegear.commands.schema import results, schema
 from fegear.commands.studies import check, compare, cost, effects, sweep
 from fegear.commands.verify import verify
+
+if TYPE_CHECKING:
+    from types import FrameType
 
 
 class _Program(typer.Typer):
@@ -152,7 +156,11 @@ class _Stopped(BaseException):
 def _heed_requests_to_stop() -> None:
     """Let a request to stop end the program as Ctrl-C does, so that it clears away what is unfinished."""
 
-    def stop(number: int, _frame: object) -> None:
+    def stop(number: int, frame: FrameType | None) -> None:
+        if frame is not None and frame.f_code.co_filename.startswith("<frozen importlib"):
+            # Imports let go of their locks in callbacks of weak references: what is raised there is printed and lost.
+            threading.Timer(0.02, signal.raise_signal, [number]).start()
+            return
         signal.signal(number, signal.SIG_IGN)  # once is enough
         raise _Stopped(number)
 

@@ -435,3 +435,28 @@ def test_a_file_that_may_not_grow_is_one_sentence_and_the_old_results_stay(tmp_p
     assert "File too large" in done.stderr
     assert "Traceback" not in done.stderr
     assert contents(out) == before
+
+
+def test_a_stop_request_that_comes_while_an_import_lets_go_of_its_lock_is_heard():
+    """It was raised in a callback of a weak reference, printed and lost, and all later ones were ignored."""
+    script = """
+import signal, time, weakref
+from fegear import cli
+cli._heed_requests_to_stop()
+class Lock: pass
+code = compile("def ends(_): signal.raise_signal(signal.SIGTERM); [None for _ in range(9)]",
+               "<frozen importlib._bootstrap>", "exec")
+exec(code)
+try:
+    lock = Lock()
+    kept = weakref.ref(lock, ends)
+    del lock
+    for _ in range(200): time.sleep(0.05)
+    print("went on")
+except cli._Stopped as stopped:
+    print(stopped.name)
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", script], check=False, capture_output=True, text=True, env=ENVIRONMENT, timeout=60
+    )
+    assert (run.stdout, run.stderr) == ("SIGTERM\n", "")
