@@ -218,6 +218,13 @@ class Command(typer.core.TyperCommand):
                 words.append(word)
         return super().parse_args(ctx, words)
 
+    def invoke(self, ctx: Any) -> Any:
+        """Run it; Ctrl-C that no part of it heard, while it loads what it needs, ends with a line as everywhere."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:  # typer would end with the code alone
+            leave(INTERRUPTED, 130)
+
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""
         _stacked(formatter)

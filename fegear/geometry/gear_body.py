@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fegear.base.errors import GeometryError
+from fegear.base.errors import GeometryError, shown
 from fegear.geometry.body_along import BodyAlong, body_along
 
 #: Outer and inner radius, the two ends along the axis at the outer one, and by how much both move toward greater places
@@ -20,6 +20,8 @@ STEEPEST = math.radians(30.0)
 #: degree. The hub reaches beyond the web if by more than a share of the width.
 _LEAST_RIM, _NEAR = 0.2, 1e-6
 _ROUND_OFF = 1e-9
+#: More holes than have room on any circle; Python divides by no whole number of hundreds of digits.
+_MANY = 1_000_000
 #: How near holes come to the root circle, as a share of its radius: a hundred waves round the gear feel them.
 _NEAREST = 0.06
 #: How far from rim and hub the part of a web that holes lie in begins: a share of the web's thickness, off the corners
@@ -95,11 +97,11 @@ class WebHoles:
                 key, size, f"leaves no web to the hub, {2e3 * body.hub_radius:.6g} mm across, {circle}",
                 "make holes smaller or circle_diameter larger",
             )  # fmt: skip
-        apart = 2.0 * self.circle_radius * math.sin(math.pi / self.count)
+        apart = 2.0 * self.circle_radius * math.sin(math.pi / min(self.count, _MANY))
         if self.count > 1 and apart < 2.0 * self.radius + least * 1e-3:
             raise GeometryError(
-                key, size, f"leaves no web between {self.count} holes, whose middles lie {apart * 1e3:.6g} mm apart "
-                f"{circle}", "make holes smaller or fewer",
+                key, size, f"leaves no web between {shown(self.count)} holes, whose middles lie {apart * 1e3:.6g} mm "
+                f"apart {circle}", "make holes smaller or fewer",
             )  # fmt: skip
         edge = self.circle_radius + self.radius
         if root_radius - edge < _NEAREST * root_radius:

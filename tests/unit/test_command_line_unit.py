@@ -154,7 +154,9 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert [path.name for path in out.parent.iterdir()] == ["one"]
 
 
-@pytest.mark.parametrize("module", ["fegear.base.streams", "fegear.cli", "typer"])
+@pytest.mark.parametrize(
+    "module", ["fegear.base.streams", "fegear.cli", "typer", "fegear.engine.plan", "fegear.results.catalogue"]
+)
 def test_ctrl_c_while_the_program_loads_is_one_line(module, case, tmp_path):
     program = (
         "import sys\n"

@@ -14,8 +14,8 @@ from fegear.results.catalogue import STAGES
 SET = Path(__file__).parents[2] / "cases" / "helical_planetary_set.toml"
 
 
-def idler(offset, second):
-    body = {"rim_thickness": "3 mm", "web_thickness": "3 mm", "web_offset": offset, "hub_radius": "11 mm"}
+def idler(offset, second, **more):
+    body = {"rim_thickness": "3 mm", "web_thickness": "3 mm", "web_offset": offset, "hub_radius": "11 mm"} | more
     gear = {"teeth": 24, "module": "2 mm", "bore_radius": "7 mm", "face_width": "8 mm"}
     pairs = {"I": {"driver": "a", "driven": "b", "torque": "20 N*m"}, "II": second | {"torque": "20 N*m"}}
     case = {
@@ -34,6 +34,17 @@ def test_a_web_off_the_middle_of_an_idler_is_refused():
 def test_webs_in_the_middle_and_wheels_of_two_pinions_are_solved():
     check_solid_gear(idler("0 mm", {"driver": "b", "driven": "c"}), "b")
     check_solid_gear(idler("1.5 mm", {"driver": "c", "driven": "b"}), "b")
+
+
+def test_an_idler_is_not_taken_by_one_tooth_over_its_holes():
+    """Its other flank is loaded in the other mesh, which stands differently to them; the mean of all is alike."""
+    holes = {"count": 5, "circle_diameter": "30 mm", "diameter": "4 mm"}
+    one, second = {"driver": "b", "driven": "c"}, {"driver": "c", "driven": "b"}
+    with pytest.raises(InputError, match="pair I loads, and pair II loads the other one") as found:
+        check_solid_gear(idler("0 mm", one, holes=holes | {"tooth": 3}), "b")
+    assert found.value.key == "gear.b.body.holes.tooth"
+    check_solid_gear(idler("0 mm", one, holes=holes), "b")
+    check_solid_gear(idler("0 mm", second, holes=holes | {"tooth": 3}), "b")
 
 
 def set_with_a_web(offset):

@@ -3,7 +3,9 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from fegear.base.errors import GeometryError, InputError
@@ -11,6 +13,7 @@ from fegear.case.reading import build_scene
 from fegear.geometry.gear_body import GearBody, WebHoles, moments
 from fegear.output.mesh_export import write_solid
 from fegear.results.gear import body_modes
+from fegear.results.gear.teeth_over_holes import teeth_over_holes
 
 HOLES = {"count": 5, "circle_diameter": "27 mm", "diameter": "6 mm"}
 
@@ -40,6 +43,7 @@ def test_holes_of_a_case():
         ({"diameter": "12 mm"}, "diameter", "inside of the rim"),
         ({"circle_diameter": "21 mm"}, "diameter", "to the hub"),
         ({"count": 13, "diameter": "6.4 mm"}, "diameter", "between 13 holes"),
+        ({"count": 10**400}, "diameter", "leaves no web between 1000"),
         ({"diameter": "0.1 mm"}, "diameter", "at least 0.4 mm"),
         ({"count": 0}, "count", "at least 1"),
         ({"tooth": 24}, "tooth", "between 0 and 23"),
@@ -83,3 +87,12 @@ def test_inertia_lacks_what_is_drilled_out():
         one * ((3 * 0.8**2 + 1.5**2) / 12 + 0.25**2 + (3.5 * math.sin(math.pi * i / 3)) ** 2) for i in range(6)
     )
     assert plain[2] - drilled[2] == pytest.approx(across)
+
+
+def test_the_figure_of_the_teeth_says_what_pairs_take():
+    each = np.array([0.9, 1.0, 1.1])
+    uneven = SimpleNamespace(deflection=each, root_tension=each, root_compression=-each)
+    solution = SimpleNamespace(body=SimpleNamespace(holes=HOLES), uneven=uneven)
+    for tooth, words in ((None, "pairs take the mean."), (2, "pairs take tooth 2 for all.")):
+        _, (figure,) = teeth_over_holes("a", solution, tooth)
+        assert figure.caption.endswith(words)

@@ -195,16 +195,28 @@ def check_solid_gear(scene: Scene, name: str) -> None:
 def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
     """Refuse uneven bodies of gears that are driven in one of some loaded pairs and drive in another.
 
+    So are holes over which one tooth is taken: in the other mesh its other flank is loaded, which stands differently.
+
     Raises
     ------
     InputError
     """
     body = scene.gears[name].body
-    if body is None or body.even:
+    if body is None:
+        return
+    tooth = None if body.holes is None else body.holes.tooth
+    if body.even and tooth is None:
         return
     meshes = [(key, scene.case.pair[key]) for key in pairs]
     driven = next((key for key, one in meshes if one.driven == name), None)
     drives = next((key for key, one in meshes if one.driver == name), None)
+    if driven is not None and drives is not None and body.even:
+        raise InputError(
+            f"gear.{name}.body.holes.tooth", tooth,
+            f"stands to the holes with the flank that pair {driven} loads, and pair {drives} loads the other one",
+            "leave tooth out, for the mean of all teeth, or load each pair in a case of its own; in one angle changes "
+            "sign and teeth are counted the other way",
+        )  # fmt: skip
     if driven is not None and drives is not None:
         raise InputError(
             f"gear.{name}.body", "web_inclination" if body.lean else "off the middle of the face",

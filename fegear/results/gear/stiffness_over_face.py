@@ -105,7 +105,8 @@ def _present(table: SolidTable, asked: StiffnessInputs) -> Outcome:
         f"over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
         f"half-width; neighbours and root stress are for a pressure of {width} mm half-width up the flank."
     )
-    tables, figures = teeth_over_holes(name, table.influence.fine)
+    holes = None if asked.gear.body is None else asked.gear.body.holes
+    tables, figures = teeth_over_holes(name, table.influence.fine, None if holes is None else holes.tooth)
     return Outcome(
         table,
         (_table(name, table), *tables),

@@ -20,8 +20,13 @@ _COLUMNS = {
 }
 
 
-def teeth_over_holes(name: str, solution: SolidSolution) -> tuple[tuple[Table, ...], tuple[Figure, ...]]:
-    """What teeth over holes depart from their mean; nothing where all are alike."""
+def teeth_over_holes(
+    name: str, solution: SolidSolution, tooth: int | None = None
+) -> tuple[tuple[Table, ...], tuple[Figure, ...]]:
+    """What teeth over holes depart from their mean; nothing where all are alike.
+
+    `tooth` is the one that pairs take for all, if they do not take the mean.
+    """
     if (
         solution.body is None
         or solution.body.holes is None
@@ -38,9 +43,10 @@ def teeth_over_holes(name: str, solution: SolidSolution) -> tuple[tuple[Table, .
         Curve(teeth, 100.0 * (share - 1.0), key.replace("_", " "), f"series:{i}")
         for i, (key, share) in enumerate(shares.items())
     )
+    taken = "the mean" if tooth is None else f"tooth {tooth} for all"
     figure = Figure(
         f"teeth_over_holes_{name}", title,
-        f"Gear {name}: each tooth loaded at half height in the middle of the face; pairs take the mean.",
+        f"Gear {name}: each tooth loaded at half height in the middle of the face; pairs take {taken}.",
         (Panel(Axis("tooth", whole=True), Axis("off the mean", "%"), curves),),
     )  # fmt: skip
     return (table,), (figure,)
