@@ -188,6 +188,18 @@ class GearBody:
             (self.hub_radius, bore_radius, *self.hub, 0.0),
         )  # fmt: skip
 
+    def section(self, outer_radius: float, bore_radius: float, width: float) -> tuple[tuple[float, float], ...]:
+        """Half of the gear's section along its axis: corners by place along the face and radius.
+
+        Clockwise from the outer radius at end I, which is at the left, and closed.
+        """
+        rim, hub, end = self.rim_radius, self.hub_radius, 0.5 * width
+        (a, b), (c, d), (e, f) = self.web, self.foot, self.hub
+        return (
+            (-end, outer_radius), (end, outer_radius), (end, rim), (b, rim), (d, hub), (f, hub), (f, bore_radius),
+            (e, bore_radius), (e, hub), (c, hub), (a, rim), (-end, rim), (-end, outer_radius),
+        )  # fmt: skip
+
     def check(
         self, module: float, width: float, bore_radius: float, root_radius: float, teeth: int | None = None
     ) -> None:

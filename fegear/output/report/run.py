@@ -43,6 +43,7 @@ from fegear.output.report.blocks import (
 )
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.tables import table_file
+from fegear.results.gear.body_section import body_figures
 from fegear.results.gear.drawing import pair_figure
 from fegear.results.gear.geometry import MEANINGS as MODIFICATIONS
 from fegear.results.gear.geometry import drawing_of, lone_table, pair_table, pair_values
@@ -168,7 +169,9 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     scene = results.scene
     name = f"{file_name(scene.name)}.toml"
     files = {name: scene.text.encode()} if scene.text else {}
-    shown = frozenset({"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs)})
+    shown = frozenset(
+        {"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs), *(f"gear_body_{gear}" for gear in scene.gears)}
+    )
     values = _values(results)
     pictures = {task: [one for one in drawn if one.task == task] for task in results.outcomes}
     stages = [_stage(results, task, pictures[task], shown) for task in results.outcomes]
@@ -278,7 +281,7 @@ _GROUPS = (
 
 
 def gear_sections(results: Results) -> tuple[Section, ...]:
-    """A section for each pair, that in question first, and one for gears in no pair; empty without gears."""
+    """A section for each pair, that in question first, one for gears in no pair, one for bodies."""
     drawing = drawing_of(results.scene)
     written = {table.name for table in results.tables}
     case = results.scene.case
@@ -294,6 +297,8 @@ def gear_sections(results: Results) -> tuple[Section, ...]:
     lone = lone_table(drawing)
     if lone is not None:
         sections.append(Section("Gear data", _blocks(lone, (), written)))
+    if bodies := body_figures(drawing.gears):
+        sections.append(Section("Gear bodies", tuple(map(Plot, bodies))))
     return tuple(sections)
 
 

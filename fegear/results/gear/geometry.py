@@ -25,6 +25,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.inspection import OverBalls, over_balls, touching_ball, usual_ball, usual_span
 from fegear.geometry.pair import MEMBERS, GearPair, active_profile, specific_sliding
 from fegear.results.forecasts import INVOLUTE
+from fegear.results.gear.body_section import body_figures
 from fegear.results.gear.drawing import pair_figure
 
 #: Of a pair, as single values.
@@ -77,7 +78,7 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
     )
     lone = lone_table(drawing)
     tables = (table, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))
-    figures = tuple(pair_figure(name, drawing) for name in pairs)
+    figures = (*(pair_figure(name, drawing) for name in pairs), *body_figures(gears))
     return Outcome(drawing, tables, values, {}, (*remarks, *unmeasured_remarks(drawing)), figures)
 
 
