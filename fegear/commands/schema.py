@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from pathlib import Path
@@ -77,6 +78,7 @@ def _is_schema(text: str) -> bool:
     return isinstance(found, dict) and found.get("title") == TITLE
 
 
+@functools.cache
 def schema_text() -> str:
     """The schema as JSON."""
     from fegear.case.schema import case_schema

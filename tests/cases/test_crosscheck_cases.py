@@ -196,6 +196,7 @@ def test_sigma_f0_of_a_spur_pair_has_every_factor_of_the_case(cornell_case):
     assert (thin["Y_DT"] == 1.0).all()
 
 
+@pytest.mark.dear
 def test_a_helical_pair_is_compared_through_its_virtual_teeth():
     tables, values, results = run(
         "litvin_shaft_angle", "results=['crosscheck']", "pair.I.iso_6336={edition=2019}", "pair.I.torque='500 N m'",

@@ -460,13 +460,13 @@ def test_a_case_of_the_gallery_that_does_not_run_says_why_and_others_have_run_be
     case_run = importlib.import_module("case_run")
     (tmp_path / "drive.toml").write_text('results = ["geometry"]\n[gear.a]\nteeth = 30\nmodule = "2 mm"\n')
     (tmp_path / "wrong.toml").write_text('results = ["nonsense"]\n')
-    names = ("drive", "wrong", "drive", "wrong")
+    names = ("drive", "wrong")
     with ThreadPoolExecutor(2) as pool:
         out = [tmp_path / f"{name}_{number}" for number, name in enumerate(names)]
         said = list(pool.map(case_run.run_case, [tmp_path / f"{name}.toml" for name in names], out))
-    assert [bool(words) for words in said] == [False, True, False, True], said
+    assert [bool(words) for words in said] == [False, True], said
     assert "nonsense" in said[1]
-    assert all((folder / "report.html").is_file() for folder in out[::2])
+    assert (out[0] / "report.html").is_file()
 
 
 def _called(page):

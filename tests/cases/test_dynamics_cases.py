@@ -405,6 +405,7 @@ def test_a_chart_of_finite_elements_is_computed_in_processes():
     assert not any(tables["design_chart_I"]["failure"])
 
 
+@pytest.mark.dear
 def test_lin_design_chart(tmp_path):
     """Figs. 9 and 10: with 0.75 Delta the best length is near 1.09; with a disk, a chart keeps its finished points."""
     overrides = (

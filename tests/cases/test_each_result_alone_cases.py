@@ -38,6 +38,8 @@ panels = 4
 [accuracy]
 tolerance = 0.3
 """
+#: What a loss of power needs besides.
+LOSS = ("effects.friction=true", 'pair.I.speed="1000 rpm"', "pair.I.friction={ coefficient = 0.05 }")
 
 
 def scene_of(path, results, *more):
@@ -92,6 +94,16 @@ def every_case():
     return sorted(path.relative_to(CASES).with_suffix("").as_posix() for path in CASES.rglob("*.toml"))
 
 
+def test_a_plane_pair_states_the_same_alone_and_together(tmp_path):
+    """The cheapest pair that has them all, of the ordinary run; the others have widths, or are cases of the gallery."""
+    path = tmp_path / "spur.toml"
+    path.write_text(SPUR)
+    results = ("geometry", "load-sharing", "transmission-error", "gear-mesh-power-loss", "tooth-geometry-check")
+    assert possible(path, results, *LOSS) == list(results)
+    assert each_alone(path, results, *LOSS) == {}
+
+
+@pytest.mark.dear
 def test_a_pair_with_a_width_states_the_same_alone_and_together():
     """The numbers that load sharing, transmission error and load distribution have in common, at coarse settings."""
     more = (

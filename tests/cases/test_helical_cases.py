@@ -27,6 +27,7 @@ def run(name, *overrides):
 
 @pytest.mark.dear(
     "litvin_lead-kinds1-4.3015",
+    "litvin_combined-kinds3-1.4386",
     "litvin_localised-kinds4-12.3332",
     "sources/litvin_fig07-kinds5-1.5356",
     "sources/litvin_fig09-kinds6-0.0",
@@ -206,6 +207,7 @@ def test_a_contact_ratio_below_one_and_ellipses_past_the_face_are_remarked():
     assert not any("below 1" in remark or "past an end" in remark for remark in results.remarks)
 
 
+@pytest.mark.dear
 def test_absorbing_the_linear_error():
     tables, values, results = run("litvin_localised", "pair.I.modification.absorb=true")
     assert set(tables["tooth_contact_I"]["contact"]) == {"surface"}
@@ -322,6 +324,7 @@ def test_a_run_leaves_tables_and_pictures(tmp_path):
     assert {"unloaded_transmission_error_I.png", "unloaded_contact_pattern_I.png", "contact_ellipses_I.png"} <= pictures
 
 
+@pytest.mark.dear
 def test_the_example_of_the_documentation_runs_and_prints_its_number(capsys):
     text = (CASES.parent / "docs" / "helical.md").read_text()
     block = text.split("```python\n")[1].split("```")[0]

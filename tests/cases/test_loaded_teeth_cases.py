@@ -77,6 +77,7 @@ def test_marks_gears_with_tip_relief():
     assert any("effects.relief is off" in remark for remark in plain[2].remarks)
 
 
+@pytest.mark.dear
 def test_the_pair_compared_with_calculix_as_it_really_is():
     tables, values, results = run("calculix_pair")
     te, sharing = tables["transmission_error_I"], tables["load_sharing_I"]

@@ -212,6 +212,7 @@ def test_the_tool_envelops_the_tooth(made):
     assert distance.max() < 0.02
 
 
+@pytest.mark.dear
 def test_a_picture_that_cannot_be_drawn_is_a_remark_not_a_failure(made, tmp_path, monkeypatch):
     def missing(*_arguments):
         raise MissingLibraryError("the deformed gear cannot be drawn; run: apt-get install libegl1")

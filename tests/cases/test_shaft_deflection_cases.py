@@ -195,7 +195,7 @@ def test_method_c_takes_the_misalignment_of_computed_shafts():
 
 
 def _many_shafts(case):
-    for n in range(10_000):
+    for n in range(1_000):
         case["shaft"][f"s{n}"] = {"sections": [{"length": "1 m", "outer": "20 mm"}], "bearings": []}
 
 
@@ -212,7 +212,7 @@ def _wide_clearance(case):
 @pytest.mark.parametrize(
     ("change", "word"),
     [
-        (_many_shafts, r"shaft = 10,003 in all: are more than are solved together; give 100 at most"),
+        (_many_shafts, r"shaft = 1,003 in all: are more than are solved together; give 100 at most"),
         (_loop, "shaft = in, mid: drive each other in a loop; let one drive the others"),
         (lambda case: case["shaft"]["in"].pop("sections"), r"shaft.in.sections = \(not given\): is required"),
         (

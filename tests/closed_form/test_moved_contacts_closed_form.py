@@ -27,7 +27,7 @@ def exact_approach(load, radius, cubic, quartic, slope):
         return chebyshev.chebfit(x, 0.5 * math.pi * rise, 5)
 
     scale = math.sqrt(4.0 * load * radius / math.pi)
-    m, h = fsolve(lambda at: (series(*at)[0] * scale, 0.5 * at[1] * series(*at)[1] - load), (0.0, scale), xtol=1e-14)
+    m, h = fsolve(lambda at: (series(*at)[0] * scale, 0.5 * at[1] * series(*at)[1] - load), (0.0, scale), xtol=1e-12)
     u = series(m, h)
     # (1 - x^2)^1/2 U_{k-1} = (T_{k-1} - T_{k+1}) / 2 (1 - x^2)^-1/2, of which the logarithm leaves pi/n T_n
     weight = np.zeros(u.size + 1)

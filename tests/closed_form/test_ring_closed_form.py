@@ -95,7 +95,7 @@ def test_observed_order_of_convergence_in_energy(order, factors, slope):
     assert errors[-1] < {2: 2e-4, 3: 1e-4, 4: 1e-4}[order]
 
 
-@pytest.mark.dear("2-factors0-2.0")
+@pytest.mark.dear("2-factors0-2.0", "3-factors1-2.7")
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
     [(2, (4.0, 2.8, 2.0, 1.4, 1.0), 2.0), (3, (5.6, 4.0, 2.8, 2.0, 1.4), 2.7), (4, (4.0, 2.8, 2.0, 1.4), 3.0)],
@@ -123,14 +123,14 @@ def test_plane_strain_is_plane_stress_with_changed_constants():
 @pytest.mark.dear
 def test_deflection_is_the_mean_over_the_contact_and_a_quarter_of_the_half_plane_s_logarithm():
     # The pressure of a wide contact itself, against mean deflections of wider and narrower ones and closed forms.
-    known = four_square(4, 0.7)
+    known = four_square(4, 0.8)
     radii = np.linspace(13.4, 14.7, 9)
     assert np.allclose(known.self_compliance(radii, 0.12, 0.08), known.mean_compliance(radii, 0.08), rtol=1e-5)
 
 
 def test_self_compliance_does_not_depend_on_the_patch_from_root_to_tip():
-    known = four_square(4, 0.7)
-    radii = np.sqrt(np.linspace(known.flank.lowest_radius**2, known.flank.highest_radius**2, 25))
+    known = four_square(4, 0.8)
+    radii = np.sqrt(np.linspace(known.flank.lowest_radius**2, known.flank.highest_radius**2, 10))
     narrow, wide = (known.self_compliance(radii, a, 0.02) for a in (0.06, 0.12))
     assert np.abs(wide / narrow - 1.0).max() < 1e-4
 

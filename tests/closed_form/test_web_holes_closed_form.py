@@ -81,6 +81,7 @@ def test_one_tooth_may_stand_for_all(eight):
     alike(wanted, known, 1e-12)
 
 
+@pytest.mark.dear
 def test_what_is_kept_on_disk_has_all_teeth(tmp_path):
     def found():
         cache = SolutionCache(Store(tmp_path))
@@ -91,6 +92,7 @@ def test_what_is_kept_on_disk_has_all_teeth(tmp_path):
     alike(tooth_over_holes(first, 2), tooth_over_holes(again, 2), 1e-12)
 
 
+@pytest.mark.dear
 def test_holes_turned_by_a_pitch_meet_the_next_tooth(eight):
     alike(tooth_over_holes(eight, 0), tooth_over_holes(solved(replace(HOLES, angle=HOLES.angle + PITCH)), 1), 1e-9)
 

@@ -77,7 +77,7 @@ def test_root_tension_is_steady_in_the_contact_s_place(name):
         assert (np.abs(np.diff(found, 2)) < 1e-3 * found[1:-1]).all()
 
 
-@pytest.mark.dear("-1-sharp", "-1-shorter than contacts", "0-shorter than contacts")
+@pytest.mark.dear("-1-sharp", "-1-shorter than contacts", "0-shorter than contacts", "0-sharp")
 @EVERY
 @pytest.mark.parametrize("level", [-1, 0])
 def test_the_stated_error_covers_contacts_beside_the_fillet(name, level):

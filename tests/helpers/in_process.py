@@ -8,12 +8,20 @@ from types import SimpleNamespace
 import pytest
 
 from fegear.cli import main
+from fegear.engine.executor import Executor
 
 
-def fegear(*arguments: object, cwd, **environment: object) -> SimpleNamespace:
+def compute_points_here(patch: pytest.MonkeyPatch) -> None:
+    """Let the points of a sweep be computed in this process: one of their own takes a second to start, too."""
+    patch.setattr("fegear.engine.executor.Executor", lambda *asked: Executor(*asked, here=True))
+
+
+def fegear(*arguments: object, cwd, points_here: bool = False, **environment: object) -> SimpleNamespace:
     """Run a command in a folder; returns what `subprocess.run` would: returncode, stdout, stderr."""
     said, complained, code = io.StringIO(), io.StringIO(), 0
     with pytest.MonkeyPatch.context() as patch, contextlib.chdir(cwd):
+        if points_here:
+            compute_points_here(patch)
         threads = {f"{name}_NUM_THREADS": "1" for name in ("OMP", "OPENBLAS", "MKL")}  # what `main` sets: put back
         for name, value in (threads | environment).items():
             patch.setenv(name, str(value))

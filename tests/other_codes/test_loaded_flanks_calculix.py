@@ -94,6 +94,7 @@ def quarters(pair, lines, force):
     }
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize(("position", "level", "number"), STEPS)
 def test_transmission_error_shares_quarters_and_root_stress(solved, position, level, number):
     pair, gears = solved
@@ -119,9 +120,9 @@ def test_transmission_error_shares_quarters_and_root_stress(solved, position, le
         assert tension.max() * 1e-6 == pytest.approx(his_largest * scale, rel=TENSION[position, level])
 
 
-def test_the_tilt_is_the_gap_of_turned_helicoids(solved):
+def test_the_tilt_is_the_gap_of_turned_helicoids():
     """The gap that the tilt leaves, by turning the driver's flank in space and the driven flank until both touch."""
-    pair, _ = solved
+    pair = meshed.the_pair()
     tilt = calculix.TILT
     x0 = meshed.lines_at(pair, 0.25)[0]
     lines = contact_lines(pair, [x0], 0.5 * meshed.MODULE)

@@ -109,6 +109,7 @@ def test_usual_settings_are_within_a_per_cent(case):
     assert off["compression"] < 0.018
 
 
+@pytest.mark.dear
 def test_stated_errors_of_root_stress_cover_the_difference():
     """Largest values of two levels may agree by chance: .12 % was stated in the middle of the face, .58 % is true."""
     turned = calculix.TOOTH, 0.0, calculix.FACE, calculix.NU, calculix.BORE

@@ -86,7 +86,7 @@ class Rig:
         ])  # fmt: skip
 
 
-@numba.njit
+@numba.njit(cache=True)
 def teeth(p, s, delta, rate):
     """Mesh force and largest force on one tooth pair at a phase s."""
     k0, bend, half, relief, start, mean, root, back = p[1], p[2], p[3], p[4], p[5], p[8], p[9], p[11]
@@ -111,7 +111,7 @@ def teeth(p, s, delta, rate):
     return total, most * total / elastic if elastic > 0.0 else 0.0
 
 
-@numba.njit
+@numba.njit(cache=True)
 def slope(p, s, y, out):
     total, _ = teeth(p, s, R * (y[1] - y[2]), R * (y[5] - y[6]))
     a = p[6] * (y[0] - y[1]) + p[7] * (y[4] - y[5])
@@ -124,7 +124,7 @@ def slope(p, s, y, out):
     out[7] = (b - p[10] * R) / (10.0 * J)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def run(p, y, periods, steps):
     """State after so many periods of the mesh; largest mesh force and tooth force of each."""
     h = 1.0 / (p[0] * steps)
@@ -290,7 +290,7 @@ def two_discs(depth, zeta, ratio, *, parting):
     return MotionModel(train, (excitation,), ratio * natural / 30.0)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def oscillator(depth, zeta, ratio, x, v, periods, steps, parts):
     """Largest force of x'' + [x > 0] (2 zeta x' + (1 + depth cos) x) = 1 in each period, and the state at the end."""
     h = 2.0 * math.pi / ratio / steps
@@ -452,7 +452,7 @@ def test_teeth_that_throw_each_other_ever_further_are_unsettled_and_a_stable_mot
 
 
 # ---- motion that does not repeat, and transients --------------------------------------------------------------------
-@numba.njit
+@numba.njit(cache=True)
 def slack(zeta, ratio, swing, gap, x, v, periods, steps):
     """Largest force of x'' + f = 1 in each period: f = x - e + 2 zeta x' from x > e, x + gap + 2 zeta x' from x < -gap.
 

@@ -25,21 +25,22 @@ print(*(m.removeprefix("fegear.results.") for m in sys.modules if m.startswith("
 
 PLANNED = """
 import sys
+from fegear.case.part import Part
 from fegear.case.reading import read_scene
+scene = read_scene(sys.argv[1], [])
+print(*(part.__name__ for part in Part.__subclasses__() if part.__pydantic_complete__))
 from fegear.engine.plan import make_plan, plan_lines
 from fegear.results.catalogue import STAGES
-scene = read_scene(sys.argv[1], [])
 list(plan_lines(scene, make_plan(scene, STAGES)))
 print(*(m.removeprefix("fegear.") for m in sys.modules if m.startswith("fegear.")))
 """
 
-COMPILED = """
-import sys
-from fegear.case.part import Part
-from fegear.case.reading import read_scene
-read_scene(sys.argv[1], [])
-print(*(part.__name__ for part in Part.__subclasses__() if part.__pydantic_complete__))
-"""
+
+@pytest.fixture(scope="module")
+def planned():
+    """Tables whose rules are compiled when a case has been read, and modules that are loaded when it is planned."""
+    ran = subprocess.run([sys.executable, "-c", PLANNED, str(CASE)], capture_output=True, text=True, check=True)
+    return [line.split() for line in ran.stdout.splitlines()]
 
 
 def test_every_entry_finds_a_stage_that_is_named_after_it():
@@ -70,17 +71,17 @@ def test_a_plan_imports_no_result_that_it_does_not_need():
     assert loaded & homes <= {"gear.solved_gear", "gear.stiffness", "gear.stiffness_over_face", "pair.loaded_pair"}
 
 
-def test_a_plan_of_plane_gears_imports_no_mechanics_of_other_cases():
+def test_a_plan_of_plane_gears_imports_no_mechanics_of_other_cases(planned):
     """Shafts, measured flanks, wide pairs and motion took a tenth of the start of a case that has none of them."""
-    ran = subprocess.run([sys.executable, "-c", PLANNED, str(CASE)], capture_output=True, text=True, check=True)
+    _, loaded = planned
+    assert "case.reading" in loaded
     others = ("shafts.", "dynamics.", "contact.wide.", "formulas.iso1328", "case.built.measured_flanks")
-    assert not [name for name in ran.stdout.split() if name.startswith(others)]
+    assert not [name for name in loaded if name.startswith(others)]
 
 
-def test_reading_a_case_compiles_the_rules_of_no_table_that_it_does_not_have():
+def test_reading_a_case_compiles_the_rules_of_no_table_that_it_does_not_have(planned):
     """The rules of all ninety tables took a fifth of the processor time of a plan."""
-    ran = subprocess.run([sys.executable, "-c", COMPILED, str(CASE)], capture_output=True, text=True, check=True)
-    compiled = set(ran.stdout.split())
+    compiled = set(planned[0])
     assert {"Case", "GearPart", "ReliefPart"} <= compiled
     assert not compiled & {"StrengthPart", "PlanetaryPart", "TransmissibilityPart", "DesignPart", "MeasuredPart"}
 

@@ -87,6 +87,7 @@ def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
         map_points(math.sqrt, [1.0], Executor("tcp://127.0.0.1:9"))
 
 
+@pytest.mark.dear
 def test_an_address_of_no_scheduler_is_one_sentence():
     """In a process of their own: a client that fails half-made complains when the interpreter ends."""
     addresses = ["tls://127.0.0.1:9", "foo", "tcp://[::1", "http://127.0.0.1:9"]
@@ -135,6 +136,7 @@ def test_a_listener_that_says_nothing_is_no_scheduler(monkeypatch):
             map_points(math.sqrt, [1.0], Executor(address))
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("lost", [pytest.param("workers", marks=pytest.mark.long), "scheduler"])
 def test_a_cluster_that_is_lost_ends_the_wait(monkeypatch, capfd, lost):
     program = (
@@ -214,6 +216,7 @@ def test_nobody_waits_for_what_is_under_way_when_a_run_is_stopped(tmp_path):
     assert run.wait(timeout=60) != 0
 
 
+@pytest.mark.dear
 def test_no_worker_outlives_a_killed_parent(tmp_path):
     program = (
         "from fegear.engine.executor import Executor, map_points\n"

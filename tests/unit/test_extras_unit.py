@@ -110,7 +110,7 @@ ALONE = {
 
 
 @pytest.mark.parametrize(
-    "extra", [pytest.param(one, marks=() if one == "notebook" else pytest.mark.long) for one in ALONE]
+    "extra", [pytest.param(one, marks=pytest.mark.dear if one == "notebook" else pytest.mark.long) for one in ALONE]
 )
 def test_without_one_extra_alone_only_what_it_is_for_is_refused(extra, tmp_path):
     """In a new process that cannot import the libraries of this extra and has all others: the page's table by lines."""

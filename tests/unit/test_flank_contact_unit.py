@@ -76,6 +76,7 @@ def known(solved):
 MISALIGNED = FlankGaps(face_position=np.array([-0.5, 0.5]) * WIDTH, line_gap=np.array([0.0, 12e-6]))
 
 
+@pytest.mark.dear
 def test_a_spur_pair_that_cannot_move_along_the_axis_is_the_plane_pair():
     one = gear(0.0)
     plane = finite_element_compliance(solve_gear(one, reach=1))

@@ -1,5 +1,6 @@
 """What is stated of a whole base pitch: few roll positions, further loads, peaks between positions, spots."""
 
+import functools
 import math
 from dataclasses import replace
 
@@ -44,31 +45,33 @@ def pair_of(beta):
 
 @pytest.fixture(scope="module")
 def bodies():
-    """Driver and driven gear, spur and helical, of usual and of coarser meshes."""
-    found = {}
-    for beta in (0.0, 15.0):
-        pair = pair_of(beta)
-        for settings, name in ((COARSE, "usual"), (COARSE.coarser(WIDTH / MODULE), "coarse")):
-            found[beta, name] = {
-                member: solve_solid(
-                    gear.tooth, gear.twist * MODULE, WIDTH / MODULE, 0.3, gear.bore_radius / MODULE, settings, reach=2
-                )
-                for member, gear in (("driver", pair.driver), ("driven", pair.driven))
-            }
-    return found
+    """Driver and driven gear, spur and helical, of usual and of coarser meshes, when first asked for."""
+
+    @functools.cache
+    def body(tooth, twist, bore_radius, settings):
+        return solve_solid(tooth, twist * MODULE, WIDTH / MODULE, 0.3, bore_radius / MODULE, settings, reach=2)
+
+    def of(beta, name):
+        pair, settings = pair_of(beta), COARSE if name == "usual" else COARSE.coarser(WIDTH / MODULE)
+        return {
+            member: body(gear.tooth, gear.twist, gear.bore_radius, settings)
+            for member, gear in (("driver", pair.driver), ("driven", pair.driven))
+        }
+
+    return of
 
 
 def flanks_of(bodies, beta, *, edges=False, **how):
     pair = pair_of(beta)
     gap = usual_gap(pair, LOAD) if edges else 0.0
     settings = {"positions": 12, "panel": 0.25, "most_gap": gap, "cache": SolutionCache(), **how}
-    return FlankPair(pair, bodies[beta, "usual"], **settings)
+    return FlankPair(pair, bodies(beta, "usual"), **settings)
 
 
 def stated(flanks, bodies, beta, gaps, loads=(LOAD,)):
     found = flanks.solve(loads, gaps, flanks.compliance(LOAD))
     over = over_pitch(flanks, found, gaps, LOAD)
-    return over.stated, flank_error(flanks, found, bodies[beta, "coarse"], gaps, over, LOAD), over
+    return over.stated, flank_error(flanks, found, bodies(beta, "coarse"), gaps, over, LOAD), over
 
 
 @pytest.mark.dear

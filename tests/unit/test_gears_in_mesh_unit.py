@@ -309,6 +309,7 @@ def test_colours_in_sections_of_helical_teeth_are_the_root_stress_through_the_me
         assert 0.5 < known.mean() <= 1.0
 
 
+@pytest.mark.dear
 def test_a_helical_pair_of_the_other_hand_shows_the_same_from_the_other_end(over_the_face):
     right, left = (over_the_face(hand=hand).outcomes[WIDE].data for hand in ("right", "left"))
     np.testing.assert_allclose(right.z, -left.z[::-1], atol=1e-15)

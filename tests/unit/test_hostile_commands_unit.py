@@ -83,6 +83,7 @@ def test_migrate_follows_no_link_to_where_the_old_case_is_kept(tmp_path):
     assert not (tmp_path / "elsewhere").exists()
 
 
+@pytest.mark.dear
 def test_drawings_of_names_in_any_script_stay_in_their_folder(tmp_path):
     (tmp_path / "case.toml").write_text(CASE, "utf-8")
     (tmp_path / "mine").mkdir()

@@ -141,6 +141,7 @@ def killed(out: Path, moves: int, by: str = "SIGKILL") -> int:
     return subprocess.run(program, env=ENVIRONMENT, check=False, capture_output=True).returncode
 
 
+@pytest.mark.dear("2")
 @pytest.mark.parametrize("moves", [0, 2])
 def test_what_a_killed_run_left_is_put_right_by_the_next(tmp_path, moves):
     out = tmp_path / "out"

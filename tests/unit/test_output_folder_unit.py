@@ -266,8 +266,8 @@ def test_gears_and_pairs_may_be_called_anything_in_every_file(tmp_path, names):
     assert frame[f"transmission_error_{names[0]}.te"].dims == (f"transmission_error_{names[0]}",)
     if names[0] == "Räd":
         axis = f"gear.{names[0]}.profile_shift"
-        done = fegear("sweep", case, "--over", f"{axis}=0,0.1", "--workers", 1, "--no-cache", "-q", "--no-plots",
-                      "--out", "swept", cwd=tmp_path)  # fmt: skip
+        done = fegear("sweep", case, "--over", f"{axis}=0,0.1", "--no-cache", "-q", "--no-plots", "--out", "swept",
+                      cwd=tmp_path, points_here=True)  # fmt: skip
         assert done.returncode == 0
         with xr.open_dataset(tmp_path / "swept" / "sweep.nc", engine="scipy") as data:
             real = json.loads(data.attrs["fegear_names"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import subprocess
 import sys
 from pathlib import Path
@@ -29,13 +30,21 @@ def figure(key: str = "wave", count: int = 50) -> Figure:
     return Figure(key, "A wave", "A sine.", (Panel(Axis("x", "mm"), Axis("y", "um"), (Curve(x, np.sin(x)),)),))
 
 
-@pytest.fixture
-def process(monkeypatch):
+@contextlib.contextmanager
+def started():
     """A process, started although matplotlib is loaded here."""
-    monkeypatch.setattr("fegear.output.figures._pays", lambda: True)
-    with PictureProcess() as started:
-        assert started._child is not None
-        yield started
+    with contextlib.ExitStack() as stack:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("fegear.output.figures._pays", lambda: True)
+            process = stack.enter_context(PictureProcess())
+        assert process._child is not None
+        yield process
+
+
+@pytest.fixture(scope="module")
+def process():
+    with started() as one:
+        yield one
 
 
 def pictures(drawing: Drawing, *figures: object) -> tuple[list, list[str]]:
@@ -77,10 +86,11 @@ def test_what_it_cannot_draw_is_drawn_here_or_fails_here_in_its_own_words(proces
     assert [one.figure.key for one in found] == ["wave"]
 
 
-def test_when_it_dies_the_pictures_are_drawn_here(process, tmp_path):
-    process._child.kill()
-    process._child.wait()
-    found, missing = pictures(Drawing(tmp_path / "plots", process), figure("a"), figure("b"))
+def test_when_it_dies_the_pictures_are_drawn_here(tmp_path):
+    with started() as process:
+        process._child.kill()
+        process._child.wait()
+        found, missing = pictures(Drawing(tmp_path / "plots", process), figure("a"), figure("b"))
     assert not missing
     assert [picture.path.name for one in found for picture in one.pictures] == ["a.png", "b.png"]
     assert all(picture.path.stat().st_size > 5000 for one in found for picture in one.pictures)

@@ -162,6 +162,7 @@ def test_gears_and_pairs_go_through_pickle_before_and_after_they_were_asked():
     assert answer(through_pickle(asked)) == answer(asked)
 
 
+@pytest.mark.dear
 def test_a_process_hands_an_answer_back():
     asked = pair()
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:

@@ -66,9 +66,9 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-c", "from fegear.cli import main; main()", "sweep", *map(str, arguments)]
 
 
-def fegear(*arguments: object, cwd, cache):
-    """Run the sweep command in this process (its workers are processes of their own)."""
-    return in_process.fegear("sweep", *arguments, cwd=cwd, FEGEAR_CACHE=cache)
+def fegear(*arguments: object, cwd, cache, points_here: bool = False):
+    """Run the sweep command in this process (its workers are processes of their own, or this one)."""
+    return in_process.fegear("sweep", *arguments, cwd=cwd, points_here=points_here, FEGEAR_CACHE=cache)
 
 
 @pytest.mark.parametrize(
@@ -118,7 +118,7 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
         "--over",
         "gear.a.profile_shift=0,0.3",
     )
-    done = fegear(case, *axes, "--workers", 1, "--no-plots", "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
+    done = fegear(case, *axes, "--no-plots", "--out", out, cwd=tmp_path, cache=tmp_path / "cache", points_here=True)
     assert done.returncode == 0, done.stderr
     assert sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()) == [
         ".fegear-files.json", "report.html", "summary.json", "sweep.nc", "tables/sweep.csv",
@@ -165,7 +165,8 @@ def test_the_best_point_is_told_with_those_that_may_be_as_good_and_where_a_bette
 def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path):
     import xarray
 
-    done = fegear(case, "--over", "gear.a.profile_shift=0:2:5", "--workers", 1, cwd=tmp_path, cache=tmp_path / "cache")
+    where = {"cwd": tmp_path, "cache": tmp_path / "cache", "points_here": True}
+    done = fegear(case, "--over", "gear.a.profile_shift=0:2:5", **where)
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stdout.splitlines() if "failed" in line]
     with xarray.open_dataset(tmp_path / "results" / "two_sweep" / "sweep.nc") as data:
@@ -181,9 +182,7 @@ def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path
     told = page.split("<section id='failures'")[1].split("</section>")[0]
     assert [int(row.split("<td>")[1].split("</td>")[0]) for row in told.split("<tr>")[2:]] == counts
     assert (tmp_path / "results" / "two_sweep" / "plots" / "sweep_I.contact_ratio.png").is_file()
-    nothing = fegear(
-        case, "--over", "gear.a.profile_shift=5:6:2", "--workers", 1, cwd=tmp_path, cache=tmp_path / "cache"
-    )
+    nothing = fegear(case, "--over", "gear.a.profile_shift=5:6:2", "--no-plots", **where)
     assert nothing.returncode == 1
     assert "0 of 2 points have results." in nothing.stdout
 

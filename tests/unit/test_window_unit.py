@@ -833,6 +833,7 @@ def test_root_stress_while_a_value_moves_is_that_of_the_positions(tmp_path):
         assert 0.99 < quick.values[name].si / whole.values[name].si < 1.0 + 1e-12, name
 
 
+@pytest.mark.dear
 def test_designed_reliefs_remove_the_transmission_error(computing, tmp_path):
     made, heard = computing
     text = TWO.replace('"load-sharing"', '"transmission-error"')
@@ -861,7 +862,11 @@ def test_designed_reliefs_remove_the_transmission_error(computing, tmp_path):
     assert left["exact"] < left["ground"] < 0.5 * before
     told = float(content["told"].split(" leave ")[1].split(" um")[0])
     assert told == pytest.approx(left["ground"] * 1e6, rel=0.01)
-    none = text + "[design]\ngrind = []\n"
+
+
+def test_a_relief_that_cannot_be_designed_is_refused_in_one_sentence(computing, tmp_path):
+    made, heard = computing
+    none = TWO.replace('"load-sharing"', '"transmission-error"') + "[design]\ngrind = []\n"
     made.ask(Design(52, Asked(none, "c", str(tmp_path)), "I", "ground"))
     assert "design.grind = []: allows no shape" in heard.until(52, "designed", "refused").content["sentence"]
     made.ask(Design(51, Asked(TEXT, "c", str(tmp_path)), "I"))
