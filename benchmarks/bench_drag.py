@@ -100,6 +100,7 @@ class Drag:
         self.bench, self.window = bench, bench.Window(checkout, case)
         self.browser = self.window.browser
         self.browser.size(1300, 800)
+        self.browser("Network.disable")  # else every message to the page is written down for who drives the browser
         plot = f"document.querySelector('[data-picture=\"{picture}\"] .small-plot path')"
         for _ in range(6):
             with contextlib.suppress(TimeoutError):

@@ -191,7 +191,9 @@ class Bench:
 
     def compute(self, *, moving: bool = False) -> None:
         """Ask for the case as it is now, unless it is refused already."""
-        if self.desk is None or self._computing is None or self.desk.refusal is not None:
+        if self.desk is None or self._computing is None:
+            return
+        if not self.desk.may_be_asked() if moving else self.desk.refusal is not None:
             return
         self._number, self._busy = next(self._numbers), True
         self.tell("asked", {"number": self._number, "moving": moving})
@@ -293,6 +295,10 @@ class Bench:
         if not moving:
             desk.end_stroke()
         self.changed(moving=moving)
+        if moving and self._loop is not None:
+            self._loop.call_soon(desk.keep_up)  # behind what is sent at once
+        else:
+            desk.keep_up()
 
     # ---- what the computing process says -------------------------------------------------------------------------
 

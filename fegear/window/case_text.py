@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 #: Keys from table to table; the number of one of several tables in a list is a text as well.
 Path = tuple[str, ...]
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+#: The text that was made last by other values alone, and its document: a value that is moved changes it again and
+#: again, and to parse it takes most of the time. After new keys it is parsed anew: spaces come out otherwise.
+_last: dict[str, tomlkit.TOMLDocument] = {}
 
 
 def literal(value: object) -> str:
@@ -88,13 +91,14 @@ def with_values(text: str, changes: Mapping[Path, str | None]) -> str:
         If a key stands where it cannot be changed by itself, or a value is no TOML.
     """
     before = wanted = _read(text)
-    document = None
+    document, values_alone = None, True
     for path, value in changes.items():
         now, wanted = wanted, _changed(wanted, path, value)
         if wanted == now:
             continue
         if document is None:  # parsed at the first change: ten times dearer than to read what the text says
-            document = tomlkit.parse(text)
+            document = _last.pop(text, None) or tomlkit.parse(text)
+        values_alone = values_alone and value is not None and value_at(now, path) is not None
         try:
             _set(document, path, value) if value is not None else _remove(document, path, wanted)
         except (TOMLKitError, LookupError, TypeError, ValueError, AttributeError):
@@ -108,6 +112,9 @@ def with_values(text: str, changes: Mapping[Path, str | None]) -> str:
         whole = False
     if not whole:
         raise _refused(*list(changes.items())[-1])
+    _last.clear()
+    if values_alone:
+        _last[made] = document
     return made
 
 

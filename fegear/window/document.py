@@ -38,14 +38,6 @@ class Desk:
 
     Attributes
     ----------
-    text : str
-        As it is now, whether or not it can be read.
-    document : mapping
-        As plain tables, of the last text that was valid TOML.
-    scene : Scene or None
-        What the last text that described one describes.
-    refusal : FegearError or None
-        What is wrong with it: the sentence that the command line prints.
     restored : str
         What became of unsaved changes that an earlier window left behind, in a sentence; empty where there were none.
     trouble : str
@@ -55,16 +47,16 @@ class Desk:
     def __init__(self, text: str, name: str, folder: Path, path: Path | None = None) -> None:
         self.name, self.folder, self.path = name, folder, path
         self.restored = self.trouble = ""
-        self.document: Mapping[str, Any] = {}
-        self.scene: Scene | None = None
-        self.refusal: FegearError | None = None
+        self._document: Mapping[str, Any] = {}
+        self._scene: Scene | None = None
+        self._refusal: FegearError | None = None
         self._saved = text if path else ""
         self._file = TextFile("")
         self._journal = Journal(path)
         self._outdated: Left | None = None
         self._states, self._at = [text], 0
-        self._stroke = False
-        self.judge()
+        self._stroke = self._unkept = False
+        self._judge()
 
     @classmethod
     def of_file(cls, path: Path) -> Desk:
@@ -117,6 +109,24 @@ class Desk:
         return self._states[self._at]
 
     @property
+    def document(self) -> Mapping[str, Any]:
+        """As plain tables, of the last text that was valid TOML."""
+        self._judge_late()
+        return self._document
+
+    @property
+    def scene(self) -> Scene | None:
+        """What the last text that described one describes."""
+        self._judge_late()
+        return self._scene
+
+    @property
+    def refusal(self) -> FegearError | None:
+        """What is wrong with it: the sentence that the command line prints."""
+        self._judge_late()
+        return self._refusal
+
+    @property
     def changed(self) -> bool:
         """Whether it differs from its file, or has none."""
         return self.path is None or self.text != self._saved
@@ -131,15 +141,24 @@ class Desk:
         """Whether there is a later state."""
         return self._at + 1 < len(self._states)
 
-    def judge(self) -> None:
+    def may_be_asked(self) -> bool:
+        """Whether nothing is known to be wrong: a value that is moved is judged after its answer has been asked for."""
+        return self._refusal is None or self.refusal is None
+
+    def _judge_late(self) -> None:
+        if not self._judged:
+            self._judge()
+
+    def _judge(self) -> None:
         """Read the case and say what is wrong with it."""
+        self._judged = True
         try:
-            self.document = parse_document(self.text, f'"{self.name}.toml"')
-            self.scene = build_scene(self.document, self.name, self.folder)
-            make_plan(self.scene, STAGES)
-            self.refusal = None
+            self._document = parse_document(self.text, f'"{self.name}.toml"')
+            self._scene = build_scene(self._document, self.name, self.folder)
+            make_plan(self._scene, STAGES)
+            self._refusal = None
         except FegearError as error:
-            self.refusal = error
+            self._refusal = error
 
     def change(self, text: str, *, stroke: bool = False) -> None:
         """Take another text; a state that is the same as now is none.
@@ -148,7 +167,7 @@ class Desk:
         ----------
         text : str
         stroke : bool
-            Whether a value is being moved: the states of one stroke are undone together.
+            Whether a value is being moved: the states of one stroke are undone together, and each waits for `keep_up`.
         """
         if text == self.text:
             return
@@ -156,7 +175,7 @@ class Desk:
         self._states = [*self._states[:kept], text][-_STATES:]
         self._at = len(self._states) - 1
         self._stroke = stroke
-        self._moved()
+        self._moved(late=stroke)
 
     def end_stroke(self) -> None:
         """Let go of what was moved."""
@@ -191,9 +210,18 @@ class Desk:
             self._at += 1
             self._moved()
 
-    def _moved(self) -> None:
-        self.judge()
+    def _moved(self, *, late: bool = False) -> None:
+        self._judged, self._unkept = False, True
         self.restored = ""
+        if not late:
+            self.keep_up()
+
+    def keep_up(self) -> None:
+        """Judge the case as it is now and keep it beyond a crash, where that has waited for something more urgent."""
+        self._judge_late()
+        if not self._unkept:
+            return
+        self._unkept = False
         try:
             if self.changed:
                 self._journal.keep(Kept(self.text, str(self.folder), self.name, now(), self._file.digest))
@@ -243,7 +271,7 @@ class Desk:
         self._outdated = None  # of the file that it was before, with which it stays
         self.path, self.name, self.folder = path, path.stem, path.parent
         self._settled()
-        self.judge()
+        self._judge()
 
     def _write(self, path: Path) -> None:
         try:
@@ -258,6 +286,7 @@ class Desk:
     def _settled(self) -> None:
         """Keep nothing beside the file any more: it has what is open."""
         self._saved = self.text
+        self._unkept = False
         self.restored = ""
         self._journal.forget()
         if self._outdated is not None:  # whoever saves has been told of it
@@ -280,4 +309,5 @@ class Desk:
 
     def leave(self) -> None:
         """Clear the desk: what is not saved is left behind for the next window."""
+        self.keep_up()
         self._journal.leave()

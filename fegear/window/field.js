@@ -110,9 +110,8 @@ const fegearField = (() => {
     }
   }
   /** Draws the teeth of both gears; the view is that of the outlines over them. */
-  function draw(canvas, view, field, shown) {
-    const context = canvas.getContext("2d"), box = canvas.getBoundingClientRect();
-    const wide = Math.max(1, Math.round(box.width)), tall = Math.max(1, Math.round(box.height));
+  function draw(canvas, room, view, field, shown) { // room: its width and height [px]
+    const context = canvas.getContext("2d"), wide = Math.max(1, Math.round(room.width)), tall = Math.max(1, Math.round(room.height));
     if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
     context.clearRect(0, 0, wide, tall);
     if (!field || !view || !(shown.limit > 0)) return;

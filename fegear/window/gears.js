@@ -24,7 +24,7 @@ const fegearGears = (() => {
   };
 
   function meshOf(pair, host) {
-    const kept = { place: 0, playing: false, data: null, on: {}, sent: {}, factor: null };
+    const kept = { place: 0, playing: false, data: null, on: {}, sent: {}, factor: null, room: { width: 0, height: 0 } };
     const stage = document.createElement("div"), canvas = document.createElement("canvas"), inside = document.createElement("canvas");
     stage.className = "mesh-stage";
     inside.className = "inside";
@@ -116,16 +116,16 @@ const fegearGears = (() => {
       const layers = more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
       picture.classList.toggle("at-rest", !!layers.deformed);
       const field = layers.deformed ? null : kept.sent.field, loads = fegearField.loaded(d, kept.place, loadAt);
-      fegearField.draw(inside, kept.view, field, { place: kept.place, loadAt, limit: more.limit(), measure: more.measure() });
+      fegearField.draw(inside, kept.room, kept.view, field, { place: kept.place, loadAt, limit: more.limit(), measure: more.measure() });
       picture.classList.toggle("filled", !!field);
-      fegearLayers.gears(canvas, kept.view, layers);
+      fegearLayers.gears(canvas, kept.room, kept.view, layers);
       fegearGlance.at(pair, d, kept.place, loads);
       more.draw();
       const first = d.start + kept.place * d.base_pitch; // the pair that came into contact last
       const degrees = (x, base) => x / base * 180 / Math.PI;
-      kept.driver.setAttribute("transform", `rotate(${-degrees(first - off, d.driver_base)} 0 ${-d.driver_radius * 1e3})`);
-      kept.driven.setAttribute("transform", `rotate(${degrees(first - off, d.driven_base)} 0 ${d.driven_radius * 1e3})`);
-      kept.arrows.replaceChildren();
+      fegearPlots.set(kept.driver, { transform: `rotate(${-degrees(first - off, d.driver_base)} 0 ${-d.driver_radius * 1e3})` });
+      fegearPlots.set(kept.driven, { transform: `rotate(${degrees(first - off, d.driven_base)} 0 ${d.driven_radius * 1e3})` });
+      const arrows = fegearPlots.pen(kept.arrows);
       const c = Math.cos(d.pressure_angle), s = Math.sin(d.pressure_angle), found = [];
       const largest = Math.max(...(loadsOf.get(pair)?.load ?? kept.sent.pressure?.load.flat() ?? [1]));
       for (let k = -6; first + k * d.base_pitch <= d.end + 6 * d.base_pitch; k += 1) {
@@ -134,19 +134,21 @@ const fegearGears = (() => {
         const beside = !on && kept.sent.pressure && d.twist; // the contact line of a helical pair stands elsewhere on the face
         const at = beside ? Math.min(Math.max(here, d.start), d.end) : here;
         const [px, py] = fegearLayers.contactMoved(d, layers, k, at * 1e3 * c, at * 1e3 * s);
-        if (!beside) svg("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" }, kept.arrows);
+        if (!beside) arrows("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" });
         if (load > 0) {
           const length = 2.6 * kept.unit * load / largest, tip = 0.22 * kept.unit;
           const qx = px + length * c, qy = py + length * s;
           const look = beside ? " beside" : "";
-          svg("line", { x1: px, y1: py, x2: qx, y2: qy, class: `load${look}` }, kept.arrows);
-          svg("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: `load-tip${look}` }, kept.arrows);
+          arrows("line", { x1: px, y1: py, x2: qx, y2: qy, class: `load${look}` });
+          arrows("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: `load-tip${look}` });
           found.push(`${digits(load, 4)} N at x = ${(x * 1e3).toFixed(2)} mm${beside ? " (pale: not in this section)" : ""}`);
         }
       }
+      arrows.end();
       told.title = told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
     }
-    new ResizeObserver(() => draw()).observe(stage);
+    // Its size as it was laid out last: to ask for it has the page laid out in between.
+    new ResizeObserver(([{ contentRect: { width, height } }]) => { kept.room = { width, height }; draw(); }).observe(stage);
     let due = 0; // at most once in a frame
     kept.soon = () => { due ||= requestAnimationFrame(() => { due = 0; draw(); }); };
     kept.draw = draw;

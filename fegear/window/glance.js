@@ -2,7 +2,7 @@
 // One glance: small pictures on the right that follow what is moved, the numbers below with their errors and what they
 // differ from A, and what of it is kept: which pictures, which stress, whether the form is folded away.
 const fegearGlance = (() => {
-  const { plot, plain, ofPanel, numbers: numbersOf } = fegearPlots;
+  const { plot, plain, ofPanel } = fegearPlots, numbersOf = fegearPacked.numbers;
   const $ = (id) => document.getElementById(id);
   const RATIOS = { transverse: "contact ratio", overlap: "overlap ratio" };
   let told = null, view = {}, pair = null, pairs = {}, kind = "pair"; // the pair, or the set, that is shown

@@ -93,7 +93,7 @@ const fegearHands = (() => {
     };
     // The curve goes with the handle at once; what the server makes of it comes with the next answers.
     kept.follow = (before, now) => {
-      const spec = kept.relief.figure, x = fegearPlots.numbers(spec.data[0].x), y = fegearPlots.numbers(spec.data[0].y);
+      const spec = kept.relief.figure, x = fegearPacked.numbers(spec.data[0].x), y = fegearPacked.numbers(spec.data[0].y);
       const moved = Float64Array.from(y, (one, i) => one + removal(now, x[i]) - removal(before, x[i]));
       const rest = spec.data.slice(1).map((one) => ({ ...one, x: [], y: [] })); // its points, which the handles cover
       kept.relief = { ...kept.relief, figure: { ...spec, data: [{ ...spec.data[0], y: moved }, ...rest] } };

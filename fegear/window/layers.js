@@ -21,8 +21,7 @@ const fegearLayers = (() => {
   const shade = (scale, share) => scale[Math.max(0, Math.min(127, Math.round(127 * share)))];
 
   function unpack({ step, shape, data }) {
-    const bytes = Uint8Array.from(atob(data), (one) => one.charCodeAt(0));
-    return { step, shape, data: new Int16Array(bytes.buffer) };
+    return { step, shape, data: new Int16Array(fegearPacked.bytes(data)) };
   }
   function between(roll, place) { // number of the roll position before a place, and how far it is on to the next
     let low = 0, high = roll.length - 1;
@@ -79,12 +78,11 @@ const fegearLayers = (() => {
   }
 
   // ---- gears ---------------------------------------------------------------------------------------------------------
-  function gears(canvas, view, shown) { // view: half width and height [mm] and the pair; shown: what is on, and the place
+  function gears(canvas, room, view, shown) { // room: width and height [px]; view: half width and height [mm] and the pair; shown: what is on, and the place
     const { stress, deformed, tool, place, factor, z = 0 } = shown, nothing = !stress && !deformed && !tool;
     if (nothing && canvas.dataset.empty) return;
     canvas.dataset.empty = nothing ? "yes" : "";
-    const box = canvas.getBoundingClientRect(), ratio = devicePixelRatio || 1;
-    const wide = Math.round(box.width * ratio), tall = Math.round(box.height * ratio);
+    const ratio = devicePixelRatio || 1, wide = Math.round(room.width * ratio), tall = Math.round(room.height * ratio);
     if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
     const context = canvas.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);

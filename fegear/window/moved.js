@@ -6,9 +6,8 @@ const fegearMoved = (() => {
   const LEAST = 0.6, ROOM = 0.25; // of an axis: what values have to take up, and what they get once they exceed it
   const painted = new WeakMap(); // place -> { spec, mode, spans }: how it was drawn last as a whole, and what is drawn now
   const rough = new WeakSet(); // places that are not as they would be drawn at rest
-  const forms = new WeakMap(), bounds = new WeakMap();
+  const forms = new WeakMap();
 
-  const numbers = ({ bdata }) => new Float64Array(Uint8Array.from(atob(bdata), (one) => one.charCodeAt(0)).buffer);
   function formOf(spec) { // all but the numbers
     if (!forms.has(spec)) {
       const data = spec.data.map((trace) => ({ ...trace, ...Object.fromEntries(NUMBERS.filter((name) => trace[name]?.bdata).map((name) => [name, 0])) }));
@@ -16,14 +15,7 @@ const fegearMoved = (() => {
     }
     return forms.get(spec);
   }
-  function endsOf(array, log) { // an array keeps its ends as long as its description lives
-    if (!bounds.has(array)) {
-      let low = Infinity, high = -Infinity;
-      for (const one of numbers(array)) { if (one < low) low = one; if (one > high) high = one; }
-      bounds.set(array, [low, high]);
-    }
-    return log ? bounds.get(array).map(Math.log10) : bounds.get(array);
-  }
+  const endsOf = (array, log) => (log ? fegearPacked.ends(array).map(Math.log10) : fegearPacked.ends(array));
   function spansOf(place, spec) { // axis -> ends of what is shown along it
     const spans = {};
     spec.data.forEach((trace, i) => {

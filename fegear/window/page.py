@@ -45,6 +45,7 @@ _STILL = 0.4
 
 #: Its own scripts, in their order.
 _SCRIPTS = (
+    "packed",
     "moved",
     "window",
     "layers",

@@ -11,30 +11,32 @@ const fegearPlots = (() => {
     parent?.append(one);
     return one;
   };
-  const unpacked = new WeakMap();
-  function numbers(array) { // of a trace
-    if (!array) return [];
-    if (!array.bdata) return array;
-    if (!unpacked.has(array)) unpacked.set(array, new Float64Array(Uint8Array.from(atob(array.bdata), (one) => one.charCodeAt(0)).buffer));
-    return unpacked.get(array);
+  const given = new WeakMap(); // element -> its attributes as they were set last
+  /** Gives an element these attributes of ours and no others; those that it has are not touched, which would cost a layout. */
+  function set(one, attributes) {
+    const before = given.get(one) ?? {};
+    for (const name of Object.keys(before)) if (!(name in attributes)) one.removeAttribute(name);
+    for (const [name, value] of Object.entries(attributes)) if (before[name] !== value) one.setAttribute(name, value);
+    given.set(one, attributes);
   }
+  /** A pen for a group: what stands there already in the same place stays, and takes what is different of it alone. */
+  function pen(group) {
+    let next = group.firstChild;
+    const put = (tag, attributes, words) => {
+      const stays = next?.tagName === tag, one = stays ? next : document.createElementNS(SVG, tag);
+      if (stays) next = next.nextSibling; else group.insertBefore(one, next);
+      set(one, attributes);
+      if (words !== undefined && one.textContent !== words) one.textContent = words;
+      return one;
+    };
+    put.end = () => { while (next) { const one = next; next = next.nextSibling; one.remove(); } };
+    return put;
+  }
+  const { numbers, ends } = fegearPacked;
   const anchor = (panel) => (panel === 1 ? "" : String(panel));
   const ofPanel = (spec, panel) => spec.data.filter((one) => (one.yaxis ?? "y") === `y${anchor(panel)}` && (one.xaxis ?? "x") === `x${anchor(panel)}`);
-  const bounds = new WeakMap(); // an array keeps its ends as long as its description lives
   function endsOf(arrays) {
-    let low = Infinity, high = -Infinity;
-    for (const array of arrays) {
-      if (!array) continue;
-      if (!bounds.has(array)) {
-        const found = numbers(array);
-        let least = Infinity, most = -Infinity;
-        for (let i = 0; i < found.length; i += 1) { if (found[i] < least) least = found[i]; if (found[i] > most) most = found[i]; }
-        bounds.set(array, [least, most]);
-      }
-      const [least, most] = bounds.get(array);
-      if (least < low) low = least;
-      if (most > high) high = most;
-    }
+    const found = arrays.filter(Boolean).map(ends), low = Math.min(...found.map(([one]) => one)), high = Math.max(...found.map(([, one]) => one));
     return low <= high ? [low, high] : [0, 1];
   }
   function step(span, most) { // 1, 2 or 5 times a power of ten
@@ -82,12 +84,9 @@ const fegearPlots = (() => {
     kept.atY = (px) => kept.ranges.y[0] + (kept.box.y0 - px) / (kept.box.y0 - kept.box.y1) * (kept.ranges.y[1] - kept.ranges.y[0]);
     kept.mark = (places) => { // places along x, moved without drawing anything else anew
       if (!kept.box || !kept.nows) return;
-      const { y0, y1 } = kept.box, wanted = places.filter((x) => x >= kept.ranges.x[0] && x <= kept.ranges.x[1]);
-      while (kept.nows.childNodes.length > wanted.length) kept.nows.lastChild.remove();
-      wanted.forEach((x, i) => {
-        const one = kept.nows.childNodes[i] ?? node("line", { class: "now" }, kept.nows);
-        for (const [name, value] of [["x1", kept.x(x)], ["x2", kept.x(x)], ["y1", y0], ["y2", y1]]) one.setAttribute(name, value);
-      });
+      const { y0, y1 } = kept.box, put = pen(kept.nows);
+      for (const x of places) if (x >= kept.ranges.x[0] && x <= kept.ranges.x[1]) put("line", { class: "now", x1: kept.x(x), x2: kept.x(x), y1: y0, y2: y1 });
+      put.end();
     };
     let shade = (colour) => colour; // on the ground as it is
     function path(trace) {
@@ -100,29 +99,29 @@ const fegearPlots = (() => {
       }
       return line;
     }
-    function curve(trace, group, pinned) {
+    function curve(trace, put, pinned) {
       const colour = shade(trace.line?.color ?? trace.marker?.color ?? "currentColor");
       if (trace.type === "bar") {
         const x = numbers(trace.x), y = numbers(trace.y), half = pinned ? 0.45 : 0.36;
         for (let i = 0; i < x.length; i += 1) {
           const a = kept.y(0), b = kept.y(y[i]);
-          node("rect", { x: kept.x(x[i] - half), width: kept.x(x[i] + half) - kept.x(x[i] - half), y: Math.min(a, b), height: Math.abs(a - b),
-            ...(pinned ? { class: "pinned-bar" } : { fill: colour }) }, group);
+          put("rect", { x: kept.x(x[i] - half), width: kept.x(x[i] + half) - kept.x(x[i] - half), y: Math.min(a, b), height: Math.abs(a - b),
+            ...(pinned ? { class: "pinned-bar" } : { fill: colour }) });
         }
         return;
       }
       if (trace.type !== "scatter" || (trace.fill === "toself" && pinned)) return;
       const { mode = "lines" } = trace, line = path(trace);
-      if (trace.fill === "toself") node("path", { d: `${line}Z`, fill: shade(trace.fillcolor), stroke: "none" }, group);
+      if (trace.fill === "toself") put("path", { d: `${line}Z`, fill: shade(trace.fillcolor), stroke: "none" });
       else if (mode.includes("lines")) {
-        if (trace.fill) node("path", { d: `${line}V${kept.y(0).toFixed(1)}`, fill: shade(trace.fillcolor), stroke: "none" }, group);
-        node("path", { d: line, ...(pinned ? { class: "pinned" } : { stroke: colour, "stroke-width": trace.line?.width ?? 2, "stroke-dasharray": DASHES[trace.line?.dash] ?? "none" }), fill: "none" }, group);
+        if (trace.fill) put("path", { d: `${line}V${kept.y(0).toFixed(1)}`, fill: shade(trace.fillcolor), stroke: "none" });
+        put("path", { d: line, ...(pinned ? { class: "pinned" } : { stroke: colour, "stroke-width": trace.line?.width ?? 2, "stroke-dasharray": DASHES[trace.line?.dash] ?? "none" }), fill: "none" });
       } else if (!pinned) {
         const x = numbers(trace.x), y = numbers(trace.y);
-        for (let i = 0; i < x.length; i += 1) node("circle", { cx: kept.x(x[i]), cy: kept.y(y[i]), r: 3, fill: colour }, group);
+        for (let i = 0; i < x.length; i += 1) put("circle", { cx: kept.x(x[i]), cy: kept.y(y[i]), r: 3, fill: colour });
       }
     }
-    function map(trace, group) { // a map in colour
+    function map(trace, put) { // a map in colour
       const x = numbers(trace.x), y = numbers(trace.y), z = numbers(trace.z), { zmin, zmax } = trace, wide = x.length, tall = y.length;
       const canvas = Object.assign(document.createElement("canvas"), { width: wide, height: tall }), context = canvas.getContext("2d");
       const image = context.createImageData(wide, tall), shades = fegearLayers.stops("pressure").map((one) => [1, 3, 5].map((i) => parseInt(one.slice(i, i + 2), 16)));
@@ -135,14 +134,14 @@ const fegearPlots = (() => {
       }
       context.putImageData(image, 0, 0);
       const [low, high] = [endsOf([trace.x]), endsOf([trace.y])];
-      node("image", { href: canvas.toDataURL(), x: kept.x(low[0]), y: kept.y(high[1]), width: kept.x(low[1]) - kept.x(low[0]),
-        height: kept.y(high[0]) - kept.y(high[1]), preserveAspectRatio: "none" }, group);
+      put("image", { href: canvas.toDataURL(), x: kept.x(low[0]), y: kept.y(high[1]), width: kept.x(low[1]) - kept.x(low[0]),
+        height: kept.y(high[0]) - kept.y(high[1]), preserveAspectRatio: "none" });
     }
-    function says(spec, group) { // why nothing is to be seen, where the figure says it in its title
+    function says(spec, put) { // why nothing is to be seen, where the figure says it in its title
       const said = plain(spec.layout.annotations?.find(({ xref, text }) => xref === "paper" && /^(<b>)?none/.test(text))?.text ?? "");
       const { x0, x1, y0, y1 } = kept.box, most = (x1 - x0) / 5.6, lines = [""];
       for (const word of said.split(" ")) if (`${lines.at(-1)} ${word}`.length > most) lines.push(word); else lines.push(`${lines.pop()} ${word}`.trim());
-      lines.forEach((line, i) => { node("text", { x: (x0 + x1) / 2, y: (y0 + y1) / 2 + 14 * (i - 0.5 * (lines.length - 1)), "text-anchor": "middle" }, group).textContent = line; });
+      lines.forEach((line, i) => { put("text", { x: (x0 + x1) / 2, y: (y0 + y1) / 2 + 14 * (i - 0.5 * (lines.length - 1)), "text-anchor": "middle" }, line); });
     }
     /** Draws a panel of a figure: `held`: keep its axes; `pinned`: the same figure of A; `marks`: places along x. */
     kept.draw = (spec, panel = 1, { held = false, pinned = null, marks = [], words = "", darker = {} } = {}) => {
@@ -156,49 +155,53 @@ const fegearPlots = (() => {
         const other = rangesOf(pinned, panel, null), own = spec.layout[`yaxis${anchor(panel)}`]?.range;
         if (!own) kept.ranges.y = [Math.min(kept.ranges.y[0], other.y[0]), Math.max(kept.ranges.y[1], other.y[1])];
       }
-      const { x0, x1, y0, y1 } = kept.box, group = node("g", {});
-      const id = (kept.id ??= `clip-${Math.random().toString(36).slice(2)}`), clip = node("clipPath", { id }, group);
-      node("rect", { x: x0, y: y1, width: x1 - x0, height: y0 - y1 }, clip);
+      const { x0, x1, y0, y1 } = kept.box, within = { x: x0, y: y1, width: x1 - x0, height: y0 - y1 };
+      if (!kept.group) {
+        const id = `clip-${Math.random().toString(36).slice(2)}`, group = node("g", {});
+        kept.clip = node("clipPath", { id }, group);
+        const parts = [{}, { "clip-path": `url(#${id})` }, { "clip-path": `url(#${id})` }, {}].map((one) => node("g", one, group));
+        [kept.axes, kept.inner, kept.nows, kept.over] = parts;
+        kept.group = group;
+        svg.prepend(group);
+      }
+      const [axes, inner, over, clip] = [kept.axes, kept.inner, kept.over, kept.clip].map(pen);
+      clip("rect", within);
       for (const [way, most] of [["x", Math.max(2, Math.min(MOST_TICKS, (x1 - x0) / 60))], ["y", Math.max(2, Math.min(MOST_TICKS, (y0 - y1) / 24))]]) {
         const [at, digits] = ticks(kept.ranges[way], most);
         for (const one of at) {
           const text = Math.abs(one) >= 1e5 ? one.toExponential(0) : one.toFixed(digits).replace("-", "−"), px = kept[way](one);
-          if (way === "x") node("text", { x: px, y: y0 + 12, "text-anchor": "middle" }, group).textContent = text;
+          if (way === "x") axes("text", { x: px, y: y0 + 12, "text-anchor": "middle" }, text);
           else {
-            node("line", { x1: x0, x2: x1, y1: px, y2: px, class: one === 0 ? "zero" : "grid" }, group);
-            node("text", { x: x0 - 4, y: px + 3.5, "text-anchor": "end" }, group).textContent = text;
+            axes("line", { x1: x0, x2: x1, y1: px, y2: px, class: one === 0 ? "zero" : "grid" });
+            axes("text", { x: x0 - 4, y: px + 3.5, "text-anchor": "end" }, text);
           }
         }
       }
-      const axes = spec.layout[`xaxis${anchor(panel)}`]?.title?.text;
-      if (axes) node("text", { x: (x0 + x1) / 2, y: y0 + 25, "text-anchor": "middle", class: "axis" }, group).textContent = fitting(plain(axes), (x1 - x0 + 2 * ROOM.right) / 5.4);
-      const inner = node("g", { "clip-path": `url(#${id})` }, group);
+      const along = spec.layout[`xaxis${anchor(panel)}`]?.title?.text;
+      if (along) axes("text", { x: (x0 + x1) / 2, y: y0 + 25, "text-anchor": "middle", class: "axis" }, fitting(plain(along), (x1 - x0 + 2 * ROOM.right) / 5.4));
       let last = -Infinity;
       for (const shape of spec.layout.shapes ?? []) {
         if (shape.xref !== `x${anchor(panel)}` || shape.x0 !== shape.x1) continue;
-        node("line", { x1: kept.x(shape.x0), x2: kept.x(shape.x0), y1: y0, y2: y1, class: "mark" }, inner);
+        inner("line", { x1: kept.x(shape.x0), x2: kept.x(shape.x0), y1: y0, y2: y1, class: "mark" });
       }
       for (const note of [...spec.layout.annotations ?? []].sort((one, other) => one.x - other.x)) {
         if (note.xref !== `x${anchor(panel)}` || !note.text || note.text.length > 3) continue;
         const px = Math.max(kept.x(note.x) + 3, last + 10); // letters of places next to each other stand side by side
         last = px;
-        node("text", { x: px, y: y1 + 9, class: "letter" }, inner).textContent = note.text;
+        inner("text", { x: px, y: y1 + 9, class: "letter" }, note.text);
       }
       const traces = ofPanel(spec, panel);
       for (const trace of traces) if (trace.type === "heatmap") map(trace, inner);
       if (pinned) for (const trace of ofPanel(pinned, panel)) curve(trace, inner, true);
       for (const trace of traces) curve(trace, inner, false);
-      if (traces.length && traces.every(({ y }) => numbers(y).every((one) => one === 0))) says(spec, group);
-      kept.nows = node("g", {}, inner);
+      if (traces.length && traces.every(({ y }) => numbers(y).every((one) => one === 0))) says(spec, over);
+      over("rect", { ...within, class: "frame" });
+      for (const one of [axes, inner, over]) one.end();
       kept.mark(marks);
-      node("rect", { x: x0, y: y1, width: x1 - x0, height: y0 - y1, class: "frame" }, group);
-      kept.drawn?.remove();
-      kept.drawn = group;
-      svg.prepend(group);
       if (words && svg.getAttribute("aria-label") !== words) svg.setAttribute("aria-label", words);
       return true;
     };
     return kept;
   }
-  return { plot, node, numbers, ofPanel, plain };
+  return { plot, node, pen, set, ofPanel, plain };
 })();

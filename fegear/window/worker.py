@@ -65,7 +65,7 @@ class Worker:
         self._seconds: dict[str, float] = {}
         self._number, self._begun, self._wait_before = 0, 0.0, 0
         self._asked: Asked | None = None
-        self._later: list[Callable[[], None]] = []
+        self._later: list[tuple[str, Callable[[], None]]] = []
         self._begin_anew()
 
     def _begin_anew(self) -> None:
@@ -148,9 +148,7 @@ class Worker:
     def begin(self, title: str, number: int, count: int) -> None:
         """Tell that a task begins; what nobody waits for does not begin while a value moves."""
         if number == self._wait_before:
-            self._tell_later()
-            self._wait_before = -1
-            self._inbox.wait(_STILL)
+            self._pause()
         self._inbox.look()
         if self._asked is not None and not self._asked.moving:  # who moves a value looks at the results
             self._say("begin", title=title, step=number, count=count)
@@ -192,7 +190,7 @@ class Worker:
             on_gears = dict.fromkeys(map(str, more), 0.0)  # what is switched on there follows a value that moves
             plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears}, beside)
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
-            self._later.append(lambda: self._tell_hands(scene))
+            self._later.append(("hands", lambda: self._tell_hands(scene)))
             if not asked.moving:
                 self._tell_later()
             for content in () if asked.moving else at_once_told:
@@ -204,10 +202,22 @@ class Worker:
             if told else None,
         )  # fmt: skip
 
-    def _tell_later(self) -> None:
-        """Tell what comes behind the answers while a value moves: the page itself moves what is in the hand."""
-        later, self._later = self._later, []
-        for tell in later:
+    def _pause(self) -> None:
+        """See whether a value that has been answered moves on; what else follows from it is told where it does not."""
+        self._wait_before = -1
+        if self._asked is not None and self._asked.sight:  # the map beside the load stands among these
+            self._tell_later("load_now")
+        if self._untidy + 1 >= _STROKES:  # now, while nobody waits
+            self._tidy(moving=True)
+        self._inbox.wait(_STILL)
+        self._inbox.look()
+        self._tell_later()
+
+    def _tell_later(self, *kinds: str) -> None:
+        """Tell what comes behind the answers while a value moves, or some of it: the page moves what is in the hand."""
+        now = [one for one in self._later if one[0] in kinds or not kinds]
+        self._later = [one for one in self._later if one not in now]
+        for _, tell in now:
             tell()
 
     def _tell_hands(self, scene: Scene) -> None:
@@ -236,6 +246,8 @@ class Worker:
     def _compute(self, asked: Asked) -> None:
         started = time.perf_counter()
         results = self._results(asked, told=True)
+        if asked.moving and self._wait_before >= 0:
+            self._pause()
         self._tell_later()
         seconds = {str(task): (one.seconds, one.origin) for task, one in results.timings.items()}
         tolerance = results.scene.case.accuracy.tolerance
@@ -256,7 +268,7 @@ class Worker:
 
         teeth = teeth_of(task, outcome.data)
         if teeth is not None and self._asked is not None and self._asked.moving:
-            self._later.append(lambda: self._say("load_now", **load_now_of(task.subject, teeth)))
+            self._later.append(("load_now", lambda: self._say("load_now", **load_now_of(task.subject, teeth))))
         title = next(step.stage.title for step in plan.steps if step.task == task)
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
         values = Values(outcome.values, scene.case.accuracy.tolerance)

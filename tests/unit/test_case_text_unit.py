@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.window import case_text
 from fegear.window.case_text import as_typed, literal, value_at, with_value, with_values
 from fegear.window.inputs import stepped
 
@@ -95,6 +96,33 @@ def test_every_key_can_be_changed_and_removed_where_it_stands(text):
         assert value_at(gone, path) is None
         back = tomllib.loads(with_value(with_value(text, path, None), path, literal(held)))
         assert solid(back) == solid(document)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_a_document_that_is_changed_again_and_again_gives_the_texts_of_one_read_anew_each_time(number):
+    rng, changed_last = random.Random(number), 0  # noqa: S311
+    text = [HARD, *(path.read_text("utf-8") for path in rng.sample(CASES, 5))][number]
+    for _ in range(40):
+        path = rng.choice([one for one in places(tomllib.loads(text)) if not any(map(str.isdecimal, one))])
+        if rng.random() < 0.15:
+            path = (*path[:-1], f"new{rng.randrange(3)}")
+        values = [f'"{rng.uniform(0, 30):.2f} um"', "0.25", '{ amount = "3 um" }', "[1, 2]"]
+        value = None if rng.random() < 0.1 else rng.choice(values)
+        found = {}
+        for name in ("again", "anew"):
+            if name == "anew":
+                last = dict(case_text._last)
+                case_text._last.clear()
+            try:
+                found[name] = with_value(text, path, value)
+            except InputError as error:
+                found[name] = str(error)
+        assert found["again"] == found["anew"]
+        case_text._last.clear()
+        case_text._last.update(last)
+        changed_last += text not in last and found["again"] in last
+        text = found["again"] if "\n" in found["again"] else text
+    assert changed_last > 15
 
 
 def test_tables_of_a_list_that_stand_apart_come_together_and_keep_what_they_hold():

@@ -6,12 +6,13 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import pytest
 
+from fegear.contact.plane import roll_grids
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrids
 from fegear.contact.plane.root_stress_history import StressRows, root_stress_history
-from fegear.contact.plane.transmission_error import transmission_error
+from fegear.contact.plane.transmission_error import pair_stiffness, transmission_error
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -179,3 +180,19 @@ def test_a_transmission_error_in_the_hand_keeps_its_points_and_is_near_that_at_r
             assert moving.mean == pytest.approx(rest.mean, rel=1e-4)
             assert moving.peak_to_peak == pytest.approx(rest.peak_to_peak, rel=1e-2)
             assert rest.loaded.grid is not known  # contact changes between the geometric jumps, so the two differ
+
+
+def test_perfect_flanks_are_loaded_once_while_a_relief_moves(monkeypatch):
+    one, counted = Engagement(compliance()), []
+    share = roll_grids.share_load
+    monkeypatch.setattr(roll_grids, "share_load", lambda *given: counted.append(1) or share(*given))
+    for amount in (3e-6, 5e-6, 8e-6):
+        moved = replace(one, driver_relief=CombinedRelief((tip_relief(PAIR.driver, amount, length=0.4e-3),)))
+        transmission_error(moved, 400.0, exact=False)
+        found = pair_stiffness(moved, 400.0)
+        assert np.array_equal(found.pair, pair_stiffness(replace(moved, grids=None), 400.0).pair)
+    assert len(counted) == 3 + 1 + 3  # each relief, perfect flanks, and these anew each time
+    grid = one.grid(found.points.x)
+    for load in np.geomspace(1.0, 1e3, 40):
+        one.solve(grid, load)
+    assert len(one.grids._shared) <= roll_grids._KEPT * roll_grids._STATES

@@ -19,7 +19,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
 
 #: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.
 _KEPT = 8
-#: So many of the states under load that were found last.
+#: So many of the states under load that were found last on each of them: with the flanks as they are, and perfect.
 _STATES = 2
 #: Of longer ones none: they serve one question of a design.
 _LONGEST = 4000
@@ -56,7 +56,7 @@ class _Kept(NamedTuple):
 
 
 class _Shared(NamedTuple):
-    """Loads that were shared last."""
+    """Loads that were shared before."""
 
     grid: RollGrid
     separation: Array
@@ -122,13 +122,17 @@ class RollGrids:
         return RollGrid(x, contacts, self._compliance.matrices(contacts))
 
     def share(self, grid: RollGrid, separation: Array, load: Array) -> SharedLoad:
-        """Share loads, shape (L,) [N], at the positions of a grid: for root stress the same ones as just before."""
-        for one in self._shared:
+        """Share loads, shape (L,) [N], at the positions of a grid; kept for the next time."""
+        for number, one in enumerate(self._shared):
             if one.grid is grid and np.array_equal(one.load, load) and np.array_equal(one.separation, separation):
+                self._shared = (*self._shared[:number], *self._shared[number + 1 :], one)
                 return one.found
         m = grid.matrices
         found = share_load(m.compliance, separation, load, m.log_slope, m.reference_load, m.edges, m.power)
-        self._shared = (*self._shared[-_STATES + 1 :], _Shared(grid, separation, load, found))
+        kept = {id(one.grid) for one in self._kept}
+        others = [one for one in self._shared if one.grid is not grid and id(one.grid) in kept]
+        own = [one for one in self._shared if one.grid is grid]
+        self._shared = (*others, *own[-_STATES + 1 :], _Shared(grid, separation, load, found))
         return found
 
     def _with_known(self, x: Array) -> RollGrid:

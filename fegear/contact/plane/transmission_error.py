@@ -193,9 +193,8 @@ def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> 
         )  # fmt: skip
     points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
     grid = engagement.grid(points.x)
-    m = grid.matrices
     e = np.where(grid.contacts.gap == 0.0, 0.0, np.inf)
-    shared = share_load(m.compliance, e, [load], m.log_slope, m.reference_load, m.edges, m.power)
+    shared = engagement.grids.share(grid, e, np.array([load]))
     return PairStiffness(points, shared.loads[:, :, 0] / shared.transmission_error[:, 0], grid.contacts.x)
 
 
