@@ -90,6 +90,11 @@ def shows(unit: str = "", meaning: str = "", *, name: str = "", label: str = "",
     return mark
 
 
+#: What was looked up before: a run asks for the same few hundred again and again.
+_KNOWN: dict[tuple[type, str], Shown] = {}
+_COLUMNS: dict[tuple[type, str], tuple[str, ...]] = {}
+
+
 def declared(owner: type, attribute: str) -> Shown:
     """How a field or property of a class is shown.
 
@@ -98,6 +103,8 @@ def declared(owner: type, attribute: str) -> Shown:
     TypeError
         If it is not declared: a fault of the program, not of its user.
     """
+    if (known := _KNOWN.get((owner, attribute))) is not None:
+        return known
     found = getattr(owner, "__dataclass_fields__", {}).get(attribute)
     mark: Shown | None = found.metadata.get(_KEY) if found is not None else None
     if mark is None:
@@ -109,7 +116,8 @@ def declared(owner: type, attribute: str) -> Shown:
         mark = getattr(member, _KEY, None)
     if not isinstance(mark, Shown):
         raise TypeError(f"{owner.__name__}.{attribute} is not declared with shown() or shows()")
-    return mark if mark.name else replace(mark, name=attribute)
+    _KNOWN[owner, attribute] = mark = mark if mark.name else replace(mark, name=attribute)
+    return mark
 
 
 def all_declared(owner: type) -> dict[str, Shown]:
@@ -125,5 +133,7 @@ def all_declared(owner: type) -> dict[str, Shown]:
 
 def columns_declared(owner: type, table: str) -> tuple[str, ...]:
     """Attributes of a class that are columns of one of its tables, in the order of their declaration."""
-    found = {attribute: how for attribute, how in all_declared(owner).items() if how.table == table}
-    return tuple(sorted(found, key=lambda attribute: found[attribute].order))
+    if (owner, table) not in _COLUMNS:
+        found = {attribute: how for attribute, how in all_declared(owner).items() if how.table == table}
+        _COLUMNS[owner, table] = tuple(sorted(found, key=lambda attribute: found[attribute].order))
+    return _COLUMNS[owner, table]

@@ -12,7 +12,7 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrids
 from fegear.contact.plane.root_stress_history import StressRows, root_stress_history
-from fegear.contact.plane.transmission_error import pair_stiffness, transmission_error
+from fegear.contact.plane.transmission_error import pair_stiffness, quick_transmission_errors, transmission_error
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -173,8 +173,13 @@ def test_a_transmission_error_in_the_hand_keeps_its_points_and_is_near_that_at_r
     known = None
     for amount in (2e-6, 5e-6, 9e-6):
         relieved = replace(e, driver_relief=tip_relief(PAIR.driver, amount, length=0.6e-3))
-        for load in (300.0, 3000.0):
-            moving, rest = (transmission_error(relieved, load, exact=exact) for exact in (False, True))
+        loads = (300.0, 3000.0)
+        for load, moving in zip(loads, quick_transmission_errors(relieved, loads), strict=True):
+            (alone,) = quick_transmission_errors(relieved, (load,))
+            assert alone.values == pytest.approx(moving.values, rel=1e-13)
+            assert alone.average_stiffness == pytest.approx(moving.average_stiffness, rel=1e-13)
+            assert alone.series.amplitude == pytest.approx(moving.series.amplitude, rel=1e-11, abs=1e-16)
+            rest = transmission_error(relieved, load)
             assert known is None or moving.loaded.grid is known
             known = moving.loaded.grid
             assert moving.mean == pytest.approx(rest.mean, rel=1e-4)
@@ -188,7 +193,7 @@ def test_perfect_flanks_are_loaded_once_while_a_relief_moves(monkeypatch):
     monkeypatch.setattr(roll_grids, "share_load", lambda *given: counted.append(1) or share(*given))
     for amount in (3e-6, 5e-6, 8e-6):
         moved = replace(one, driver_relief=CombinedRelief((tip_relief(PAIR.driver, amount, length=0.4e-3),)))
-        transmission_error(moved, 400.0, exact=False)
+        quick_transmission_errors(moved, (400.0,))
         found = pair_stiffness(moved, 400.0)
         assert np.array_equal(found.pair, pair_stiffness(replace(moved, grids=None), 400.0).pair)
     assert len(counted) == 3 + 1 + 3  # each relief, perfect flanks, and these anew each time

@@ -41,6 +41,12 @@ class Loaded:
     shared: SharedLoad
     separation: Array
 
+    def under(self, number: int) -> Loaded:
+        """The same under one of the loads alone."""
+        one, shared = slice(number, number + 1), self.shared
+        alone = SharedLoad(shared.loads[..., one], shared.transmission_error[:, one], shared.steps)
+        return Loaded(self.grid, self.load[one], alone, self.separation)
+
     @property
     def x(self) -> Array:
         """Roll positions, shape (P,) [m]."""

@@ -28,6 +28,7 @@ from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_
 from fegear.contact.plane.transmission_error import (
     mean_secant_stiffness,
     pair_stiffness,
+    quick_transmission_errors,
     revolution,
     roll_positions,
     secant_stiffness,
@@ -101,9 +102,9 @@ class LoadedPair:
     def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
         """See `LoadedTeeth`; integrated exactly between its jumps."""
         e, i = self.engagement, self._at
-        exact = []
-        for number, load in enumerate(self.loads):
-            exact.append(transmission_error(e, load, HARMONICS, exact=self.exact))
+        exact = [] if self.exact else quick_transmission_errors(e, self.loads, HARMONICS)
+        for number, load in enumerate(self.loads if self.exact else ()):
+            exact.append(transmission_error(e, load, HARMONICS))
             progress((number + 1) / (len(self.loads) + 2))
         curve = e.solve(e.grid(roll_positions(e, POSITIONS)), self.loads)
         bridged = e.pair.contact_ratio >= 1.0  # else perfect flanks have positions without any pair on the path

@@ -118,7 +118,7 @@ def _active(engagement: Engagement, grid: RollGrid, load: float, cycle: int) -> 
 
 
 def transmission_error(
-    engagement: Engagement, load: float, harmonics: int = 64, *, order: int = 16, cycle: int = 0, exact: bool = True
+    engagement: Engagement, load: float, harmonics: int = 64, *, order: int = 16, cycle: int = 0
 ) -> TransmissionError:
     """Transmission error under one load by piecewise Gauss quadrature.
 
@@ -133,15 +133,40 @@ def transmission_error(
         Gauss points per subdivision: the setting that trades accuracy for time.
     cycle : int
         Which base pitch, when there are spacing errors.
-    exact : bool
-        Whether `contact_changes` are break points, too; else the points are the same ones under every load and amount
-        of relief, and a kink within a subdivision costs a few 1e-3 of the range of the values.
     """
     pair = engagement.pair
-    changes = contact_changes(engagement, load, cycle) if exact else ()
-    points = panels(pair.x_start, pair.base_pitch, [*engagement.breaks, *changes], waves=harmonics, order=order)
+    breaks = [*engagement.breaks, *contact_changes(engagement, load, cycle)]
+    points = panels(pair.x_start, pair.base_pitch, breaks, waves=harmonics, order=order)
     loaded = engagement.solve(engagement.grid(points.x), [load], cycle)
     return TransmissionError(load, points, loaded, fourier_series(points, loaded.transmission_error[:, 0], harmonics))
+
+
+def quick_transmission_errors(
+    engagement: Engagement, loads: tuple[float, ...], harmonics: int = 64
+) -> list[TransmissionError]:
+    """Transmission error under every load without looking for changes of contact, while a value is being moved.
+
+    The points are the same ones under every load and amount of relief, so that all are solved at once; a kink within a
+    subdivision costs a few 1e-3 of the range of the values.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    loads : tuple of float
+        [N].
+    harmonics : int
+        N of the series.
+    """
+    pair = engagement.pair
+    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
+    every = engagement.solve(engagement.grid(points.x), loads)
+    series = fourier_series(points, every.transmission_error, harmonics)
+    return [
+        TransmissionError(
+            load, points, every.under(number), FourierSeries(series.coefficients[:, number], series.period)
+        )
+        for number, load in enumerate(loads)
+    ]
 
 
 @dataclass(frozen=True)
