@@ -68,10 +68,11 @@ fegear_prepare() { # the equations of motion become machine code now, half a min
     "$venv/bin/python" -I -m fegear.dynamics.motion.prepare >/dev/null 2>&1 || :
 }
 
-fegear_bytecode() { # keeps the bytecode of tests and of what they load, which every worker of the first run would make for itself
+fegear_bytecode() { # keeps what every worker of the first run would make for itself: the bytecode of tests and of what they load,
+    # and, as one random property is tried, what hypothesis reads out of every module
     (
         unset PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX
-        cd "$root" && "$venv/bin/python" -m pytest -n 0 --collect-only -qq >/dev/null 2>&1
+        cd "$root" && "$venv/bin/python" -m pytest -n 0 -qq -k test_different_names_stay_different >/dev/null 2>&1
     ) || :
 }
 

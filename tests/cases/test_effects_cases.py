@@ -51,7 +51,7 @@ def study(effect: str) -> Switched:
     return found
 
 
-@pytest.mark.dear("misalignment", "friction", "contact_loss")
+@pytest.mark.dear("misalignment", "friction", "contact_loss", "parametric")
 @pytest.mark.parametrize("effect", SCENES)
 def test_what_is_off_runs_none_of_its_kernels(effect):
     found = study(effect)

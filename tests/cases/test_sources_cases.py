@@ -30,6 +30,8 @@ def test_every_item_of_a_paper_has_its_row(paper):
 
 
 @pytest.mark.dear(
+    "litvin_combined",
+    "litvin_lead",
     "litvin_localised",
     "sources/litvin_fig07",
     "sources/litvin_fig09",

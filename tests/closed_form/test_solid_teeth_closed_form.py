@@ -320,7 +320,7 @@ def test_functions_along_the_face_are_lagrange_s_polynomials_in_other_words():
     np.testing.assert_allclose(coefficients @ face.at(z)[0], lagrange(6, (z + 1.5) / 3.0), atol=1e-12)
 
 
-@pytest.mark.dear("ring")
+@pytest.mark.dear
 @pytest.mark.parametrize("tooth", [TOOTH, RING], ids=["external", "ring"])
 def test_motions_that_mirror_at_the_middle_of_the_face_and_the_others_are_all_that_a_spur_disc_does(tooth):
     """Without a twist both are solved apart; with one of no size they are not."""

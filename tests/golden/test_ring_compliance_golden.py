@@ -80,7 +80,7 @@ def table(module, young):
     return stiffness_table(gear, np.linspace(13.3, 15.0, 7) * module, 0.025 * module)
 
 
-@pytest.mark.dear("0.003175-70000000000.0", "0.02-1.0")
+@pytest.mark.dear
 @pytest.mark.parametrize(("module", "young"), [(1e-3, 206.8e9), (3.175e-3, 70e9), (20e-3, 1.0)])
 def test_compliance_times_modulus_and_stress_times_module_do_not_depend_on_size_or_steel(module, young):
     one, other = table(1.0, 1.0), table(module, young)

@@ -80,7 +80,8 @@ def test_plan_tells_what_and_why_and_what_not(case, tmp_path):
 
 
 def test_set_changes_the_case(case, tmp_path):
-    done = fegear("run", case, "--set", "gear.a.teeth=30", "--set", "gear.b.teeth=30", "--out", "o", cwd=tmp_path)
+    changes = ("--set", "gear.a.teeth=30", "--set", "gear.b.teeth=30")
+    done = fegear("run", case, *changes, "--no-plots", "--out", "o", cwd=tmp_path)
     assert done.returncode == 0
     summary = json.loads((tmp_path / "o" / "summary.json").read_text())
     assert summary["results"]["I.centre_distance"]["value"] == pytest.approx(30 * 3.175)

@@ -45,7 +45,7 @@ def test_results_come_in_order_and_failures_are_values(tmp_path):
     assert told == sorted(told)
     # An unforeseen error is no lasting result; the others are.
     assert count_kept(math.sqrt, points, SolutionCache(store)) == 3
-    assert map_points(math.sqrt, points, cache=SolutionCache(store)) == found
+    assert map_points(math.sqrt, points, Executor(here=True), SolutionCache(store)) == found
 
 
 @pytest.mark.dear
@@ -63,7 +63,8 @@ def test_functions_without_a_name_are_refused():
 
 def test_workers_use_one_thread_each_and_leave_the_environment_alone(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    assert map_points(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"]) == ("1", "1")
+    names = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"]
+    assert map_points(os.getenv, names, Executor(workers=1)) == ("1", "1")
     assert os.environ["OMP_NUM_THREADS"] == "7"
 
 
@@ -75,7 +76,7 @@ def test_a_store_that_cannot_be_written_to_is_reported(tmp_path):
 
 def test_a_cluster_gives_the_same(scheduler, tmp_path):
     points = [2.0, -1.0, 3.0]
-    assert map_points(math.sqrt, points, Executor(scheduler)) == map_points(math.sqrt, points)
+    assert map_points(math.sqrt, points, Executor(scheduler)) == map_points(math.sqrt, points, Executor(here=True))
     cache = SolutionCache(Store(tmp_path))
     assert map_points(operator.neg, [1, 2.5], Executor(scheduler), cache) == (-1, -2.5)
     assert count_kept(operator.neg, [1, 2.5], cache) == 2

@@ -44,7 +44,7 @@ def test_different_names_stay_different(a, b):
 
 def test_an_export_stays_in_its_folder(tmp_path):
     names = ["../../evil", "/evil", "Größe/x", "x" * 300]
-    gears = {name: {"teeth": 20, "module": "1 mm"} for name in names}
+    gears = {name: {"teeth": 8, "module": "1 mm", "profile_shift": 0.5} for name in names}
     scene = build_scene({"results": ["geometry"], "gear": gears}, "case", tmp_path)
     out = tmp_path / "deep" / "out"
     with whole_or_nothing(out) as scratch:

@@ -275,7 +275,7 @@ def test_every_example_can_be_copied_with_what_it_names_and_planned(name, tmp_pa
 def test_an_example_comes_with_its_files_and_replaces_nobody_s(say, tmp_path):
     assert say("new", "mine", "--example", "own_mesh")[0] == 0
     assert (tmp_path / "meshes" / "four_square_test_gear.msh").stat().st_size > 100_000
-    assert say("run", "mine.toml", "--no-plots")[0] == 0
+    assert say("run", "mine.toml", "--no-plots", "--set", "stiffness.positions=2")[0] == 0
     mesh = tmp_path / "meshes" / "four_square_test_gear.msh"
     mesh.write_text("mine")
     code, _, complaint = say("new", "other", "--example", "own_mesh")

@@ -31,6 +31,8 @@ DEAR = {
     "calculix-transmission-error",
     "fillets-rolled",
     "fmu",
+    "ring-neighbours",
+    "tooth-beam",
 )
 @pytest.mark.parametrize(
     "row",
