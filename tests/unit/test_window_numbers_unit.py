@@ -242,6 +242,28 @@ def test_a_picture_that_a_page_cannot_draw_gives_way_to_a_move_soon_after(wire, 
     assert drawn == ["space"]
 
 
+def test_what_the_page_moves_itself_comes_when_a_value_pauses(worker, wire, monkeypatch):
+    """Outlines and reliefs took a tenth of every answer to a value that had moved on already."""
+    relieved = Asked(PAIR.replace("12 um", "15 um"), "c", ".", moving=True, pictures=())
+    worker.answer(Compute(1, relieved._replace(moving=False)))
+    found = {}
+    for number, next_one in ((2, Compute(3, relieved)), (4, None)):
+        wire.said.clear()
+        monkeypatch.setattr(worker._inbox, "wait", lambda _s, one=next_one: one and worker._inbox.put(one))
+        worker.answer(Compute(number, relieved._replace(text=PAIR.replace("12 um", f"{number} um"))))
+        found[number] = [one.what for one in wire.said]
+        if next_one:
+            worker._inbox.take()
+    assert "hands" not in found[2]
+    assert found[2].count("found") == found[4].count("found") > 1
+    assert found[2][-1] == "dropped"
+    assert found[4][-3:] == ["hands", "load_now", "done"]
+    wire.said.clear()
+    monkeypatch.setattr(worker._inbox, "wait", lambda _s: worker._inbox.put(Compute(6, relieved)))
+    worker.answer(Compute(5, relieved._replace(text=PAIR.replace("12 um", "5 um"), sight=("load-sharing of p",))))
+    assert [one.what for one in wire.said][-2:] == ["load_now", "dropped"]  # the map stands among results in sight
+
+
 def test_progress_counts_the_tasks_of_the_case_and_not_the_changes_before_it(worker, wire):
     """The page said "9 of 7" of the ninth change: the number of the job stood in the place of the task's."""
     bench = Bench(None)

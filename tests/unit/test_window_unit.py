@@ -51,7 +51,7 @@ from fegear.window.form import fields, fields_told, form, tables_to_add
 from fegear.window.glance import glance_tasks, numbers_of, plan_with
 from fegear.window.inputs import Inputs, merged
 from fegear.window.job_queue import Asked, Compute, Design, Export, Inbox, Said, Unwanted
-from fegear.window.journal import Scratch, journal_folder, left_behind, sweep
+from fegear.window.journal import Scratch, drop, journal_folder, left_behind, sweep
 from fegear.window.on_gears import gears_in_mesh
 from fegear.window.order import HarrisMaps, in_order
 from fegear.window.server import free_port, serve
@@ -393,6 +393,40 @@ def test_a_relief_moved_by_hand_is_the_relief_of_the_case(tmp_path):
     bench.drop_relief("a")
     assert scene_of(bench.asked()).case.gear["a"].relief is None
     assert bench.desk.refusal is None
+
+
+def test_the_answer_to_a_moved_value_is_asked_for_before_the_case_is_judged_and_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "state"))
+    done: list[str] = []
+    bench = Bench(None, SimpleNamespace(ask=lambda job: done.append("moves" if job.asked.moving else "at rest")))
+    bench.lay(Desk(TWO, "c", tmp_path))
+    judge, keep = Desk._judge, bench.desk._journal.keep
+    monkeypatch.setattr(Desk, "_judge", lambda desk: done.append("judged") or judge(desk))
+    monkeypatch.setattr(bench.desk._journal, "keep", lambda state: done.append("kept") or keep(state))
+    done.clear()
+    bench.move_load("I", "load", "900 N", moving=True)
+    assert done == ["moves", "judged", "kept"]
+    bench.move_load("I", "load", "-1 N", moving=True)  # refused, as who computes it says
+    assert done[3:] == ["moves", "judged", "kept"]
+    bench.move_load("I", "load", "-2 N", moving=True)  # known to be wrong: looked at first
+    assert done[6:] == ["judged", "kept"]
+    bench.move_load("I", "load", "800 N", moving=False)
+    assert done[8:] == ["judged", "at rest", "kept"]
+    bench.lay(None)
+    (left,) = left_behind(None)
+    assert '"800 N"' in left.kept.text
+
+
+def test_a_move_that_has_not_been_kept_yet_is_left_behind_all_the_same(tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "state"))
+    for leave in (lambda desk: desk.leave(), lambda desk: (desk.undo(), desk.redo(), desk.leave())):
+        desk = Desk(TWO, "c", tmp_path)
+        desk.change(TWO.replace("28", "29"), stroke=True)
+        assert not left_behind(None)
+        leave(desk)
+        (left,) = left_behind(None)
+        assert left.kept.text == desk.text != TWO
+        drop(left)
 
 
 def test_answers_to_earlier_places_of_a_moved_value_are_shown_and_end_nothing(tmp_path):
