@@ -136,7 +136,7 @@ const fegearGlance = (() => {
   function difference(now, before) { // to A
     if (!before || !Number.isFinite(now.value) || !Number.isFinite(before.value)) return "";
     const off = now.value - before.value;
-    if (!off) return "as A";
+    if (Math.abs(off) <= 1e-6 * Math.abs(before.value)) return "as A"; // round-off of another way to the same number
     const share = 100 * off / Math.abs(before.value), sign = off > 0 ? "+" : "−";
     return `${sign}${Math.abs(share) < 1000 && before.value ? `${Number(Math.abs(share).toPrecision(2))} %` : Number(Math.abs(off).toPrecision(3))}`;
   }
