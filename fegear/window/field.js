@@ -97,17 +97,25 @@ const fegearField = (() => {
       if (left > right || top > bottom || !area) continue;
       const v0 = (value[i] - low) * scale, v1 = (value[j] - low) * scale, v2 = (value[k] - low) * scale;
       const edge = -0.5 / Math.sqrt(Math.abs(area)); // half a pixel over: no gaps between neighbours
-      const ax = (y1 - y2) / area, bx = (y2 - y0) / area, ay = (x2 - x1) / area, by = (x0 - x2) / area;
-      for (let y = top; y <= bottom; y += 1) {
-        let a = ax * (left - x2) + ay * (y - y2), b = bx * (left - x2) + by * (y - y2);
-        for (let x = left, at = y * wide + left; x <= right; x += 1, at += 1, a += ax, b += bx) {
-          const c = 1 - a - b;
-          if (a < edge || b < edge || c < edge) continue;
-          const shade = a * v0 + b * v1 + c * v2;
-          pixels[at] = table[shade < 0 ? 0 : shade > 255 ? 255 : shade | 0];
-        }
+      const ax = (y1 - y2) / area, bx = (y2 - y0) / area, ay = (x2 - x1) / area, by = (x0 - x2) / area, cx = -ax - bx;
+      const rise = (ax * v0 + bx * v1 + cx * v2);
+      for (let y = top; y <= bottom; y += 1) { // the pixels of a row between the sides
+        const a = ay * (y - y2) - ax * x2, b = by * (y - y2) - bx * x2, c = 1 - a - b; // where x is 0
+        let from = left, to = right;
+        if (ax > 0) from = Math.max(from, (edge - a) / ax); else if (ax < 0) to = Math.min(to, (edge - a) / ax); else if (a < edge) continue;
+        if (bx > 0) from = Math.max(from, (edge - b) / bx); else if (bx < 0) to = Math.min(to, (edge - b) / bx); else if (b < edge) continue;
+        if (cx > 0) from = Math.max(from, (edge - c) / cx); else if (cx < 0) to = Math.min(to, (edge - c) / cx); else if (c < edge) continue;
+        from = Math.ceil(from);
+        let shade = a * v0 + b * v1 + c * v2 + rise * from;
+        for (let at = y * wide + from, end = y * wide + to; at <= end; at += 1, shade += rise) pixels[at] = table[shade < 0 ? 0 : shade > 255 ? 255 : shade | 0];
       }
     }
+  }
+  const images = new WeakMap(); // canvas -> what it was drawn of last: a megabyte each time would have to be collected
+  function imageOf(canvas) {
+    const last = images.get(canvas);
+    if (last?.width !== canvas.width || last?.height !== canvas.height) images.set(canvas, new ImageData(canvas.width, canvas.height));
+    return images.get(canvas);
   }
   /** Draws the teeth of both gears; the view is that of the outlines over them. */
   function draw(canvas, room, view, field, shown) { // room: its width and height [px]
@@ -116,7 +124,8 @@ const fegearField = (() => {
     context.clearRect(0, 0, wide, tall);
     if (!field || !view || !(shown.limit > 0)) return;
     const d = view.data, { measure, limit, place, loadAt } = shown, signed = MEASURES[measure][1];
-    const loads = loaded(d, place, loadAt), image = new ImageData(wide, tall), pixels = new Uint32Array(image.data.buffer);
+    const loads = loaded(d, place, loadAt), image = imageOf(canvas), pixels = new Uint32Array(image.data.buffer);
+    pixels.fill(0);
     const scale = Math.min(wide / (2 * view.wide), tall / (2 * view.tall)), first = d.start + place * d.base_pitch;
     const table = tableOf(measure), reach = 1e3 * Math.max(d.driver_base, d.driven_base);
     for (const member of ["driver", "driven"]) {
@@ -126,14 +135,19 @@ const fegearField = (() => {
         const on = -(driver ? 1 : -1) * (pair * d.base_pitch + first) / base; // anticlockwise
         if (Math.abs(on) * reach > 8 * view.wide && Math.abs(pair) > 2) continue;
         if (Math.abs(on) > Math.PI) continue;
-        const value = superposed(field, member, d, loads, pair, measure);
-        if (!value) gear.value.fill(0);
         const c = Math.cos(on), s = Math.sin(on);
+        let left = Infinity, right = -Infinity, top = Infinity, bottom = -Infinity;
         for (let n = 0; n < gear.count; n += 1) {
-          const x = gear.x[n], y = gear.y[n] - centre;
-          gear.px[n] = wide / 2 + scale * (c * x - s * y);
-          gear.py[n] = tall / 2 - scale * (s * x + c * y + centre);
+          const x = gear.x[n], y = gear.y[n] - centre, px = wide / 2 + scale * (c * x - s * y), py = tall / 2 - scale * (s * x + c * y + centre);
+          gear.px[n] = px;
+          gear.py[n] = py;
+          if (px < left) left = px;
+          if (px > right) right = px;
+          if (py < top) top = py;
+          if (py > bottom) bottom = py;
         }
+        if (right < 0 || left > wide || bottom < 0 || top > tall) continue; // out of sight
+        if (!superposed(field, member, d, loads, pair, measure)) gear.value.fill(0);
         fill(pixels, wide, tall, gear, table, signed ? -limit : 0, signed ? 2 * limit : limit);
       }
     }
