@@ -51,6 +51,13 @@ def alike(one, other, tolerance):
         np.testing.assert_allclose(other.displacement[key], moved, atol=tolerance * np.abs(moved).max())
 
 
+def test_a_hole_that_cannot_be_meshed_is_refused_by_its_key():
+    """One of 84 modules between a hub of ten and the teeth of a gear of 200 modules."""
+    with pytest.raises(RangeError, match="turn inside out") as found:
+        holed_ring(1, (5.0275, 88.975), 47.00125, 41.85375, 14.74, 3)
+    assert found.value.key == "body.holes"
+
+
 def test_work_is_the_same_both_ways(eight):
     for tooth in range(3):
         there, back = tooth_over_holes(eight, tooth), tooth_over_holes(eight, tooth + 1)

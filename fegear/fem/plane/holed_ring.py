@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from fegear.base.arrays import Array, Mask
-from fegear.base.errors import InputError
+from fegear.base.errors import InputError, RangeError
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 
@@ -64,13 +64,21 @@ def holed_ring(
         Edges along the outside are no longer.
     layers : int
         Between hole and cell's edge.
+
+    Raises
+    ------
+    RangeError
+        If elements turn inside out however fine they are, as where a single hole all but surrounds a thin hub.
     """
-    for attempt in range(_ATTEMPTS - 1):
+    for attempt in range(_ATTEMPTS):
         try:
             return _drawn(holes, radii, middle, hole, edge, layers, _TURN * _FINER**attempt)
         except InputError:
             continue
-    return _drawn(holes, radii, middle, hole, edge, layers, _TURN * _FINER ** (_ATTEMPTS - 1))
+    raise RangeError(
+        "body.holes", holes, "cannot be meshed: elements between hub, rim and holes turn inside out",
+        "make the holes smaller, or the hub larger",
+    )  # fmt: skip
 
 
 def _drawn(
