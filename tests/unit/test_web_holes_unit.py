@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import GeometryError, InputError
+from fegear.case.built.solid_influence import solid_support_remarks
 from fegear.case.reading import build_scene
 from fegear.geometry.gear_body import GearBody, WebHoles, moments
 from fegear.output.mesh_export import write_solid
@@ -92,7 +93,9 @@ def test_inertia_lacks_what_is_drilled_out():
 def test_the_figure_of_the_teeth_says_what_pairs_take():
     each = np.array([0.9, 1.0, 1.1])
     uneven = SimpleNamespace(deflection=each, root_tension=each, root_compression=-each)
-    solution = SimpleNamespace(body=SimpleNamespace(holes=HOLES), uneven=uneven)
+    solution = SimpleNamespace(body=SimpleNamespace(holes=WebHoles(1, 3.0, 0.5)), uneven=uneven, support=None)
     for tooth, words in ((None, "pairs take the mean."), (2, "pairs take tooth 2 for all.")):
         _, (figure,) = teeth_over_holes("a", solution, tooth)
         assert figure.caption.endswith(words)
+    (remark,) = solid_support_remarks("a", SimpleNamespace(fine=solution), 2)
+    assert remark.startswith("Gear a: over the hole of its web 3 teeth in a row differ.")

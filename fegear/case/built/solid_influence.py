@@ -310,16 +310,16 @@ def solid_support_remarks(name: str, influence: SolidInfluence, tooth: int | Non
 def _over_holes(name: str, holes: WebHoles, teeth: UnevenTeeth, tooth: int | None) -> str:
     """How far teeth over holes depart from their mean, and which of them most."""
     c, tension, count = teeth.deflection, teeth.root_tension, holes.count
-    what = f"{count} holes of its web" if count > 1 else "the hole of its web"
+    what = f"the {count} holes of its web" if count > 1 else "the hole of its web"
     if c.size == 1:
-        return f"Gear {name}: all teeth stand alike to the {what}; the stress at the holes' edges is neglected."
+        return f"Gear {name}: all teeth stand alike to {what}; the stress at the holes' edges is neglected."
     off, under = c / c.mean() - 1.0, tension / tension.mean() - 1.0
     stiff, soft, low, high = (int(i) for i in (off.argmin(), off.argmax(), under.argmin(), under.argmax()))
     taken = "the mean compliance and stress of all teeth"
     if tooth is not None:
         taken = f"all teeth as if they stood to the holes as tooth {tooth} does"
     return (
-        f"Gear {name}: over the {what} {c.size} teeth in a row differ. Loaded at half height in the middle of the "
+        f"Gear {name}: over {what} {c.size} teeth in a row differ. Loaded at half height in the middle of the "
         f"face, c_self of tooth {stiff}, the stiffest, is {off[stiff]:+.2%} of its mean over the teeth, of tooth "
         f"{soft}, the softest, {off[soft]:+.2%}; root tension {under[low]:+.2%} (tooth {low}) to {under[high]:+.2%} "
         f"(tooth {high}). Tables, pairs and sets take {taken}; what holes add to the "
