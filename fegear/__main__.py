@@ -14,8 +14,10 @@ def main() -> None:
     # pydantic would look through every installed package for plugins, which fegear has no use for.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
+        from fegear.base.interrupts import heed_ctrl_c
         from fegear.base.streams import open_streams
 
+        heed_ctrl_c()
         open_streams()
         from fegear.cli import main as run
 

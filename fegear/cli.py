@@ -6,7 +6,6 @@ import copy
 import os
 import signal
 import sys
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +13,7 @@ import typer
 
 import fegear
 from fegear.base.errors import NO_ROOM, FegearError, lacks_memory
+from fegear.base.interrupts import between_imports, heed_ctrl_c
 from fegear.base.streams import give_up
 from fegear.commands.common import INTERRUPTED, Command, Group, context_settings, leave
 from fegear.commands.export import export
@@ -156,14 +156,11 @@ class _Stopped(BaseException):
 def _heed_requests_to_stop() -> None:
     """Let a request to stop end the program as Ctrl-C does, so that it clears away what is unfinished."""
 
-    def stop(number: int, frame: FrameType | None) -> None:
-        if frame is not None and frame.f_code.co_filename.startswith("<frozen importlib"):
-            # Imports let go of their locks in callbacks of weak references: what is raised there is printed and lost.
-            threading.Timer(0.02, signal.raise_signal, [number]).start()
-            return
+    def stop(number: int, _frame: FrameType | None) -> None:
         signal.signal(number, signal.SIG_IGN)  # once is enough
         raise _Stopped(number)
 
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) == signal.SIG_DFL:
-            signal.signal(getattr(signal, name), stop)
+            signal.signal(getattr(signal, name), between_imports(stop))
+    heed_ctrl_c()

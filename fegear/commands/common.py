@@ -22,7 +22,7 @@ import typer.core
 from fegear.base.streams import complain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from contextlib import AbstractContextManager
 
     from typer.models import OptionInfo
@@ -218,13 +218,6 @@ class Command(typer.core.TyperCommand):
                 words.append(word)
         return super().parse_args(ctx, words)
 
-    def invoke(self, ctx: Any) -> Any:
-        """Run it; Ctrl-C that no part of it heard, while it loads what it needs, ends with a line as everywhere."""
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:  # typer would end with the code alone
-            leave(INTERRUPTED, 130)
-
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""
         _stacked(formatter)
@@ -235,8 +228,27 @@ def _is_number(word: str) -> bool:
     return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", word) is not None
 
 
+@contextlib.contextmanager
+def _one_line() -> Iterator[None]:
+    """End with a line where no part of a command hears Ctrl-C, as while it loads what it needs."""
+    try:
+        yield
+    except KeyboardInterrupt:  # typer would end with the code alone
+        leave(INTERRUPTED, 130)
+
+
 class Group(typer.core.TyperGroup):
     """The program itself."""
+
+    def make_context(self, *names: Any, **more: Any) -> Any:
+        """Read the options, for which a library is loaded."""
+        with _one_line():
+            return super().make_context(*names, **more)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command."""
+        with _one_line():
+            return super().invoke(ctx)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""

@@ -156,7 +156,16 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "module", ["fegear.base.streams", "fegear.cli", "typer", "fegear.engine.plan", "fegear.results.catalogue"]
+    "module",
+    [
+        "fegear.base.streams",
+        "fegear.cli",
+        "typer",
+        "pydantic",
+        "fegear.case.text_file",
+        "fegear.engine.plan",
+        "fegear.results.catalogue",
+    ],
 )
 def test_ctrl_c_while_the_program_loads_is_one_line(module, case, tmp_path):
     program = (
@@ -170,7 +179,7 @@ def test_ctrl_c_while_the_program_loads_is_one_line(module, case, tmp_path):
         "from fegear.__main__ import main\n"
         "main()"
     )
-    done = fegear("run", case, cwd=tmp_path, program=program)
+    done = fegear("run", case, "--out", "there", cwd=tmp_path, program=program)
     assert done.returncode == 130
     assert done.stderr == "fegear: interrupted; results of earlier runs are as they were.\n"
 
