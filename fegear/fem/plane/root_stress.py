@@ -217,25 +217,32 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
         Of the cubic Hermite curve through smoothed values and slopes at the points. The curve is linear in the values
         and has no corner, so its largest value changes steadily with them and with the end.
     """
+    values = np.ascontiguousarray(values)  # once: each product with a sparse matrix would copy it
     ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
     if clearance < math.inf:
         values = _without_contact(values, arc, ends, clearance)
     smoothing, slopes = _smoothing(np.ascontiguousarray(arc).tobytes())
-    height, step = sign * (smoothing @ values), np.diff(arc)[:, None]
-    rise = sign * (slopes @ values)
-    p, q = rise[:-1] * step, rise[1:] * step
-    within = (ends - arc[:-1, None]) / step
+    height, rise, step = smoothing @ values, slopes @ values, np.diff(arc)
+    if sign < 0.0:
+        np.negative(height, out=height)
+        np.negative(rise, out=rise)
+    begins = arc[:, None] <= ends
+    reached = np.where(begins, height, -np.inf).max(axis=0)
     # A cubic lies no higher than its ends by more than 4/27 of each slope: few pieces can have the largest value.
-    reached = np.where(arc[:, None] <= ends, height, -np.inf).max(axis=0)
-    may = np.maximum(height[:-1], height[1:]) + (np.abs(p) + np.abs(q)) * (4.0 / 27.0) >= reached
-    may[1:] &= within[1:] >= 0.0
-    may[[0, -1]] |= within[[0, -1]] >= 0.0  # beyond the outer points a cubic goes on
+    steep = np.abs(rise)
+    above = steep[:-1] + steep[1:]
+    above *= (4.0 / 27.0) * step[:, None]
+    above += np.maximum(height[:-1], height[1:])
+    may = above >= reached
+    may[1:] &= begins[1:-1]
+    may[[0, -1]] |= begins[[0, -2]]  # beyond the outer points a cubic goes on
     may[0] = True
-    column, piece = np.nonzero(may.T)
-    a, p, q, within = height[piece, column], p[piece, column], q[piece, column], within[piece, column]
-    b = height[piece + 1, column]
+    piece, column = np.nonzero(may)
+    a, b = height[piece, column], height[piece + 1, column]
+    p, q = rise[piece, column] * step[piece], rise[piece + 1, column] * step[piece]
+    within = (ends[column] - arc[piece]) / step[piece]
     square, cube = 3.0 * (b - a) - 2.0 * p - q, p + q - 2.0 * (b - a)
-    low = np.where(piece == 0, -arc[0] / step[0, 0], 0.0)
+    low = np.where(piece == 0, -arc[0] / step[0], 0.0)
     high = np.clip(within, low, np.where(piece == step.size - 1, np.inf, 1.0))
     # Where the slope p + 2 square t + 3 cube t^2 vanishes, without cancellation; where it does not, any place will do.
     root = -(square + np.copysign(np.sqrt(np.maximum(square**2 - 3.0 * cube * p, 0.0)), square))
@@ -247,8 +254,9 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
     found = a + at * (p + at * (square + at * cube))
     which = found.argmax(axis=0)
     best, at = (np.take_along_axis(of, which[None], axis=0)[0] for of in (found, at))
-    last = np.lexsort((-piece, best, column))[np.append(np.diff(column) > 0, True)]
-    return sign * best[last], arc[piece[last]] + at[last] * step[piece[last], 0]
+    order = np.lexsort((-piece, best, column))
+    last = order[np.append(np.diff(column[order]) > 0, True)]
+    return sign * best[last], arc[piece[last]] + at[last] * step[piece[last]]
 
 
 def _without_contact(values: Array, arc: Array, ends: Array, clearance: float) -> Array:
