@@ -22,6 +22,8 @@ _PLANE = f"{_WHOLE}: 28/28 teeth, 66,000 nodes (119,000 change 3e-5)"
 _RING = f"{_WHOLE}: planet and ring, 23/60 teeth, 54,000 nodes"
 _SOLID = "CalculiX 2.21, a whole gear of ten teeth, 43,000 and 110,000 nodes, extrapolated"
 _WEB = "CalculiX 2.21, a whole gear of 16 teeth on a web, 160,000 nodes under load, 10,000 in a sector's modes"
+_LEANING = "CalculiX 2.20, a whole gear of 16 teeth on a web inclined by 20 deg, 141,000 nodes"
+_HOLES = "CalculiX 2.20, whole gears of 16 teeth over six holes in their web, 123,000 nodes each"
 _FLANKS = f"{_WHOLE}: 18/18 teeth, 12 deg of helix, 42,000 nodes and more"
 
 
@@ -245,47 +247,96 @@ def calculix_solid_root_stress() -> Iterator[Compared]:
 
 
 # ---- gears on a web ---------------------------------------------------------------------------------------------
+#: Their holes: number, radius of the circle of their middles, radius of each [modules].
+_SIX = (6, 4.35, 0.9)
+
+
 @cache
-def _on_a_web() -> tuple[Any, list[Any]]:
-    """The solved gear, its web off the middle of the face, and bands at five places from end to end."""
+def _on_a_web(which: str) -> tuple[Any, list[Any]]:
+    """The solved gear, and bands at five places from end to end."""
     from dataclasses import replace
 
     from fegear.fem.solid.bands import bands
     from fegear.fem.solid.settings import SolidSettings
     from fegear.fem.solid.solution import solve_solid
 
-    tooth, body = _web_gear("off")
-    settings = replace(SolidSettings().scaled(1.2), waves_per_module=2.5)
+    tooth, body = _web_gear(which)
+    settings = replace(SolidSettings().scaled(1.2 if which == "off" else 1.6), waves_per_module=2.5)
     places = ((max(top - 0.5, -2.0), top, min(top + 0.5, 2.0)) for top in (-2.0, -1.0, 0.0, 1.0, 2.0))
     pressed = [bands(8.2, top, top - low, 0.25, after=high - top) for low, top, high in places]
     return solve_solid(tooth, 0.0, 4.0, 0.3, 2.0, settings, body=body), pressed
 
 
 def _web_gear(which: str) -> tuple[Any, Any]:
-    from fegear.geometry.gear_body import GearBody
+    from fegear.geometry.gear_body import GearBody, WebHoles
     from fegear.geometry.rack import BasicRack
     from fegear.geometry.tooth import Tooth
 
-    web = {"middle": (-0.5, 0.5), "off": (-1.5, -0.5)}[which]
-    return Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), GearBody(5.7, 3.0, web, (-2.0, 2.0))
+    web = (-0.5, 0.5) if which in ("middle", "holes") else (-1.5, -0.5)
+    lean = math.tan(math.radians(20.0)) if which == "inclined" else 0.0
+    holes = WebHoles(*_SIX) if which == "holes" else None
+    return Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), GearBody(5.7, 3.0, web, (-2.0, 2.0), lean, holes)
+
+
+def _web_deflections(solution: Any, pressed: list[Any], known: Any, allowed: float) -> Iterator[Compared]:
+    """Of each loaded band's own."""
+    for at, wanted in enumerate(known["deflection"]):
+        found = [float(solution.deflection(0, band, pressed[at])[0, 0]) for band in pressed]
+        yield from near(found, wanted, allowed, scale=wanted[at])
+
+
+def _web_tensions(solution: Any, pressed: list[Any], known: Any) -> Iterator[Compared]:
+    """Of the largest under each load."""
+    for load, wanted in zip(pressed, known["tension"], strict=True):
+        found = solution.largest_root_stress(0, "tension", load, _STATIONS)[0][:, 0]
+        yield from near(found, wanted, 0.01, scale=max(wanted))
 
 
 @ROWS.add("deflections of a gear on a web off the middle", "program", _WEB)
 def calculix_web_deflection() -> Iterator[Compared]:
     """Five places along the face under a load at each of them; of the loaded band's own deflection."""
-    solution, pressed = _on_a_web()
-    for at, wanted in enumerate(kept("gear_body_calculix")["off"]["deflection"]):
-        found = [float(solution.deflection(0, band, pressed[at])[0, 0]) for band in pressed]
-        yield from near(found, wanted, 0.008, scale=wanted[at])
+    yield from _web_deflections(*_on_a_web("off"), kept("gear_body_calculix")["off"], 0.008)
 
 
 @ROWS.add("root tension of a gear on a web off the middle", "program", _WEB)
 def calculix_web_root_tension() -> Iterator[Compared]:
     """Along the face under a load at each of five places, of the largest."""
-    solution, pressed = _on_a_web()
-    for load, wanted in zip(pressed, kept("gear_body_calculix")["off"]["tension"], strict=True):
-        found = solution.largest_root_stress(0, "tension", load, _STATIONS)[0][:, 0]
-        yield from near(found, wanted, 0.01, scale=max(wanted))
+    yield from _web_tensions(*_on_a_web("off"), kept("gear_body_calculix")["off"])
+
+
+@ROWS.add("deflections of a gear on an inclined web", "program", _LEANING)
+def calculix_inclined_web_deflection() -> Iterator[Compared]:
+    """Five places along the face under a load at each of them; of the loaded band's own deflection."""
+    yield from _web_deflections(*_on_a_web("inclined"), kept("gear_body_calculix")["inclined"], 0.008)
+
+
+@ROWS.add("root tension of a gear on an inclined web", "program", _LEANING)
+def calculix_inclined_web_root_tension() -> Iterator[Compared]:
+    """Along the face under a load at each of five places, of the largest."""
+    yield from _web_tensions(*_on_a_web("inclined"), kept("gear_body_calculix")["inclined"])
+
+
+def _over_holes() -> Iterator[tuple[Any, list[Any], Any]]:
+    """A tooth above a hole, and one between two, of one solution, each with what CalculiX gave on a gear of its own."""
+    from fegear.fem.solid.tooth_over_holes import tooth_over_holes
+
+    solution, pressed = _on_a_web("holes")
+    for which, tooth in (("below", 0), ("between", 4)):
+        yield tooth_over_holes(solution, tooth), pressed, kept("web_holes_calculix")[which]
+
+
+@ROWS.add("deflections of teeth over the holes of a web", "program", _HOLES)
+def calculix_web_holes_deflection() -> Iterator[Compared]:
+    """A tooth above a hole and one between two, at five places along the face; of the loaded band's own deflection."""
+    for solution, pressed, known in _over_holes():
+        yield from _web_deflections(solution, pressed, known, 0.008)
+
+
+@ROWS.add("root tension of teeth over the holes of a web", "program", _HOLES)
+def calculix_web_holes_root_tension() -> Iterator[Compared]:
+    """A tooth above a hole and one between two, along the face under five loads, of the largest."""
+    for solution, pressed, known in _over_holes():
+        yield from _web_tensions(solution, pressed, known)
 
 
 @ROWS.add("natural frequencies of a gear on a web", "program", _WEB)

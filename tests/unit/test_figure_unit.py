@@ -265,3 +265,35 @@ def test_letters_of_points_and_marks_are_read_on_paper_and_in_pages():
     made = Canvas()
     Sheet(made, [(panel, "")], 1).draw()
     assert {text.get_text() for text in made.axes[0].texts} == {"A", "B₂", "C"}
+
+
+def two_maps() -> tuple[Panel, Panel]:
+    """Maps of different quantities, the first with long numbers."""
+    x, y = np.arange(3.0), np.arange(2.0)
+    over = Axis("face position", "mm"), Axis("roll angle of the load", "deg")
+    maps = (HeatMap(x, y, np.linspace(0.0141, 0.0357, 6).reshape(2, 3), "c_{0}", "um/N"),
+            HeatMap(x, y, np.linspace(0.2, 0.4, 6).reshape(2, 3), "largest root tension", "MPa/N"))  # fmt: skip
+    return tuple(Panel(*over, (one,), title=one.label) for one in maps)
+
+
+def test_scales_of_colours_in_a_page_stand_beside_their_panels():
+    """Each as high as its own: those of two maps lay on each other."""
+    spec = plotly_json(Figure("two", "Two", "Two maps.", two_maps()))
+    ends = []
+    for trace, axis in zip(spec["data"], ("yaxis", "yaxis2"), strict=True):
+        bar = trace["colorbar"]
+        ends.append((bar["y"] - 0.5 * bar["len"], bar["y"] + 0.5 * bar["len"]))
+        assert ends[-1] == pytest.approx(spec["layout"][axis]["domain"])
+    assert ends[1][1] < ends[0][0]
+
+
+def test_a_scale_of_colours_on_paper_has_room_for_its_numbers():
+    """Six letters beside the left map's: its label lay on that of the next panel."""
+    from matplotlib.figure import Figure as Made
+
+    made = Made()
+    sheet = Sheet(made, [(panel, panel.title) for panel in two_maps()], 2)
+    sheet.draw()
+    made.draw_without_rendering()
+    left, right = (axes.get_tightbbox() for axes in (made.axes[2], made.axes[1]))
+    assert left.x1 <= right.x0

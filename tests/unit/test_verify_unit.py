@@ -16,6 +16,8 @@ DEAR = {
     "whole-gear-compliance", "whole-gear-root-stress", "ring-supports", "calculix-flanks", "calculix-flank-shares",
     "calculix-flank-root-stress",
     "calculix-web-deflection", "calculix-web-root-tension", "calculix-web-frequencies",
+    "calculix-inclined-web-deflection", "calculix-inclined-web-root-tension",
+    "calculix-web-holes-deflection", "calculix-web-holes-root-tension",
     "calculix-solid-deflection", "calculix-solid-root-stress",
 }  # fmt: skip
 

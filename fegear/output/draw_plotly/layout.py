@@ -249,4 +249,12 @@ def plotly_json(figure: Figure) -> Spec:
             for i in listed:
                 data[i]["visible"] = False
     names = max((sum(bool(data[i]["showlegend"]) for i in listed) for listed in members), default=0)
-    return {"data": data, "layout": layout(figure, members, len(data), names)}
+    made = layout(figure, members, len(data), names)
+    for trace in data:
+        holder = trace if "colorbar" in trace else trace.get("marker", {})
+        if (
+            "colorbar" in holder
+        ):  # a scale of colours is as high as its panel, not as the figure: two would lie together
+            low, high = made[f"yaxis{trace.get('yaxis', 'y')[1:]}"]["domain"]
+            holder["colorbar"] |= {"y": 0.5 * (low + high), "yanchor": "middle", "len": high - low}
+    return {"data": data, "layout": made}

@@ -43,6 +43,10 @@ _LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
 
 
+#: Inches of a scale of colours with its label, without its numbers.
+_BARE = 0.66
+
+
 #: Inches of a line at the head of a picture, and of a letter in it.
 _HEAD, _HEAD_LETTER = 0.22, 0.1
 
@@ -139,11 +143,14 @@ class Sheet:
             else _LEFT + _LETTER * max(longest_number(drawn[i].yaxis) for i in self._column(c) if not self._beside(i))
             for c in range(count)
         ]  # fmt: skip
-        one = self._one_bar()
+        scales = self._scales(images)
         bars = [
-            _BAR * (any(maps_of(panels[i]) for i in self._column(c)) and (not one or c == count - 1))
+            max(
+                (_BARE + _LETTER * longest_number(scales[i].yaxis) for i in self._column(c) if i in scales), default=0.0
+            )
             for c in range(count)
         ]
+        bars = [max(_BAR, bar) if bar else 0.0 for bar in bars]
         whole = sum(lefts) + count * width + sum(bars) + _RIGHT
         legend = legend_entries(panels)
         across = columns_that_fit(list(legend), whole - lefts[0])
@@ -163,9 +170,8 @@ class Sheet:
             x = sum(lefts[: column + 1]) + column * width + sum(bars[:column])
             axes.set_position((x / whole, y / tall, width / whole, heights[row] / tall))
             axes.yaxis.set_label_coords(-(lefts[column] - 0.18) / width, 0.5)
-            if images[i] is not None and (not one or i == len(drawn) - 1):
-                room = ((x + width + 0.15) / whole, y / tall, 0.14 / whole, heights[row] / tall)
-                self._bar(images[i], panels[i], room)
+            if i in scales:
+                scales[i].set_position(((x + width + 0.15) / whole, y / tall, 0.14 / whole, heights[row] / tall))
         if lines:
             self.made.legend(
                 list(legend.values()), [words(name) for name in legend], loc="upper left", ncols=across, fontsize=9,
@@ -180,11 +186,17 @@ class Sheet:
         styles: list[tuple[str, dict[str, Any]]] = [(line, {"fontsize": 11, "weight": "bold"}) for line in lines]
         return styles + ([(f"case {case}", {"fontsize": 8.5, "color": "0.35"})] if case else [])
 
-    def _bar(self, image: Any, panel: Panel, place: tuple[float, float, float, float]) -> None:
-        room, item = self.made.add_axes(place), maps_of(panel)[0]
-        ends = {"extend": "max"} if isinstance(item, TriangleField) else {}
-        self.made.colorbar(image, cax=room, label=bar_label(item), **ends)
-        room.grid(visible=False)
+    def _scales(self, images: Sequence[Any]) -> dict[int, Any]:
+        """Axes of the scales of colours, by panel: of the last one alone where all show one quantity."""
+        found = {}
+        for i, image in enumerate(images):
+            if image is not None and (not self._one_bar() or i == len(images) - 1):
+                item, room = maps_of(self.panels[i][0])[0], self.made.add_axes((0.9, 0.1, 0.02, 0.8))
+                ends = {"extend": "max"} if isinstance(item, TriangleField) else {}
+                self.made.colorbar(image, cax=room, label=bar_label(item), **ends)
+                room.grid(visible=False)
+                found[i] = room
+        return found
 
     def _share(self, drawn: Sequence[Any]) -> None:
         """Give panels with the same axes the same range."""

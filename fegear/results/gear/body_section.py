@@ -120,7 +120,7 @@ def _section(gear: Gear, body: GearBody) -> Panel:
     for letter, _, line in dimensions(gear, body).values():
         letters.append(letter)
         lines.append(line)
-        at.append(0.6 * line[:, -9:][:, 0] + 0.4 * line[:, -1])
+        at.append(0.65 * line[:, -9:][:, 0] + 0.35 * line[:, -1])
         if line.shape[1] == 2:  # strokes at both ends
             upright = bool(line[0, 0] == line[0, 1])
             stroke = _STROKE * size * np.array([[-1.0, 1.0], [0.0, 0.0]])[:: 1 if upright else -1]
