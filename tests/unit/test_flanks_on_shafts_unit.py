@@ -103,6 +103,7 @@ def test_rigid_shafts_on_rigid_bearings_change_no_bit(flanks):
         assert (one.solve(loads, gaps, known).contact.force == one.solve(loads, None, known).contact.force).all()
 
 
+@pytest.mark.dear
 def test_stiffness_to_infinity_converges_with_order_one(flanks):
     one, off = flanks[0], []
     known = one.compliance(LOAD)

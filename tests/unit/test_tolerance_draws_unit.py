@@ -232,6 +232,7 @@ def test_paired_draws_tell_a_small_difference():
     assert sure == 1.0
 
 
+@pytest.mark.dear
 def test_quasi_random_and_another_generator_agree_within_their_intervals():
     table = small_bench()
     quasi = drawn_outcomes(table, drawn(60)).values

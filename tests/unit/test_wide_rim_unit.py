@@ -112,6 +112,7 @@ def test_a_thick_rim_is_held_less_than_one_whose_outside_is_fixed():
     assert np.abs(stress).max() > np.abs(fixed).max()
 
 
+@pytest.mark.dear
 def test_far_outside_it_matters_little_how_a_spur_rim_is_held():
     """Stress that tractions far outside leave at the teeth falls with their distance, as in the plane."""
     free, held = solved(rim=100.0), solved(rim=100.0, support=None)
