@@ -3,8 +3,10 @@
 python tests/other_codes/make_gear_body_calculix.py [middle|off|inclined|steep]...
 
 Quadratic wedges and hexahedra, all sides joined node by node. Two cores take twenty minutes for the loads of one gear
-(160,000 nodes); its waves are those of one sector with CalculiX' cyclic symmetry (10,000 nodes, the layers finest where
-the web ends).
+(153,000 nodes, 141,000 on an inclined web); its waves are those of one sector with CalculiX' cyclic symmetry (10,000
+nodes, the layers finest where the web ends). CalculiX' stiffness matrix, as `*FREQUENCY, SOLVER=MATRIXSTORAGE` writes
+it, solved by Pardiso for all five loads at once takes two minutes: those of "off" are from there, the first of them the
+same to the seven digits that SPOOLES prints.
 """
 
 import json

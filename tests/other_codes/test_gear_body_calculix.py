@@ -1,7 +1,7 @@
 """Gears on a web against CalculiX: whole gears of 16 teeth on explicit meshes, web in the middle, off it and inclined.
 
 gear_body_calculix.json has what `make_gear_body_calculix.py` found: deflections and root stress under bands at five
-places along the face on 160,000 nodes, and natural frequencies of a sector of 10,000.
+places along the face on 141,000 to 153,000 nodes, and natural frequencies of a sector of 10,000.
 """
 
 import importlib.util
@@ -50,7 +50,7 @@ def apart(which, solved):
 @pytest.mark.dear
 @pytest.mark.parametrize("which", ["off", pytest.param("inclined", marks=pytest.mark.long)])
 def test_load_on_a_web(which):
-    """With functions that resolve hats of half a module beside a web's end: deflection .4 %, root tension .5 %."""
+    """With functions that resolve hats of half a module beside a web's end: off the middle .13 and .47 %."""
     moved, stress = worst(which, replace(SolidSettings().scaled(1.2), waves_per_module=3.0))
     assert moved < 0.006
     assert stress < 0.008
@@ -70,6 +70,10 @@ def test_coarse_settings_on_a_thin_rim_tell_their_error(which):
 @pytest.mark.long  # the ordinary run has two webs with coarser settings
 @pytest.mark.parametrize("which", LOADED)
 def test_loads_with_fine_settings(which):
+    """Off the middle deflections are .24 % apart, root tension .32 %.
+
+    CalculiX is the stiffer one, more so with coarser elements: with 36,000 nodes it is 1.6 and 3.4 % off.
+    """
     moved, stress = worst(which, FINE)
     assert moved < 0.006
     assert stress < 0.01
