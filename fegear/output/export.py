@@ -168,6 +168,8 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
         write_step(written[-1], gear, None if found.relief is None else relieved_outline(gear, found.relief))
         if scene.case.gear[name].face_width is None:
             remarks.append(f"Gear {name}, STEP: {gear.face_width * 1e3:.6g} mm wide, for the case has no face_width.")
+        if scene.case.gear[name].body is not None:
+            remarks.append(f"Gear {name}, STEP: a disc as wide as the face; its body is to be cut from it in CAD.")
     if "relief" in wanted and found.relief is not None:
         written += write_relief(scene, folder, name, found.relief)
     elif "relief" in wanted and not relieved:

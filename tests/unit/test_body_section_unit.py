@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from fegear.base.errors import GeometryError
 from fegear.case.reading import build_scene
+from fegear.output.export import export_gears
 from fegear.results.gear.body_section import body_figures, dimensions, hatched
 
 TEETH, MODULE = 24, 2.0
@@ -156,3 +157,11 @@ def test_holes_lie_where_the_case_says_and_tooth_0_at_the_top():
 def test_a_disc_has_no_such_figure():
     disc = build_scene({"results": ["geometry"], "gear": {"a": {"teeth": 24, "module": "2 mm"}}}, "case", Path())
     assert body_figures(disc.gears) == ()
+
+
+@pytest.mark.parametrize("body", [{}, {"body": {"rim_thickness": "4 mm", "web_thickness": "5 mm"}}])
+def test_a_step_file_is_a_disc_and_says_so_where_the_case_has_a_body(tmp_path, body):
+    part = {"teeth": 12, "module": "2 mm", "face_width": "10 mm", "bore_radius": "4 mm", **body}
+    scene = build_scene({"results": ["geometry"], "gear": {"a": part}}, "case", Path())
+    said = export_gears(scene, tmp_path, (), "step").remarks
+    assert [one for one in said if "body is to be cut" in one] == list(said) == ([said[0]] if body else [])
