@@ -17,10 +17,10 @@ from fegear.verify.kept import kept
 from fegear.verify.row import Compared, Rows, near
 
 ROWS = Rows()
-_WHOLE = "CalculiX 2.21, frictionless contact of both whole gears"
+_WHOLE = "CalculiX 2.20, frictionless contact of both whole gears"
 _PLANE = f"{_WHOLE}: 28/28 teeth, 66,000 nodes (119,000 change 3e-5)"
 _RING = f"{_WHOLE}: planet and ring, 23/60 teeth, 54,000 nodes"
-_SOLID = "CalculiX 2.21, a whole gear of ten teeth, 43,000 and 110,000 nodes, extrapolated"
+_SOLID = "CalculiX 2.20, a whole gear of ten teeth, 43,000 and 110,000 nodes, extrapolated"
 _WEB = "CalculiX 2.20, a whole gear of 16 teeth on a web, 153,000 nodes under load, 10,000 in a sector's modes"
 _LEANING = "CalculiX 2.20, a whole gear of 16 teeth on a web inclined by 20 deg, 141,000 nodes"
 _HOLES = "CalculiX 2.20, whole gears of 16 teeth over six holes in their web, 123,000 nodes each"
