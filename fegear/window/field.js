@@ -98,7 +98,7 @@ const fegearField = (() => {
       const v0 = (value[i] - low) * scale, v1 = (value[j] - low) * scale, v2 = (value[k] - low) * scale;
       const edge = -0.5 / Math.sqrt(Math.abs(area)); // half a pixel over: no gaps between neighbours
       const ax = (y1 - y2) / area, bx = (y2 - y0) / area, ay = (x2 - x1) / area, by = (x0 - x2) / area, cx = -ax - bx;
-      const rise = (ax * v0 + bx * v1 + cx * v2);
+      const rise = ax * v0 + bx * v1 + cx * v2;
       for (let y = top; y <= bottom; y += 1) { // the pixels of a row between the sides
         const a = ay * (y - y2) - ax * x2, b = by * (y - y2) - bx * x2, c = 1 - a - b; // where x is 0
         let from = left, to = right;

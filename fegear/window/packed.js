@@ -2,7 +2,7 @@
 // Numbers as they travel to the page: packed, unpacked once, with the ends that axes are laid by.
 const fegearPacked = (() => {
   const unpacked = new WeakMap(), bounds = new WeakMap(); // they live as long as the description that they stand in
-  function bytes(text) { // three times as quick as to map the letters
+  function bytes(text) { // by a loop: to map the letters took a third of what the page does while a value moves
     const letters = atob(text), found = new Uint8Array(letters.length);
     for (let i = 0; i < letters.length; i += 1) found[i] = letters.charCodeAt(i);
     return found.buffer;
