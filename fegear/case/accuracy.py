@@ -30,6 +30,12 @@ class AccuracyPart(Part):
         description="Relative error, 1e-6 to 0.5, to which compliances and root stresses are solved; finer settings "
         "are tried while the estimate misses it, and remarks say where it still does.",
     )
+    solver: Literal["condensed", "scikit-fem"] = Field(
+        default="condensed",
+        description="What assembles a tooth's sector and eliminates its inner unknowns: `condensed` (nested "
+        "dissection) or `scikit-fem` (its own asm, condense and solve). The numbers agree to round-off; `scikit-fem` "
+        "takes several times as long.",
+    )
     order: Annotated[int, Field(ge=2, le=4)] | None = Field(
         default=None, description="Polynomial order of the elements, 2 to 4; without it by the tolerance."
     )

@@ -69,6 +69,42 @@ def turned_elasticity(u: Any, v: Any, w: Any) -> Any:
     return (stress * turned_strains(v, v.grad, w["tau"])).sum(axis=0)
 
 
+def _in_section(u: Any, w: Any) -> Array:
+    """Strains of a function of the section that does not change along the face: B0."""
+    x, y = u.grad[:, 0], u.grad[:, 1]
+    d = w["tau"] * (w["place"][1] * x - w["place"][0] * y)
+    return turned_strains(np.asarray(u), np.stack([x, y, d], axis=1), w["tau"])
+
+
+def _along_face(u: Any, w: Any) -> Array:
+    """Strains that its change along the face adds, per unit of that: B1; in an inclined web it shears the section."""
+    value, place = np.asarray(u), np.asarray(w["place"])
+    outward = np.asarray(w["lean"]) * place / np.hypot(*place)
+    return turned_strains(np.zeros_like(value), np.stack([outward[0] * value, outward[1] * value, value], axis=1), 0.0)
+
+
+def _work(strain_u: Array, strain_v: Array, w: Any) -> Any:
+    return (stresses(strain_u, w["lam"], w["mu"]) * strain_v).sum(axis=0)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def turned_section(u: Any, v: Any, w: Any) -> Any:
+    """B0' C B0 of a twisted prism, its functions those of the section."""
+    return _work(_in_section(u, w), _in_section(v, w), w)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def turned_mixed(u: Any, v: Any, w: Any) -> Any:
+    """B0' C B1: what changes along the face is the trial function."""
+    return _work(_along_face(u, w), _in_section(v, w), w)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def turned_along(u: Any, v: Any, w: Any) -> Any:
+    """B1' C B1."""
+    return _work(_along_face(u, w), _along_face(v, w), w)
+
+
 def revolved_strains(value: Any, slope: Any, radius: Any, waves: int) -> Array:
     """Strains of a body of revolution in its n-th wave round the axis; its displacements are U, V and W.
 

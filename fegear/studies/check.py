@@ -11,6 +11,8 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.units import from_si
 from fegear.case.built.tooth_influence import gear_to_solve, solve_influence_functions
+from fegear.fem.plane.influence import SIDES
+from fegear.fem.plane.settings import SOLVERS
 from fegear.fem.plane.tooth_on_pins import tooth_on_pins
 from fegear.results.gear.load_positions import chosen_gears
 
@@ -57,13 +59,36 @@ class Compared:
 
 
 @dataclass(frozen=True)
+class Solvers:
+    """One gear solved by either `accuracy.solver` on the same mesh.
+
+    Attributes
+    ----------
+    difference : float
+        Largest difference of influence functions and root stresses over the largest of their kind.
+    condensed, scikit_fem : float
+        CPU time of each [s], without the mesh.
+    """
+
+    difference: float
+    condensed: float
+    scikit_fem: float
+
+    @property
+    def ratio(self) -> float:
+        """How many times as long scikit-fem's assembly and elimination take."""
+        return self.scikit_fem / self.condensed
+
+
+@dataclass(frozen=True)
 class Checked:
-    """One gear: what was compared, how many unknowns the whole gear had, and its seconds."""
+    """One gear: what was compared, how many unknowns the whole gear had, its seconds, and both solvers."""
 
     gear: str
     compared: tuple[Compared, ...]
     unknowns: int
     seconds: float
+    solvers: Solvers
 
 
 def gears_to_check(scene: Scene) -> tuple[str, ...]:
@@ -112,7 +137,32 @@ def check_gear(scene: Scene, name: str, positions: int) -> Checked:
         gear.tooth, gear.bore_radius / module, gear.material.poisson_ratio, gear.plane_assumption, known.settings,
         radius, half_width, gear.support_in_modules,
     )  # fmt: skip
-    return Checked(name, tuple(_compared(known, found, radius * module)), found.unknowns, time.perf_counter() - started)
+    compared, solvers = tuple(_compared(known, found, radius * module)), compare_solvers(known)
+    return Checked(name, compared, found.unknowns, time.perf_counter() - started, solvers)
+
+
+def compare_solvers(known: GearInfluence) -> Solvers:
+    """Solve a gear on its own mesh by nested dissection and by scikit-fem (`accuracy.solver`)."""
+    from fegear.fem.plane.influence import solve_influence
+
+    fine, settings = known.fine, known.settings
+    found, seconds = [], []
+    for solver in SOLVERS:
+        started = time.process_time()
+        found.append(
+            solve_influence(
+                fine.tooth, fine.mesh, fine.poisson_ratio, fine.plane,
+                order=settings.order, reach=fine.reach, support=fine.support, solver=solver,
+            )
+        )  # fmt: skip
+        seconds.append(time.process_time() - started)
+    one, other = found
+    pairs = [[(one.compliance[k], other.compliance[k]) for k in one.compliance]]
+    pairs += [[(one.stress[k, side], other.stress[k, side]) for k in one.compliance] for side in SIDES]
+    difference = max(
+        max(np.abs(a - b).max() for a, b in kind) / max(np.abs(a).max() for a, _ in kind) for kind in pairs
+    )
+    return Solvers(float(difference), *seconds)
 
 
 def _compared(known: GearInfluence, found: WholeGearAlone, radius: Array) -> list[Compared]:

@@ -52,6 +52,8 @@ DOORS = {
         "fegear.fem.plane.curved_map",
         "fegear.fem.plane.elements",
         "fegear.fem.plane.scikit_fem_alone",
+        "fegear.fem.plane.scikit_fem_solver",
+        "fegear.fem.solid.scikit_fem_solver",
         "fegear.fem.revolved_body",
     ],
     "meshio": ["fegear.fem.plane.imported_mesh"],

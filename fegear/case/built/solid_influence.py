@@ -77,7 +77,7 @@ def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
         chosen = SolidSettings().scaled(factor)
     # The half-width of the bands is the solid's own.
     given = {key: value for key, value in given_settings(accuracy).items() if key != "patch_half_width"}
-    return replace(chosen, section=replace(chosen.section, **given)) if given else chosen
+    return replace(chosen, section=replace(chosen.section, solver=accuracy.solver, **given))
 
 
 def solid_settings_of(scene: Scene, name: str) -> SolidSettings:

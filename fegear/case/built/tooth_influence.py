@@ -24,7 +24,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.case.accuracy import AccuracyPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
-from fegear.fem.plane.settings import MeshSettings, level_for, settings_at
+from fegear.fem.plane.settings import MeshSettings, Solver, level_for, settings_at
 from fegear.geometry.gear import Gear
 
 
@@ -66,6 +66,8 @@ class GearToSolve:
         Of the gear, for messages.
     draft : bool
         Whether the first settings for the tolerance are enough, without an error estimate.
+    solver : {"condensed", "scikit-fem"}
+        What assembles and eliminates where the settings are chosen by the tolerance.
     """
 
     gear: Gear
@@ -75,6 +77,7 @@ class GearToSolve:
     mesh: SectorMesh | None = None
     name: str = field(default="", compare=False)
     draft: bool = False
+    solver: Solver = "condensed"
 
 
 def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
@@ -90,7 +93,7 @@ def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
     settings = mesh_settings(accuracy) if given else None
     draft, reach = None if given else scene.drafts.get(name), needed_reach(scene, name)
     tolerance = draft or accuracy.tolerance
-    return GearToSolve(scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None)
+    return GearToSolve(scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None, accuracy.solver)
 
 
 def solve_influence_functions(
@@ -115,9 +118,12 @@ def solve_influence_functions(
     gear, reach = asked.gear, asked.reach
     try:
         if asked.draft:
-            return solve_gear(gear, settings_for(asked.tolerance), reach=reach, estimate_error=False, cache=cache)
+            first = replace(settings_for(asked.tolerance), solver=asked.solver)
+            return solve_gear(gear, first, reach=reach, estimate_error=False, cache=cache)
         if asked.settings is None:
-            return solve_to_tolerance(gear, asked.tolerance, reach=reach, progress=progress, cache=cache)
+            return solve_to_tolerance(
+                gear, asked.tolerance, reach=reach, solver=asked.solver, progress=progress, cache=cache
+            )
         return solve_gear(gear, asked.settings, reach=reach, mesh=asked.mesh, progress=progress, cache=cache)
     except RangeError as error:
         raise at(f"gear.{asked.name}", error) from None
@@ -247,16 +253,15 @@ def settings_for(tolerance: float) -> MeshSettings:
 
 
 def given_settings(accuracy: AccuracyPart) -> dict[str, Any]:
-    """Settings that the case gives itself; with any of them nothing is refined."""
-    found = {field.name: getattr(accuracy, field.name) for field in fields(MeshSettings)}
+    """Settings that the case gives itself; with any of them nothing is refined. The solver decides about no error."""
+    found = {field.name: getattr(accuracy, field.name) for field in fields(MeshSettings) if field.name != "solver"}
     return {name: value for name, value in found.items() if value is not None}
 
 
 def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
     """Settings for a tolerance, with explicitly given ones taking their place."""
     given = given_settings(accuracy)
-    settings = settings_for(accuracy.tolerance)
-    return replace(settings, **given) if given else settings
+    return replace(settings_for(accuracy.tolerance), solver=accuracy.solver, **given)
 
 
 def seconds_of_gear(settings: MeshSettings) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError
 from fegear.fem.plane.elasticity import SectorElasticity
+from fegear.fem.plane.scikit_fem_solver import between_kept
 
 #: Unknowns that a smallest part has about, with its elements' own ones gone: fewer cost calls, more cost arithmetic.
 _SMALLEST_PART = 160
@@ -44,17 +45,24 @@ class Condensed:
     stiffness : ndarray, shape (n, n)
     size : int
         Unknowns of the sector.
+    steps : tuple of Eliminated
+        What `expand` goes through backwards.
+    motions : ndarray, shape (size, n), optional
+        In their place: of every unknown with one of the kept ones moved by one (`scikit_fem_solver`).
     """
 
     kept: Index
     stiffness: Array
     size: int
     steps: tuple[Eliminated, ...]
+    motions: Array | None = None
 
     def expand(self, displacement: Array) -> Array:
         """Displacement of every unknown from that of the kept ones (unloaded elsewhere), shape (size, P)."""
         from scipy.linalg import solve_triangular
 
+        if self.motions is not None:
+            return np.asarray(self.motions @ displacement)
         u = np.zeros((self.size, displacement.shape[1]))
         u[self.kept] = displacement
         for step in reversed(self.steps):
@@ -88,6 +96,9 @@ def condense(elasticity: SectorElasticity, kept: Index, held: Index, *, expandab
     FegearError
         If the stiffness is not positive definite.
     """
+    if elasticity.whole is not None:
+        stiffness, motions = between_kept(elasticity.whole, kept, held, motions=expandable)
+        return Condensed(kept, stiffness, elasticity.size, (), motions)
     steps: list[Eliminated] = []
     matrices, dofs = _without_inner(elasticity, steps if expandable else None)
     leaf, depth = halved(elasticity.centres, dofs.size, _SMALLEST_PART)

@@ -1,23 +1,27 @@
 """Plane elasticity of one sector: the stiffness of every curved triangle, and the unknowns along named boundaries.
 
-Shape functions, quadrature, numbering and maps are scikit-fem's, and it integrates the weak form of `fem.forms`.
+Shape functions, quadrature, numbering and maps are scikit-fem's, and it integrates the weak form of `fem.forms`. With
+the solver "scikit-fem" it assembles the whole sector as well.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index
 from fegear.fem.plane.elements import SectorElements, one_order_higher, sector_elements
 from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.scikit_fem_solver import assembled
+from fegear.fem.plane.settings import Solver
 from fegear.geometry.gear import Plane
 
 
 @dataclass(frozen=True)
 class SectorElasticity:
-    """The stiffness of one free sector, E = 1, element by element.
+    """The stiffness of one free sector, E = 1, element by element, or as a whole.
 
     Unknown 2 i + c is component c (x, y) of node i. Nodes: the mesh's vertices, then those inside its edges, then
     those inside its elements; with order 2 they are the mesh's points.
@@ -25,7 +29,7 @@ class SectorElasticity:
     Parameters
     ----------
     stiffness : ndarray, shape (M, 2 n, 2 n)
-        Of every element.
+        Of every element; of none where the whole is assembled.
     element_dofs : ndarray of int, shape (M, 2 n)
         The unknowns that its rows belong to.
     inside : int
@@ -40,6 +44,8 @@ class SectorElasticity:
         Unknowns at the mesh's points (vertices; middle nodes too where the order is 2, else -1).
     order, size : int
         Order of the elements; number of unknowns.
+    whole : scipy.sparse.csr_matrix, shape (size, size), optional
+        Of the whole sector, assembled by scikit-fem, which then eliminates too (`scikit_fem_solver`).
     """
 
     stiffness: Array
@@ -51,6 +57,7 @@ class SectorElasticity:
     node_dofs: Index
     order: int
     size: int
+    whole: Any = None
 
 
 def lame(poisson_ratio: float, plane: Plane) -> tuple[float, float]:
@@ -62,7 +69,9 @@ def lame(poisson_ratio: float, plane: Plane) -> tuple[float, float]:
     return nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu
 
 
-def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -> SectorElasticity:
+def assemble(
+    mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int, solver: Solver = "condensed"
+) -> SectorElasticity:
     """Stiffness of every element of a mesh of curved (isoparametric) triangles.
 
     Parameters
@@ -72,32 +81,43 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
     plane : {"strain", "stress"}
     order : {2, 3, 4}
         Order of the displacement; the geometry's is 2, or 3 where the boundary's tangents are known.
+    solver : {"condensed", "scikit-fem"}
+        Which assembles, and eliminates afterwards.
 
     Returns
     -------
     SectorElasticity
     """
     elements = sector_elements(mesh, order)
-    return _elasticity(mesh, elements, _stiffness(elements, *lame(poisson_ratio, plane)))
+    constants = lame(poisson_ratio, plane)
+    if solver == "scikit-fem":
+        return _elasticity(mesh, elements, whole=assembled(elements, *constants))
+    return _elasticity(mesh, elements, _stiffness(elements, *constants))
 
 
 def assemble_two_orders(
-    mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int
+    mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int, solver: Solver = "condensed"
 ) -> tuple[SectorElasticity, SectorElasticity]:
     """As `assemble`, and the same elements with displacements one order lower.
 
     These are among the displacements of the higher order, whose integrals therefore serve both.
     """
-    elements = sector_elements(mesh, order)
-    higher = _elasticity(mesh, elements, _stiffness(elements, *lame(poisson_ratio, plane)))
+    elements, constants = sector_elements(mesh, order), lame(poisson_ratio, plane)
+    if solver == "scikit-fem":
+        both = elements, elements.one_order_lower()
+        first, second = (_elasticity(mesh, each, whole=assembled(each, *constants)) for each in both)
+        return first, second
+    higher = _elasticity(mesh, elements, _stiffness(elements, *constants))
     lower = np.kron(one_order_higher(order - 1), np.eye(2))
     return higher, _elasticity(mesh, elements.one_order_lower(), np.asarray(lower.T @ (higher.stiffness @ lower)))
 
 
-def _elasticity(mesh: SectorMesh, elements: SectorElements, stiffness: Array) -> SectorElasticity:
+def _elasticity(
+    mesh: SectorMesh, elements: SectorElements, stiffness: Array | None = None, *, whole: Any = None
+) -> SectorElasticity:
     nodes, points = elements.element_nodes, elements.point_nodes
     return SectorElasticity(
-        stiffness=stiffness,
+        stiffness=np.zeros((0, 0, 0)) if stiffness is None else stiffness,
         element_dofs=(2 * nodes[:, :, None] + np.array([0, 1])).reshape(nodes.shape[0], -1),
         inside=2 * int(elements.dofs.interior_dofs.shape[0]),
         centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
@@ -109,6 +129,7 @@ def _elasticity(mesh: SectorMesh, elements: SectorElements, stiffness: Array) ->
         node_dofs=np.where(points < 0, -1, 2 * points + np.array([[0], [1]])),
         order=elements.order,
         size=2 * int(elements.dofs.N),
+        whole=whole,
     )
 
 

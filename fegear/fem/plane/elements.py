@@ -116,6 +116,25 @@ class SectorElements:
         _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
         return basis
 
+    def vector_basis(self, components: int = 2, chosen: Index | None = None) -> Any:
+        """scikit-fem's basis of vector-valued functions on elements, by default all.
+
+        With n components unknown n i + c is component c of node i.
+
+        Raises
+        ------
+        InputError
+            If an element is turned inside out.
+        """
+        from skfem import Basis, ElementVector
+
+        from fegear.fem.plane.curved_map import CurvedMap
+
+        element, mapping = ElementVector(_element(self.order), components), CurvedMap(self.grid)
+        basis = Basis(self.grid, element, mapping, intorder=_CURVED_DEGREE, elements=chosen, disable_doflocs=True)
+        _refuse_inverted(mapping.detDF(basis.X, tind=chosen), self.origin)
+        return basis
+
     def node_places(self) -> Array:
         """Where the nodes lie, shape (2, N) [modules from the gear's centre]."""
         from fegear.fem.plane.curved_map import CurvedMap

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.plane.settings import Solver
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
     from fegear.geometry.rim_support import RimSupport
@@ -362,6 +363,7 @@ def solve_influence(
     sector_teeth: int = 0,
     two_orders: bool = False,
     support: RimSupport | None = None,
+    solver: Solver = "condensed",
 ) -> Influence:
     """Solve one ring for all that can be asked of its teeth.
 
@@ -386,6 +388,8 @@ def solve_influence(
         Whether to solve with elements one order lower as well (`Influence.lower`), which takes .4 of the time again.
     support : RimSupport, optional
         Of a ring gear's rim [modules]; by default its whole outer circle is held.
+    solver : {"condensed", "scikit-fem"}
+        What assembles a sector and eliminates its inner unknowns.
 
     Returns
     -------
@@ -395,8 +399,8 @@ def solve_influence(
     with one_thread():
         started = time.perf_counter()
         if not two_orders:
-            return _solve(what, assemble(mesh, poisson_ratio, plane, order), started)
-        elasticity, lower = assemble_two_orders(mesh, poisson_ratio, plane, order)
+            return _solve(what, assemble(mesh, poisson_ratio, plane, order, solver), started)
+        elasticity, lower = assemble_two_orders(mesh, poisson_ratio, plane, order, solver)
         return replace(_solve(what, elasticity, started), lower=_solve(what, lower, time.perf_counter()))
 
 

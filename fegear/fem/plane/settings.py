@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from typing import Literal, get_args
 
 import numpy as np
 
 from fegear.base.errors import InputError
 
+#: What assembles a sector and eliminates its inner unknowns: nested dissection of its elements (`condensation`), or
+#: scikit-fem's own `asm`, `condense` and `solve` (`scikit_fem_solver`).
+Solver = Literal["condensed", "scikit-fem"]
+SOLVERS: tuple[Solver, ...] = get_args(Solver)
 #: Unknowns of a sector beyond which neither time nor memory suffices: some 20 GB.
 _MOST_UNKNOWNS = 3e6
 #: No pressure on the mesh of a level is wider [modules].
@@ -45,6 +50,8 @@ class MeshSettings:
         Half-width of the wider of the two semi-elliptic pressures that load the mesh.
     order : int
         Polynomial order of the displacement, 2 to 4.
+    solver : {"condensed", "scikit-fem"}
+        What assembles and eliminates: the answers agree to round-off, the second takes several times as long.
     """
 
     root_edge_length: float = 0.055
@@ -61,12 +68,15 @@ class MeshSettings:
     corner_distance: float = 0.006
     patch_half_width: float = 0.18
     order: int = 4
+    solver: Solver = "condensed"
 
     def __post_init__(self) -> None:
         """Refuse settings that make no mesh."""
+        if self.solver not in SOLVERS:
+            raise InputError("accuracy.solver", self.solver, f"must be one of {', '.join(SOLVERS)}")
         for f in fields(self):
             value = getattr(self, f.name)
-            if not (math.isfinite(value) and value > 0.0):
+            if f.name != "solver" and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
         if self.order not in (2, 3, 4):
             raise InputError("accuracy.order", self.order, "must be 2, 3 or 4")

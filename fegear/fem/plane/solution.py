@@ -24,7 +24,7 @@ from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.rim import PinForces
 from fegear.fem.plane.root_stress import FilletStrain
 from fegear.fem.plane.sector import mesh_sector
-from fegear.fem.plane.settings import FINEST_LEVEL, LEVEL_RATIO, MeshSettings, level_for, settings_at
+from fegear.fem.plane.settings import FINEST_LEVEL, LEVEL_RATIO, MeshSettings, Solver, level_for, settings_at
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane
 from fegear.geometry.involute_tooth import InvoluteTooth
@@ -87,6 +87,7 @@ def influence_of_shape(
             corner_distance=settings.corner_distance,
             two_orders=two_orders,
             support=support,
+            solver=settings.solver,
         )
 
     what = (bore_radius, poisson_ratio, plane, settings, reach, two_orders, support)
@@ -146,10 +147,10 @@ def solve_gear(
         fine = known_or_solved(
             cache or SolutionCache(),
             gear.tooth,
-            (mesh, nu, plane, order, reach, closest, estimate_error),
+            (mesh, nu, plane, order, reach, closest, estimate_error, settings.solver),
             lambda: solve_influence(
                 gear.tooth, mesh, nu, plane,
-                order=order, reach=reach, corner_distance=closest, two_orders=estimate_error,
+                order=order, reach=reach, corner_distance=closest, two_orders=estimate_error, solver=settings.solver,
             ),
         )  # fmt: skip
     else:
@@ -171,6 +172,7 @@ def solve_to_tolerance(
     tolerance: float,
     *,
     reach: int = 1,
+    solver: Solver = "condensed",
     progress: Progress | None = None,
     cache: SolutionCache | None = None,
 ) -> GearInfluence:
@@ -186,6 +188,8 @@ def solve_to_tolerance(
         For the largest error over the flank of c_0, of c_1 (over c_0), of root tension and of root compression.
     reach : int
         K: neighbours -K..K.
+    solver : {"condensed", "scikit-fem"}
+        What assembles a sector and eliminates its inner unknowns.
     progress : callable, optional
 
     Returns
@@ -198,7 +202,7 @@ def solve_to_tolerance(
     cache = SolutionCache() if cache is None else cache
     while True:
         started = time.perf_counter()
-        settings = settings_at(level)
+        settings = replace(settings_at(level), solver=solver)
         known = solve_gear(gear, settings, reach=reach, progress=progress, cache=cache)
         known = _with_errors(
             known, content_key("largest errors", _shape(gear), gear.support_in_modules, settings, reach), cache

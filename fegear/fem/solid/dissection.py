@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.plane.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
+from fegear.fem.solid.scikit_fem_solver import condense_whole
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index, Mask
@@ -91,6 +92,8 @@ def condense_solid(
     FegearError
         If the stiffness is not positive definite.
     """
+    if section.whole is not None:
+        return condense_whole(section, section.whole, face, known, kept, expandable=expandable)
     dofs = section.element_dofs
     counts = (known.number >= 0).sum(axis=1)
     weight = counts.copy()

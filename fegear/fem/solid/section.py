@@ -24,6 +24,8 @@ from fegear.fem.plane.body import zones
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import SectorElements, sector_elements
 from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.settings import Solver
+from fegear.fem.solid.scikit_fem_solver import SectionMatrices, assembled_zones
 from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
 
@@ -76,6 +78,8 @@ class Section:
         Tangent of the inclination of the web that each element belongs to; None if no web is inclined.
     along : BodyAlong or None
         Places in the hub under an inclined web.
+    whole : tuple of SectionMatrices, optional
+        The section's matrices of each zone, assembled by scikit-fem, which then eliminates too (`scikit_fem_solver`).
     """
 
     stiffness: tuple[Array, Array, Array]
@@ -95,6 +99,7 @@ class Section:
     side: int = 1
     lean: Array | None = None
     along: BodyAlong | None = None
+    whole: tuple[SectionMatrices, ...] | None = None
 
     @property
     def size(self) -> int:
@@ -157,6 +162,7 @@ def make_section(
     side: int = 1,
     along: BodyAlong | None = None,
     polar: Sequence[str] = (),
+    solver: Solver = "condensed",
 ) -> Section:
     """Integrate the section's matrices.
 
@@ -178,6 +184,8 @@ def make_section(
         Where web and hub of the body lie along the face.
     polar : sequence of str
         Boundaries besides the sides whose nodes have polar axes.
+    solver : {"condensed", "scikit-fem"}
+        What assembles the sector and eliminates its inner unknowns.
 
     Returns
     -------
@@ -217,6 +225,7 @@ def make_section(
         side=side,
         lean=lean,
         along=None if lean is None else along,
+        whole=assembled_zones(elements, axes, tau, poisson_ratio, zone, lean) if solver == "scikit-fem" else None,
     )
 
 

@@ -302,7 +302,10 @@ def _solve(
     if mesh is None:
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True, fewest=settings.body_layers)
     along = None if body is None else body.along(width)
-    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius, body, side=tooth.side, along=along)
+    section = make_section(
+        mesh, settings.section.order, tau, nu, tooth.base_radius, body,
+        side=tooth.side, along=along, solver=settings.section.solver,
+    )  # fmt: skip
     held = held if along is None else along.hub
     cuts = (held or ()) if along is None else along.ends
     symmetric = tau == 0.0 and (held is None if body is None else body.even)

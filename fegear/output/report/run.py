@@ -7,6 +7,7 @@ The data of the gears as on a drawing, and each pair drawn in mesh.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -257,11 +258,33 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
     )
     return (
         *((Paragraph(summary),) if results.values else ()),
+        *(Paragraph(sentence) for sentence in _libraries(results)),
         *((Plot(_figure(found, tolerance)),) if len(found) > 1 else ()),
         Paragraph("Seconds of each task:", "table-title"),
         Bars({str(task): seconds for task, seconds in results.seconds.items()}, "s"),
         *settings,
     )
+
+
+def _libraries(results: Results) -> tuple[str, ...]:
+    """Which library does what on the way to influence functions, where finite elements were solved."""
+    if not any(_has_solver(outcome.settings) for outcome in results.outcomes.values()):
+        return ()
+    solver = results.scene.case.accuracy.solver
+    first = "gmsh meshes one tooth; scikit-fem numbers its unknowns, maps and integrates its elements"
+    if solver == "scikit-fem":
+        rest = "assembles them and eliminates the inner unknowns; fegear closes the ring of all teeth"
+        return (f'{first}, {rest} (accuracy.solver = "scikit-fem").',)
+    rest = "fegear's nested dissection assembles and eliminates, and closes the ring of all teeth"
+    other = 'accuracy.solver = "scikit-fem" has scikit-fem do that too: same numbers, several times the CPU time'
+    return (f"{first}; {rest}. {other} (fegear check measures both).",)
+
+
+def _has_solver(settings: object) -> bool:
+    """Whether settings, or some within them, are those of finite elements."""
+    if not isinstance(settings, Mapping):
+        return False
+    return "solver" in settings or any(_has_solver(within) for within in settings.values())
 
 
 #: Which columns of the gear data stand together, in the order of a drawing.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from fegear.case.built.solid_influence import seconds_of_solid_gear
 from fegear.fem.plane.settings import MeshSettings
@@ -57,7 +57,7 @@ _TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
 _REFERENCE_FACTOR, _QUICKER, _CHECK = 1.0, 2.0, 1.4
 
 
-_REFERENCE_EDGES = {
+_REFERENCE_EDGES: dict[str, Any] = {
     "flank_edge_length": 0.0125, "root_edge_length": 0.02, "root_fraction": 0.1,
     "tip_edge_length": 0.008, "junction_edge_length": 0.008,
 }  # fmt: skip
@@ -133,7 +133,12 @@ def make_ladder(
         for factor in factors:
             narrowest = _NARROWEST * MeshSettings().scaled(factor).flank_edge_length * 2.0 / order
             meshes.append(tuple(_ring(order, factor, p) for p in patches if p >= narrowest))
-    settings = _ring(_SECTOR_ORDER, _SECTOR_FACTOR, usual).settings
+    # The same mesh as one of the ring's, so that both can be compared.
+    plain = _ring(_SECTOR_ORDER, _SECTOR_FACTOR, usual)
+    settings = plain.settings
+    if settings is not None:
+        both = replace(plain, family="scikit-fem", settings=replace(settings, solver="scikit-fem"))
+        meshes.append((both,))
     sectors = _QUICK_SECTORS if quick else _SECTORS
     meshes += [(Configuration("sector", settings, _SECTOR_FACTOR, n),) for n in sectors if n < teeth]
     if set(quantities) - {"root-stress"}:
@@ -154,7 +159,7 @@ def _reference(patch: float, *, quick: bool) -> tuple[Configuration, Configurati
 
 
 Family = Literal[
-    "compliance-formula", "stress-formula", "sector", "ring", "tolerance", "table",
+    "compliance-formula", "stress-formula", "sector", "ring", "scikit-fem", "tolerance", "table",
     "thin-slices", "thin-slices-alone", "coupled-slices", "coupled-slices-alone", "solid", "solid-alone",
 ]  # fmt: skip
 
@@ -171,6 +176,7 @@ class Configuration:
     ----------
     family : str
         ``compliance-formula``, ``stress-formula``, ``sector`` (teeth with free sides), ``ring`` (the whole gear),
+        ``scikit-fem`` (the whole gear, its sector assembled and condensed by scikit-fem: ``accuracy.solver``),
         ``tolerance`` (what a run picks for ``accuracy.tolerance``), ``table`` (the case's own compliances); of a pair
         that is loaded over its face ``thin-slices``, ``coupled-slices`` and ``solid``, with ``-alone`` without
         neighbouring teeth.
@@ -203,7 +209,8 @@ class Configuration:
             return f"{self.formula}, {'root stress' if self.family == 'stress-formula' else 'compliance'}"
         s = self.settings
         who = f"sector of {self.teeth} teeth" if self.family == "sector" else "whole gear"
-        return f"{who}, order {s.order}, edges x {self.factor:.3g}, patch {s.patch_half_width:.4g}"
+        by = ", by scikit-fem" if self.family == "scikit-fem" else ""
+        return f"{who}, order {s.order}, edges x {self.factor:.3g}, patch {s.patch_half_width:.4g}{by}"
 
     def paste(self, pair: str) -> str:
         """The configuration as lines of a case file; empty for what no case can ask for.
@@ -215,10 +222,11 @@ class Configuration:
         """
         if self.family == "tolerance":
             return f"accuracy = {{ tolerance = {self.tolerance:g} }}"
-        if self.family == "ring" and self.settings is not None:
+        if self.family in ("ring", "scikit-fem") and self.settings is not None:
             usual = asdict(MeshSettings())
             own = {k: v for k, v in asdict(self.settings).items() if v != usual[k]} or {"order": self.settings.order}
-            return "accuracy = { " + ", ".join(f"{k} = {v:.6g}" for k, v in own.items()) + " }"
+            keys = (f'{k} = "{v}"' if isinstance(v, str) else f"{k} = {v:.6g}" for k, v in own.items())
+            return "accuracy = { " + ", ".join(keys) + " }"
         if self.family == "compliance-formula" and pair and self.formula != ISO_STIFFNESS:
             return f'pair.{pair}.compliance = {{ source = "{self.formula}" }}'
         return ""

@@ -103,7 +103,7 @@ def _solve(gear: Gear, settings: MeshSettings, reach: int, sector_teeth: int) ->
     return solve_influence(
         gear.tooth, mesh, gear.material.poisson_ratio, gear.plane_assumption,
         order=settings.order, reach=reach, corner_distance=settings.corner_distance, sector_teeth=sector_teeth,
-        support=gear.support_in_modules,
+        support=gear.support_in_modules, solver=settings.solver,
     )  # fmt: skip
 
 

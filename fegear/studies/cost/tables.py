@@ -210,6 +210,7 @@ def _panel(results: CostResults, quantity: Quantity, *, title: str, written: boo
     for families, label, role, symbol in (
         (("sector",), "sector with free sides", "orange", "triangle-up"),
         (("compliance-formula", "stress-formula"), "closed form", "red", "x"),
+        (("scikit-fem",), "ring, sector by scikit-fem", "green", "x"),
         (("table",), "the case's table", "ink", "square"),
         (("thin-slices-alone",), "thin slices without neighbours", "orange", "x"),
         (("thin-slices",), "thin slices", "orange", "triangle-up"),
