@@ -123,6 +123,11 @@ class OperationPart(Part):
         default=1.4, description="Required safety against breakage of the tooth root S_Fmin."
     )
 
+    @property
+    def applied_factor(self) -> float:
+        """K_A K_gamma, by which ISO 6336-1 multiplies F_t before it asks for stiffness and dynamic factor."""
+        return self.application_factor * self.mesh_load_factor
+
     @model_validator(mode="after")
     def _one_life(self) -> Self:
         if self.life is not None and self.load_cycles is not None:

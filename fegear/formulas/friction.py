@@ -89,16 +89,41 @@ def helical_load_factor(total_contact_ratio: float) -> float:
     return 1.0 + 0.2 * float(np.sqrt((total_contact_ratio - 2.0) * (5.0 - total_contact_ratio)))
 
 
-def mean_friction(law: MeanLaw, surface: Surface, line_load: ArrayLike, rolling: ArrayLike, radius: ArrayLike) -> Array:
+def law_load(law: MeanLaw, pair: GearPair, line_load: ArrayLike) -> Array:
+    """Load per face width that a law is stated for [N/m].
+
+    Parameters
+    ----------
+    law : {"schlenk", "iso-6336-20", "iso-6336-21", "iso-6336-22"}
+    pair : GearPair
+    line_load : array_like
+        w = F_bt / b along the line of action, with the load factors that count [N/m].
+
+    Returns
+    -------
+    ndarray
+        w for Schlenk; the tangential w_Bt = w cos(alpha_t) for -20; at least 150 N/mm of it times K_Bgamma for -21;
+        w K_Bgamma for -22. No load stays none.
+    """
+    w = np.asarray(line_load, dtype=float)
+    if law in ("iso-6336-20", "iso-6336-21"):
+        w = pair.tangential_load(1.0) * w
+    if law == "iso-6336-21":
+        w = np.where(w > 0.0, np.maximum(w, LEAST_LOAD), 0.0)
+    crowded = helical_load_factor(pair.total_contact_ratio) if law in ("iso-6336-21", "iso-6336-22") else 1.0
+    return np.asarray(crowded * w)
+
+
+def mean_friction(law: MeanLaw, surface: Surface, load: ArrayLike, rolling: ArrayLike, radius: ArrayLike) -> Array:
     """Friction coefficient by one of the mean laws; with local arguments it is taken at every point.
 
     Parameters
     ----------
     law : {"schlenk", "iso-6336-20", "iso-6336-21", "iso-6336-22"}
     surface : Surface
-    line_load : array_like
-        Load per face width with all the factors that the law asks for [N/m]: F_bt / b for Schlenk and -22,
-        w_Bt = K_A K_v K_Bbeta K_Balpha F_t / b for -20 and the same times K_Bgamma for -21 and -22; none, no friction.
+    load : array_like
+        Load per face width that the law is stated for [N/m], see `law_load`: F_bt / b or F_t / b, and factors of its
+        own; none, no friction.
     rolling : array_like
         v_Sigma, sum of both flanks' tangential speeds [m/s].
     radius : array_like
@@ -110,9 +135,7 @@ def mean_friction(law: MeanLaw, surface: Surface, line_load: ArrayLike, rolling:
         At most 0.5, that of dry steel: where radius or speed go to zero the laws have no bound.
     """
     tiny = np.finfo(float).tiny
-    w = np.maximum(np.asarray(line_load, dtype=float), 0.0) * 1e-3
-    if law == "iso-6336-21":
-        w = np.where(w > 0.0, np.maximum(w, LEAST_LOAD * 1e-3), 0.0)
+    w = np.maximum(np.asarray(load, dtype=float), 0.0) * 1e-3
     v, rho = np.asarray(rolling, dtype=float), np.asarray(radius, dtype=float) * 1e3
     ra = surface.roughness * 1e6
     x_l: Array = np.asarray(surface.oil.factor)

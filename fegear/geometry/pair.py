@@ -243,6 +243,18 @@ class GearPair:
         sizes = [(gear.teeth, -gear.tooth.profile_shift) for gear in (self.driver, self.driven)]
         return "driver" if sizes[0] <= sizes[1] else "driven"
 
+    def tangential_load(self, load: float) -> float:
+        """F_t at the reference circles of a load F_bt along the transverse line of action, which loads are here [N].
+
+        One torque is F_t r = F_bt r_b. Formulas of ISO 6336-1 to -3 take F_t, contact and deflection F_bt; the load
+        normal to a helical flank is F_bt / cos(beta_b), and per length of contact line again F_bt / b.
+        """
+        return load * self.driver.base_radius / self.driver.pitch_radius
+
+    def specific_load(self, load: float) -> float:
+        """F_t / b of ISO 6336 [N/m] under a load F_bt along the transverse line of action [N]."""
+        return self.tangential_load(load) / self.face_width
+
     def gear(self, member: Member) -> Gear:
         """Driver or driven."""
         return self.driver if member == "driver" else self.driven

@@ -203,14 +203,14 @@ def face_load_of_springs() -> Iterator[Compared]:
 
     from fegear.formulas.iso6336.part1_face_load import face_load_factor
 
-    stiffness, line_load, place = 20e9, 4e5, (np.arange(200_000) + 0.5) / 200_000
+    stiffness, specific_load, place = 20e9, 4e5, (np.arange(200_000) + 0.5) / 200_000
     for gap in (2e-6, 15e-6, 40e-6, 200e-6, 1e-3):
 
         def load(zeta: float, gap: float = gap) -> Array:
             return stiffness * np.maximum(zeta - gap * place, 0.0)
 
-        zeta = brentq(lambda at, load=load: load(at).mean() - line_load, 0.0, gap + 1.0)
-        yield from near(face_load_factor(gap, stiffness, line_load), load(zeta).max() / line_load, 1e-4)
+        zeta = brentq(lambda at, load=load: load(at).mean() - specific_load, 0.0, gap + 1.0)
+        yield from near(face_load_factor(gap, stiffness, specific_load), load(zeta).max() / specific_load, 1e-4)
 
 
 # ---- tooth beams ------------------------------------------------------------------------------------------------

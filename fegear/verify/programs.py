@@ -165,10 +165,10 @@ def din3990_face_load() -> Iterator[Compared]:
     from fegear.formulas.iso6336.part1_transverse import helix_allowance, mean
     from fegear.formulas.iso6336.rated import Strength
 
-    steel, load = Strength("Eh", 1500e6, 430e6), 25368.536123904036 / 48.64e-3
-    found, _ = shaft_deformation(PinionShaft("a", 0.2, 0.0, 0.06), load, 48.64e-3, 76e-3)
+    steel, specific_load = Strength("Eh", 1500e6, 430e6), 25368.536123904036 / 48.64e-3
+    found, _ = shaft_deformation(PinionShaft("a", 0.2, 0.0, 0.06), specific_load, 48.64e-3, 76e-3)
     yield from near(found, 4.913484891366676e-6, 1e-11)
-    factor = face_load_factor(5.550790414924349e-6, 20e9, load)
+    factor = face_load_factor(5.550790414924349e-6, 20e9, specific_load)
     yield from near(factor, 1.1064272863295082, 1e-11)
     # That program's K_v, and so F_betax, differ between the gears; y_beta is their mean.
     worn = [helix_allowance(steel, f, 3.9) for f in (1.33 * found, 6.586991635726722e-6)]

@@ -94,7 +94,7 @@ class PairFriction:
         """
         from fegear.dynamics.train.friction import benedict_kelley, buckingham
         from fegear.formulas.flash_temperature import flank_speeds
-        from fegear.formulas.friction import MEAN_LAWS, helical_load_factor, mean_friction
+        from fegear.formulas.friction import MEAN_LAWS, law_load, mean_friction
 
         if self.law == "buckingham":
             return lambda at, w: np.broadcast_to(buckingham(at.sliding), np.shape(w)) * 1.0
@@ -106,14 +106,11 @@ class PairFriction:
         surface = self.surface
         if surface is None:
             raise InputError("friction.law", f'"{self.law}"', "needs oil and roughness")
-        scale = helical_load_factor(pair.total_contact_ratio) if name in ("iso-6336-21", "iso-6336-22") else 1.0
-        if name in ("iso-6336-20", "iso-6336-21"):
-            scale *= math.cos(pair.driver.transverse_pressure_angle)  # these take F_t at the reference circle
         tilt = math.cos(pair.driver.base_helix_angle) if name == "iso-6336-20" else 1.0
 
         def local(at: FlankSpeeds, w: Array) -> Array:
             radius = np.broadcast_to(at.relative_radius * tilt, np.shape(w))
-            return mean_friction(name, surface, scale * w, np.broadcast_to(at.sum, np.shape(w)), radius)
+            return mean_friction(name, surface, law_load(name, pair, w), np.broadcast_to(at.sum, np.shape(w)), radius)
 
         if self.local:
             return local
@@ -259,7 +256,7 @@ def load_factors(scene: Scene, name: str) -> tuple[LoadFactors, tuple[str, ...]]
         )
         remarks = (*remarks, told)
     dynamic, face, transverse = (value or 1.0 for value in found.values())
-    return LoadFactors(given.application_factor * given.mesh_load_factor, dynamic, face, transverse), remarks
+    return LoadFactors(given.applied_factor, dynamic, face, transverse), remarks
 
 
 def _by_iso_6336(scene: Scene, name: str, wanted: list[str]) -> tuple[dict[str, float], tuple[str, ...]]:
@@ -319,7 +316,8 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
         told.append(f"Pair {name}: viscosity_100 of the oil is that of a mineral oil of viscosity index 95.")
     single, mesh = _USUAL_STIFFNESS
     try:
-        stiffness = pair_stiffness(pair, factors.application * load / pair.face_width, blank_factor(scene, name))
+        applied = factors.application * pair.specific_load(load)
+        stiffness = pair_stiffness(pair, specific_load=applied, blank=blank_factor(scene, name))
         single, mesh = stiffness.single, stiffness.mesh_alpha
     except RangeError as error:
         told.append(f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um), as ISO 6336-1 has no value here: {error}")

@@ -171,7 +171,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     strength = tuple(gear_strength(scene, gear, said) for gear in names)
     quality = tuple(gear_quality(scene, name, gear, said) for gear in names)
     load, operation = part.normal_load(pair) or math.nan, part.operation
-    tangential = load * pair.driver.base_radius / pair.driver.pitch_radius
+    tangential = pair.tangential_load(load)
     speed = (part.speed or math.nan) * pair.driver.teeth / pair.gear(geometry.members[0]).teeth
     if part.lubricant is None:
         said.append(f"Pair {name}: an oil of ISO VG 220 was assumed (lubricant).")
@@ -282,7 +282,7 @@ def _of_computed_shafts(scene: Scene, name: str) -> float:
     shafts = gaps_of_even_loads(gearbox_of(scene), name)
     if not shafts.given:
         return 0.0
-    tangential = float(shafts.load[-1]) * pair.driver.base_radius / pair.driver.pitch_radius
+    tangential = pair.tangential_load(float(shafts.load[-1]))
     slope = float(straight_slope(shafts.height, shafts.gap[-1, 0, :, None])[0])
     return abs(slope) * pair.face_width**2 / tangential
 

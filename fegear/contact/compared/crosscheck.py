@@ -197,13 +197,21 @@ class HelicalCheck:
     pair : GearPair
     overlap_ratio : float
         epsilon_beta of the faces as they stand.
-    line_load : float
+    specific_load : float
         F_t / b [N/m].
+    load_factor : float
+        K_A K_gamma, which c' takes and a nominal root stress does not.
     """
 
     pair: GearPair
     overlap_ratio: float
-    line_load: float
+    specific_load: float
+    load_factor: float = 1.0
+
+    @property
+    def applied_load(self) -> float:
+        """F_t K_A K_gamma / b [N/m]."""
+        return self.load_factor * self.specific_load
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,7 +262,7 @@ def rated_spur_pair(
     influences : (GearInfluence, GearInfluence)
         Driver and driven.
     line_load : float
-        Normal to the flank [N/m].
+        w = F_bt / b, along the line of action [N/m].
     choice : RatingChoice
     rims : sequence of float or None
         Rim thickness [m]; None for a solid gear.
@@ -268,7 +276,7 @@ def rated_spur_pair(
             found.append(_nothing(answer))
             continue
         one = answer.value
-        form = line_load * math.cos(gear.normal_pressure_angle) / gear.module * one.form.Y_F * one.form.Y_S
+        form = pair.tangential_load(line_load) / gear.module * one.form.Y_F * one.form.Y_S
         at = np.array([0.5 * one.load_diameter * gear.module])
         tension = float(known.largest_root_stress(0, "tension", at)[0][0])
         found.append(RatedGear(answer, form, line_load * tension, ""))
@@ -298,12 +306,12 @@ def rated_helical_pair(
 
         def rate(gear: Gear = gear, rim: float | None = rim) -> tuple[rating.RootRating, float]:
             load = rating.ToothLoad(
-                check.line_load, rating.virtual_contact_ratio(gear, check.pair.contact_ratio), check.overlap_ratio,
+                check.specific_load, rating.virtual_contact_ratio(gear, check.pair.contact_ratio), check.overlap_ratio,
                 gear.helix_angle,
             )  # fmt: skip
             one = rating.rate_helical(gear, load, choice, rim)
             tension = virtual_root_stress(gear, one.load_diameter, settings, cache).tension
-            normal = check.line_load / math.cos(gear.normal_pressure_angle)
+            normal = check.specific_load / math.cos(gear.normal_pressure_angle)
             return one, normal * tension / gear.module
 
         both = attempt(rate)
@@ -311,9 +319,9 @@ def rated_helical_pair(
             found.append(_nothing(Outcome(None, both.reason)))
             continue
         one, fe = both.value
-        form = check.line_load / gear.module * one.form.Y_F * one.form.Y_S
+        form = check.specific_load / gear.module * one.form.Y_F * one.form.Y_S
         found.append(RatedGear(Outcome(one), form, fe, ""))
-    stiffness = attempt(partial(pair_stiffness, check.pair, check.line_load))
+    stiffness = attempt(partial(pair_stiffness, check.pair, specific_load=check.applied_load))
     return RatedPair((found[0], found[1]), stiffness)
 
 

@@ -115,7 +115,7 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
     pair : GearPair
     gaps : FlankGaps
     load : float
-        Along the transverse line of action [N].
+        F_bt, along the transverse line of action [N].
 
     Raises
     ------
@@ -125,9 +125,9 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
     from fegear.formulas.iso6336.part1_face_load import face_load_factor
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 
-    tangential = load * pair.driver.base_radius / pair.driver.pitch_radius / pair.face_width
-    stiffness = pair_stiffness(pair, tangential).mesh_beta
-    return face_load_factor(straight_gap(pair, gaps.under(load)), stiffness, tangential)
+    specific_load = pair.specific_load(load)
+    stiffness = pair_stiffness(pair, specific_load=specific_load).mesh_beta
+    return face_load_factor(straight_gap(pair, gaps.under(load)), stiffness, specific_load)
 
 
 def iso_root_exponent(pair: GearPair) -> float:

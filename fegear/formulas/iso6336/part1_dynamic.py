@@ -5,7 +5,7 @@ keeps the formulas. Equation numbers of clauses 6 to 8 were checked in a public 
 them (mekanika.org, MechanicalCalculatorWeb, Services/Iso6336*.cs).
 Method B takes the pair as two masses on the mean stiffness of their teeth; method C is a fit for pairs that run well
 below their resonance. Method C's numbers are those of IACS UR M56 (Rev. 4), 1.6.3, which repeats ISO 6336-1:2019.
-Lengths in m, line loads in N/m, stiffnesses per face width in Pa.
+Lengths in m, specific loads (tangential, per face width) in N/m, stiffnesses per face width in Pa.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fegear.formulas.iso6336.pair_geometry import PairGeometry
     from fegear.formulas.iso6336.rated import Both
 
-#: Least line load that the standard counts [N/m].
+#: Least specific load that the standard counts [N/m].
 _LEAST_LOAD = 100e3
 #: Ends of the ranges of the resonance ratio: the main resonance to 1.15, supercritical from 1.5.
 MAIN_END, SUPERCRITICAL = 1.15, 1.5
@@ -150,14 +150,14 @@ def coefficients(total_contact_ratio: float) -> tuple[float, ...]:
     return (*first, last)
 
 
-def lower_limit(line_load: float) -> float:
-    """N_S, where the main resonance begins: .85, less below 100 N/mm (ISO 6336-1:2006, 6.4.2, Eqs. 11 and 12)."""
-    return 0.85 if line_load >= _LEAST_LOAD else 0.5 + 0.35 * math.sqrt(line_load / _LEAST_LOAD)
+def lower_limit(specific_load: float) -> float:
+    """N_S, start of the main resonance: .85, less for F_t K_A K_gamma / b below 100 N/mm (ISO 6336-1, Eqs. 11, 12)."""
+    return 0.85 if specific_load >= _LEAST_LOAD else 0.5 + 0.35 * math.sqrt(specific_load / _LEAST_LOAD)
 
 
-def load_parameters(errors: DynamicErrors, single_stiffness: float, line_load: float) -> tuple[float, float, float]:
-    """B_p, B_f, B_k (ISO 6336-1:2006, 6.4.3, Eqs. 15 to 19); line load F_t K_A K_gamma / b [N/m], c' [Pa]."""
-    per_length = single_stiffness / line_load
+def load_parameters(errors: DynamicErrors, single_stiffness: float, specific_load: float) -> tuple[float, float, float]:
+    """B_p, B_f, B_k (ISO 6336-1:2006, 6.4.3, Eqs. 15 to 19); specific load F_t K_A K_gamma / b [N/m], c' [Pa]."""
+    per_length = single_stiffness / specific_load
     b_p = per_length * (errors.base_pitch - errors.run_in_pitch)
     b_f = per_length * (errors.profile - errors.run_in_profile)
     return b_p, b_f, 1.0 if errors.coarse else abs(1.0 - per_length * errors.tip_relief)
@@ -194,7 +194,7 @@ def of_resonance_ratio(
 def method_b(
     pair: PairGeometry,
     stiffness: tuple[float, float],
-    line_load: float,
+    specific_load: float,
     speed: float,
     errors: DynamicErrors,
     meshes: tuple[int, int] = (1, 1),
@@ -206,7 +206,7 @@ def method_b(
     pair : PairGeometry
     stiffness : (float, float)
         c' and c_gamma_alpha [Pa].
-    line_load : float
+    specific_load : float
         F_t K_A K_gamma / b [N/m].
     speed : float
         Of the pinion [rad/s].
@@ -214,14 +214,14 @@ def method_b(
     meshes : (int, int)
         How many mates pinion and wheel have.
     """
-    for name, value in (("line load", line_load), ("speed", speed)):
+    for name, value in (("specific load", specific_load), ("speed", speed)):
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
     mass = reduced_mass(pair, meshes)
     resonance = math.sqrt(stiffness[1] / mass) / pair.gears[0].teeth
-    limit = lower_limit(line_load)
+    limit = lower_limit(specific_load)
     c = coefficients(pair.total_contact_ratio)
-    b = load_parameters(errors, stiffness[0], line_load)
+    b = load_parameters(errors, stiffness[0], specific_load)
     name, k_v = of_resonance_ratio(speed / resonance, limit, c, b)
     remark = ""
     if name == "main resonance":
@@ -237,13 +237,13 @@ def speed_parameter(pair: PairGeometry, velocity: float) -> float:
     return velocity * pair.gears[0].teeth / 100.0 * u / math.sqrt(1.0 + u * u)
 
 
-def method_c(pair: PairGeometry, line_load: float, velocity: float, grade: int) -> DynamicFactor:
+def method_c(pair: PairGeometry, specific_load: float, velocity: float, grade: int) -> DynamicFactor:
     """K_v by method C (ISO 6336-1:2006, 6.5), for solid steel discs of accuracy grade 3 to 8 below the resonance.
 
     Parameters
     ----------
     pair : PairGeometry
-    line_load : float
+    specific_load : float
         F_t K_A K_gamma / b [N/m], counted as at least 100 N/mm.
     velocity : float
         v at the reference circle [m/s].
@@ -263,7 +263,7 @@ def method_c(pair: PairGeometry, line_load: float, velocity: float, grade: int) 
         raise RangeError(
             "v z_1/100 sqrt(u^2/(1 + u^2))", f"{x:.4g} m/s", "must be at most 5.8 for K_v by method C", "use method B"
         )
-    load = max(line_load, _LEAST_LOAD) / 1e3
+    load = max(specific_load, _LEAST_LOAD) / 1e3
     k_3 = 2.0 if x <= 0.2 else 2.071 - 0.357 * x
     spur, helical = (1.0 + (_K_1[kind][grade - 3] / load + _K_2[kind]) * x * k_3 for kind in ("spur", "helical"))
     k_v = spur - min(pair.overlap_ratio, 1.0) * (spur - helical)

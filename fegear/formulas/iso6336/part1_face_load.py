@@ -88,25 +88,25 @@ class Misalignment:
     remark: str = ""
 
 
-def shaft_deformation(shaft: PinionShaft, line_load: float, width: float, diameter: float) -> tuple[float, str]:
+def shaft_deformation(shaft: PinionShaft, specific_load: float, width: float, diameter: float) -> tuple[float, str]:
     """f_sh [m] of spur and single helical gears, and a remark (ISO 6336-1:2006, 7.5.2.4, Eq. 57 and figure 13).
 
     Parameters
     ----------
     shaft : PinionShaft
-    line_load : float
+    specific_load : float
         F_m/b [N/m].
     width, diameter : float
         b, d_1 [m].
     """
-    for name, value in (("F_m/b", line_load), ("b", width), ("d_1", diameter)):
+    for name, value in (("F_m/b", specific_load), ("b", width), ("d_1", diameter)):
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
     stiff, free, most = _SEAT[shaft.arrangement]
     k = stiff if diameter / shaft.diameter >= STIFFENING else free
     torque = 1.0 + 2.0 * (1.0 - shaft.power_share) / shaft.power_share  # B*
     bending = k * shaft.bearing_span * shaft.offset / diameter**2 * (diameter / shaft.diameter) ** 4
-    deformation = line_load * _BENDING * (abs(torque + bending - 0.3) + 0.3) * (width / diameter) ** 2
+    deformation = specific_load * _BENDING * (abs(torque + bending - 0.3) + 0.3) * (width / diameter) ** 2
     place = shaft.offset / shaft.bearing_span
     remarks = []
     if not place < most:
@@ -148,7 +148,7 @@ def method_c(
     alignment: Alignment,
     strength: tuple[Strength, Strength],
     quality: tuple[Quality, Quality],
-    line_load: float,
+    specific_load: float,
     stiffness: float,
     velocity: float,
 ) -> Misalignment:
@@ -160,7 +160,7 @@ def method_c(
     alignment : Alignment
     strength, quality : pairs
         Of pinion and wheel.
-    line_load : float
+    specific_load : float
         F_m/b = F_t K_A K_gamma K_v / b [N/m].
     stiffness : float
         c_gamma_beta [Pa].
@@ -181,9 +181,9 @@ def method_c(
     if alignment.deformation is not None:
         deformation = alignment.deformation
     elif alignment.computed is not None:
-        deformation, remark = alignment.computed * line_load, "f_sh: of the computed shafts under an even load"
+        deformation, remark = alignment.computed * specific_load, "f_sh: of the computed shafts under an even load"
     elif alignment.shaft is not None:
-        deformation, remark = shaft_deformation(alignment.shaft, line_load, pair.face_width, pair.diameters[0])
+        deformation, remark = shaft_deformation(alignment.shaft, specific_load, pair.face_width, pair.diameters[0])
     else:
         raise RangeError(
             "alignment",
@@ -195,11 +195,11 @@ def method_c(
     if alignment.contact_pattern == "favourable" and slope_5 is None:
         raise RangeError("f_Hbeta5", "missing", "a favourable contact pattern asks for the tolerance of grade 5")
     manufacture = manufacturing(quality) if alignment.manufacture is None else alignment.manufacture
-    least = max(_LEAST * line_load, 0.5 * max(q.helix_slope for q in quality))
+    least = max(_LEAST * specific_load, 0.5 * max(q.helix_slope for q in quality))
     initial = initial_misalignment(alignment, deformation, manufacture, least, slope_5 or 0.0)
     one, other = (running_in.helix_allowance(s, initial, velocity) for s in strength)
     worn = running_in.mean((one, other))
-    factor = face_load_factor(initial - worn, stiffness, line_load)
+    factor = face_load_factor(initial - worn, stiffness, specific_load)
     constants = MODIFICATIONS[alignment.modification]
     return Misalignment(deformation, manufacture, constants, initial, least, worn, initial - worn, factor, remark)
 
@@ -208,7 +208,7 @@ def method_c(
 _LEAST_WIDTH = 3.0
 
 
-def face_load_factor(misalignment: float, mesh_stiffness: float, line_load: float) -> float:
+def face_load_factor(misalignment: float, mesh_stiffness: float, specific_load: float) -> float:
     """K_Hbeta = 1 + F_betay c / (2 F_m / b), or sqrt(2 F_betay c / (F_m / b)) where the face bears on a part only.
 
     Parameters
@@ -217,7 +217,7 @@ def face_load_factor(misalignment: float, mesh_stiffness: float, line_load: floa
         F_betay, from end to end of the face [m]; its sign does not matter.
     mesh_stiffness : float
         c_gamma_beta per face width [Pa].
-    line_load : float
+    specific_load : float
         F_m / b, mean tangential load per face width [N/m].
 
     Raises
@@ -225,10 +225,10 @@ def face_load_factor(misalignment: float, mesh_stiffness: float, line_load: floa
     RangeError
         If the stiffness or the load is not positive.
     """
-    for name, value in (("c_gamma_beta", mesh_stiffness), ("F_m/b", line_load)):
+    for name, value in (("c_gamma_beta", mesh_stiffness), ("F_m/b", specific_load)):
         if not value > 0.0:
             raise RangeError(name, f"{value:.4g}", "must be positive")
-    relative = abs(misalignment) * mesh_stiffness / (2.0 * line_load)
+    relative = abs(misalignment) * mesh_stiffness / (2.0 * specific_load)
     return 1.0 + relative if relative <= 1.0 else 2.0 * math.sqrt(relative)
 
 

@@ -186,14 +186,14 @@ def stiffness(
     return Stiffness(theoretical, single, alpha, 0.85 * alpha, outside_range(*profile_shift))
 
 
-def pair_stiffness(pair: GearPair, line_load: float = math.inf, blank: float = 1.0) -> Stiffness:
+def pair_stiffness(pair: GearPair, *, specific_load: float = math.inf, blank: float = 1.0) -> Stiffness:
     """Stiffnesses of a gear pair, spur or helical; the pinion is the one with fewer teeth, or more profile shift.
 
     Parameters
     ----------
     pair : GearPair
-    line_load : float
-        F_t K_A / b [N/m].
+    specific_load : float
+        F_t K_A / b [N/m], tangential at the reference circle (`GearPair.specific_load`), not along the line of action.
     blank : float
         C_R; 1 for solid discs. The standard knows nothing of a bore.
     """
@@ -206,6 +206,6 @@ def pair_stiffness(pair: GearPair, line_load: float = math.inf, blank: float = 1
         dedendum=(pinion.tooth.dedendum, wheel.tooth.dedendum),
         pressure_angle=pinion.normal_pressure_angle,
         blank=blank,
-        specific_load=line_load,
+        specific_load=specific_load,
         young_modulus=(pinion.material.young_modulus, wheel.material.young_modulus),
     )

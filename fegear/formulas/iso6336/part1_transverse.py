@@ -48,7 +48,7 @@ def method_b(
     overlap_ratio: float,
     stiffness: float,
     deviation: float,
-    line_load: float,
+    specific_load: float,
     contact_ratio_factor: float,
 ) -> TransverseFactors:
     """K_Halpha and K_Falpha (ISO 6336-1:2006, 8.3.2 to 8.3.4, Eqs. 71 to 74).
@@ -61,7 +61,7 @@ def method_b(
         c_gamma_alpha [Pa].
     deviation : float
         f_pb - y_alpha of the gear with the larger f_pb, or f_falpha - y_alpha where that is larger [m].
-    line_load : float
+    specific_load : float
         F_tH / b = F_t K_A K_gamma K_v K_Hbeta / b [N/m].
     contact_ratio_factor : float
         Z_epsilon, for the limit of K_Halpha.
@@ -70,13 +70,13 @@ def method_b(
         raise RangeError("contact ratio", f"{contact_ratio:.4g}", "must be at least 1")
     if overlap_ratio < 0.0:
         raise RangeError("overlap ratio", overlap_ratio, "must not be negative")
-    for name, value in (("c_gamma_alpha", stiffness), ("F_tH/b", line_load), ("Z_epsilon", contact_ratio_factor)):
+    for name, value in (("c_gamma_alpha", stiffness), ("F_tH/b", specific_load), ("Z_epsilon", contact_ratio_factor)):
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
     if deviation < 0.0:
         raise RangeError("deviation less y_alpha", deviation, "must not be negative")
     total = contact_ratio + overlap_ratio
-    relative = stiffness * deviation / line_load
+    relative = stiffness * deviation / specific_load
     if total <= 2.0:
         unlimited = 0.5 * total * (0.9 + 0.4 * relative)
     else:

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import flash_temperature
-from fegear.formulas.friction import FASTEST, mean_friction
+from fegear.formulas.friction import FASTEST, law_load, mean_friction
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.geometry.pair import GearPair
 
@@ -108,7 +108,8 @@ def friction(rated: RatedSurface) -> float:
     angle = rated.pair.working_pressure_angle
     rolling = 2.0 * min(rated.pitch_line_speed, FASTEST) * math.sin(angle)
     radius = float(rated.at(0.0).relative_radius) * math.cos(rated.pair.driver.base_helix_angle)
-    return float(mean_friction("iso-6336-20", rated.surface, rated.unit_load, rolling, radius))
+    load = law_load("iso-6336-20", rated.pair, rated.line_load)
+    return float(mean_friction("iso-6336-20", rated.surface, load, rolling, radius))
 
 
 def flash_temperatures(rated: RatedSurface, x: ArrayLike) -> FlashTemperatures:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from fegear.base.errors import RangeError
 from fegear.formulas.flash_temperature import STEEL_HEAT
-from fegear.formulas.friction import FASTEST, contact_ratios, helical_load_factor, mean_friction
+from fegear.formulas.friction import FASTEST, contact_ratios, helical_load_factor, law_load, mean_friction
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.geometry.pair import GearPair
 
@@ -165,7 +165,7 @@ def friction(rated: RatedSurface) -> float:
         2.0 * min(rated.reference_speed, FASTEST) * math.tan(pair.working_pressure_angle)
         * math.cos(pair.driver.transverse_pressure_angle)
     )  # fmt: skip
-    load = max(rated.unit_load, 150e3) * helical_load_factor(pair.total_contact_ratio)
+    load = law_load("iso-6336-21", pair, rated.line_load)
     return float(mean_friction("iso-6336-21", rated.surface, load, rolling, rated.at(0.0).relative_radius))
 
 

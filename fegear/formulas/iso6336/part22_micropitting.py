@@ -24,7 +24,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds
-from fegear.formulas.friction import Surface, contact_ratios, helical_load_factor, mean_friction, teeth_factor
+from fegear.formulas.friction import Surface, contact_ratios, law_load, mean_friction, teeth_factor
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.formulas.lubricant import Oil
@@ -133,7 +133,7 @@ def loss_factor(pair: GearPair) -> float:
 def friction(rated: RatedSurface) -> float:
     """mu_m = 0.045 (K F_bt K_Bgamma / (b v_SigmaC rho_nC))^0.2 (1e3 eta_oil)^-0.05 X_R X_L (Formulae 86 and 87)."""
     at_pitch = rated.at(0.0)
-    load = rated.line_load * helical_load_factor(rated.pair.total_contact_ratio)
+    load = law_load("iso-6336-22", rated.pair, rated.line_load)
     return float(mean_friction("iso-6336-22", rated.surface, load, at_pitch.sum, at_pitch.relative_radius))
 
 

@@ -66,8 +66,8 @@ class ToothLoad:
 
     Parameters
     ----------
-    tangential : float
-        F_t per face width [N/m] at the reference circle.
+    specific_load : float
+        F_t / b [N/m], tangential at the reference circle per face width.
     contact_ratio : float
         epsilon_alpha_n of the virtual pair, from 1 to below 2: beyond there is no single pair contact.
     overlap_ratio : float
@@ -79,7 +79,7 @@ class ToothLoad:
         the standard's Y_DT presumes.
     """
 
-    tangential: float
+    specific_load: float
     contact_ratio: float
     overlap_ratio: float = 0.0
     helix_angle: float = 0.0
@@ -133,7 +133,7 @@ def rate_form(
     helix = root.helix_factor(load.overlap_ratio, load.helix_angle, choice.edition)
     deep = root.deep_tooth_factor(load.contact_ratio) if choice.accuracy_grade <= 4 else 1.0
     stress = root.nominal_root_stress(
-        form, load.tangential, 1.0, module, helix=helix, rim=rim, deep_tooth=deep, load_distribution=shared
+        form, load.specific_load, 1.0, module, helix=helix, rim=rim, deep_tooth=deep, load_distribution=shared
     )
     return RootRating(teeth, load_diameter, form, shared, helix, rim, deep, stress)
 
@@ -141,10 +141,10 @@ def rate_form(
 def rate_spur(
     pair: GearPair, member: Member, line_load: float, choice: RatingChoice, rim_thickness: float | None = None
 ) -> RootRating:
-    """Rate one gear of a spur pair under a line load [N/m] normal to the flank; rim thickness in m, None for solid."""
+    """Rate one gear of a spur pair under a line load w = F_bt / b [N/m]; rim thickness in m, None for solid."""
     gear = pair.gear(member)
     refuse_helix(gear.external_tooth)
-    load = ToothLoad(line_load * math.cos(gear.normal_pressure_angle), pair.contact_ratio)
+    load = ToothLoad(pair.tangential_load(line_load), pair.contact_ratio)
     at = pair.x_hpstc if member == "driver" else pair.x_lpstc
     height = gear.tip_radius - gear.root_radius
     backup = math.inf if rim_thickness is None else rim_thickness / height

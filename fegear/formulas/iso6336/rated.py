@@ -256,7 +256,7 @@ class RatedSurface:
     @property
     def tangential_load(self) -> float:
         """F_t at the reference cylinders [N]."""
-        return self.load * math.cos(self.pair.driver.transverse_pressure_angle)
+        return self.pair.tangential_load(self.load)
 
     @property
     def unit_load(self) -> float:

@@ -55,7 +55,7 @@ class LoadFactors:
     K_Falpha: Both
 
 
-def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> Stiffness:
+def _stiffness(table: FactorTable, conditions: Conditions, specific_load: float) -> Stiffness:
     pair = conditions.geometry
     one, two = pair.gears
     bodies = [(g.web_ratio, math.inf if g.rim_thickness is None else g.rim_thickness / pair.module) for g in pair.gears]
@@ -67,7 +67,7 @@ def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> 
         dedendum=(one.dedendum, two.dedendum),
         pressure_angle=pair.pressure_angle,
         blank=pair_blank_factor(bodies),
-        specific_load=line_load,
+        specific_load=specific_load,
         young_modulus=(one.young_modulus, two.young_modulus),
     )
     table.add("C_R", (blank_factor(*bodies[0]), blank_factor(*bodies[1])), "ISO 6336-1:2006, 9.3.1.3, Eqs. 84 and 85")
@@ -82,7 +82,7 @@ def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> 
 
 
 def _dynamic(
-    table: FactorTable, conditions: Conditions, computed: Replacement, stiff: Stiffness, line_load: float
+    table: FactorTable, conditions: Conditions, computed: Replacement, stiff: Stiffness, specific_load: float
 ) -> tuple[float, float, float]:
     """K_v, the deviation that shares the load among tooth pairs, and y_alpha."""
     pair, quality, duty = conditions.geometry, conditions.quality, conditions.duty
@@ -107,14 +107,14 @@ def _dynamic(
         table.add("K_v", computed.K_v, "ISO 6336-1, clause 6", f"K_v: {COMPUTED}")
         return computed.K_v, shared, y_p
     if conditions.dynamic_method == "C":
-        found = dynamic.method_c(pair, line_load, velocity, grade)
+        found = dynamic.method_c(pair, specific_load, velocity, grade)
         table.add("K_v", found.K_v, "ISO 6336-1:2006, 6.5, method C", found.remark)
         return found.K_v, shared, y_p
     relief = min(q.tip_relief for q in quality)
     if relief == 0.0:
         relief = dynamic.running_in_relief((conditions.strength[0].contact, conditions.strength[1].contact))
     errors = dynamic.DynamicErrors(pitch, profile, y_p, y_f, relief, coarse=grade >= 6)
-    found = dynamic.method_b(pair, (stiff.single, stiff.mesh_alpha), line_load, duty.speed, errors, duty.meshes)
+    found = dynamic.method_b(pair, (stiff.single, stiff.mesh_alpha), specific_load, duty.speed, errors, duty.meshes)
     table.add("m_red", found.reduced_mass, "ISO 6336-1:2006, 6.4.8, Eq. 30")
     table.add("n_E1", found.resonance_speed, "ISO 6336-1:2006, 6.4.2, Eq. 6")
     table.add("N", found.resonance_ratio, "ISO 6336-1:2006, 6.4.2, Eq. 9")
@@ -138,7 +138,7 @@ def _dynamic(
 def load_factors(table: FactorTable, conditions: Conditions, computed: Replacement) -> LoadFactors:
     """K_v, K_Hbeta, K_Fbeta, K_Halpha and K_Falpha, with what they are made of in the table."""
     pair, duty = conditions.geometry, conditions.duty
-    applied = duty.tangential * duty.application_factor * duty.mesh_load_factor / pair.face_width
+    applied = duty.tangential * duty.application_factor * duty.mesh_load_factor / pair.face_width  # F_t K_A K_gamma / b
     stiff = _stiffness(table, conditions, applied)
     k_v, shared, worn = _dynamic(table, conditions, computed, stiff, applied)
     k_hb = _face_load(table, conditions, computed, applied * k_v, stiff.mesh_beta)
@@ -170,7 +170,7 @@ def load_factors(table: FactorTable, conditions: Conditions, computed: Replaceme
 
 
 def _face_load(
-    table: FactorTable, conditions: Conditions, computed: Replacement, line_load: float, mesh_stiffness: float
+    table: FactorTable, conditions: Conditions, computed: Replacement, specific_load: float, mesh_stiffness: float
 ) -> float:
     """K_Hbeta: computed, given, or by method C."""
     if computed.K_Hbeta is not None:
@@ -179,9 +179,9 @@ def _face_load(
     pair = conditions.geometry
     velocity = pair.pitch_line_velocity(conditions.duty.speed)
     found = misalignment.method_c(
-        pair, conditions.alignment, conditions.strength, conditions.quality, line_load, mesh_stiffness, velocity
+        pair, conditions.alignment, conditions.strength, conditions.quality, specific_load, mesh_stiffness, velocity
     )
-    table.add("F_m/b", line_load, "ISO 6336-1:2006, 7.2")
+    table.add("F_m/b", specific_load, "ISO 6336-1:2006, 7.2")
     if not math.isnan(found.initial):
         table.add("f_sh", found.deformation, "ISO 6336-1:2006, 7.5.2.4, Eq. 57", found.remark)
         table.add("f_ma", found.manufacture, "ISO 6336-1:2006, 7.5.2, Eq. 64")

@@ -25,7 +25,14 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
-from fegear.results.gear.crosscheck_iso import IsoInputs, iso_inputs, iso_table, section_figure, section_table
+from fegear.results.gear.crosscheck_iso import (
+    IsoInputs,
+    iso_inputs,
+    iso_table,
+    load_of_stiffness,
+    section_figure,
+    section_table,
+)
 from fegear.results.gear.load_positions import chosen_gears
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 
@@ -96,13 +103,11 @@ def _helical(scene: Scene) -> tuple[str, ...]:
 
 def _pair_check(scene: Scene, name: str) -> PairCheck:
     pair, part, stiffness = scene.pairs[name], scene.case.pair[name], scene.case.stiffness
-    force = part.normal_load(pair)
-    line_load, chosen = stiffness.load, False
-    if line_load is None:
-        chosen = force is None
-        width = pair.face_width
-        line_load = USUAL_LINE_LOAD if force is None else force / width
-    return PairCheck(pair, (part.driver, part.driven), stiffness.positions, line_load, chosen)
+    load = part.normal_load(pair)
+    gears, line_load = (part.driver, part.driven), stiffness.load
+    if line_load is None and load is not None:
+        return PairCheck(pair, gears, stiffness.positions, load / pair.face_width, False, part.operation.applied_factor)
+    return PairCheck(pair, gears, stiffness.positions, line_load or USUAL_LINE_LOAD, line_load is None)
 
 
 def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
@@ -147,7 +152,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         x = np.linspace(pair.x_start, pair.x_end, check.positions)
         driver, driven = (solution_of(upstream, gear) for gear in check.gears)
         fe_pair = pair_reference(pair, driver, driven, x, w)
-        iso = attempt(partial(pair_stiffness, pair, w))
+        iso = attempt(partial(pair_stiffness, pair, specific_load=check.applied_load))
         pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso)
         iso_asked = asked.iso[name]
         rated[name] = rated_spur_pair(pair, (driver, driven), w, iso_asked.choice, iso_asked.rims)
@@ -216,9 +221,11 @@ class PairCheck:
     positions : int
         Over the path of contact.
     line_load : float
-        [N/m].
+        w = F_bt / b, along the line of action [N/m].
     chosen : bool
         Whether the line load had to be chosen.
+    load_factor : float
+        K_A K_gamma of the case's own load, which c' of ISO 6336-1 takes.
     """
 
     pair: GearPair
@@ -226,6 +233,12 @@ class PairCheck:
     positions: int
     line_load: float
     chosen: bool
+    load_factor: float = 1.0
+
+    @property
+    def applied_load(self) -> float:
+        """F_t K_A K_gamma / b of ISO 6336-1 [N/m]."""
+        return self.load_factor * self.pair.tangential_load(self.line_load)
 
 
 @dataclass(frozen=True, slots=True)
@@ -386,10 +399,11 @@ def pair_table(name: str, check: PairCheck, found: PairAnswers) -> tuple[Table, 
     iso = found.iso.value
     if iso is None:
         return table, (*values, own), f"Pair {name}: ISO 6336-1 gives no c': {found.iso.reason}"
+    under = load_of_stiffness(check.applied_load, check.load_factor)
     extra = (
         *values,
         own,
-        Value(f"{name}.single_stiffness_iso", iso.single, unit, None, "ISO 6336-1 c', solid blank, with C_M = 0.8"),
+        Value(f"{name}.single_stiffness_iso", iso.single, unit, None, f"ISO 6336-1 c', solid, C_M = 0.8, {under}"),
         Value(f"{name}.theoretical_stiffness_iso", iso.theoretical, unit, None, "ISO 6336-1 c'_th"),
         Value(f"{name}.single_stiffness_iso.ratio_to_fe", iso.single / greatest, "", None, "c' over FE"),
     )

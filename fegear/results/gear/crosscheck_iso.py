@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 #: Tangential load per face width of helical pairs when the case names none [N/m].
-USUAL_LINE_LOAD = 100e3
+USUAL_SPECIFIC_LOAD = 100e3
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,13 +61,12 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
         return IsoInputs(names, choice, rims, said=told)
     pair = scene.helical_pairs[name]
     width = pair.overlap[1] - pair.overlap[0]
-    driver = pair.pinion
-    force = None if part.load is None else part.load * math.cos(driver.transverse_pressure_angle)
-    if part.torque is not None:
-        force = part.torque / driver.pitch_radius
-    load = USUAL_LINE_LOAD if force is None else force / width
-    check = HelicalCheck(pair.design, pair.overlap_ratio, load)
-    return IsoInputs(names, choice, rims, check, settings, force is None, told)
+    design = pair.design
+    load = part.normal_load(design)
+    specific_load = USUAL_SPECIFIC_LOAD if load is None else design.tangential_load(load) / width
+    factor = 1.0 if load is None else part.operation.applied_factor
+    check = HelicalCheck(design, pair.overlap_ratio, specific_load, factor)
+    return IsoInputs(names, choice, rims, check, settings, load is None, told)
 
 
 def _rim(scene: Scene, gear: str, said: list[str]) -> float | None:
@@ -79,6 +78,12 @@ def _rim(scene: Scene, gear: str, said: list[str]) -> float | None:
     except InputError as error:
         said.append(f"{error.key} {error.rule}: the gear counts as solid, Y_B = 1.")
         return None
+
+
+def load_of_stiffness(applied_load: float, load_factor: float) -> str:
+    """Name the specific load [N/m] that c' of ISO 6336-1 is for; K_A K_gamma in it only where it is not 1."""
+    symbol = "F_t/b" if load_factor == 1.0 else "F_t K_A K_gamma/b"
+    return f"{symbol} = {applied_load * 1e-3:.6g} N/mm"
 
 
 def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tuple[Value, ...], tuple[str, ...]]:
@@ -120,15 +125,16 @@ def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tup
     ]
     remarks = list(asked.said)
     if asked.chosen:
-        remarks.append(f"Pair {name}: no load was given; ISO 6336 takes F_t/b = {USUAL_LINE_LOAD * 1e-3:.6g} N/mm.")
+        remarks.append(f"Pair {name}: no load was given; ISO 6336 takes F_t/b = {USUAL_SPECIFIC_LOAD * 1e-3:.6g} N/mm.")
     if found.stiffness is not None:
         iso = found.stiffness.value
         if iso is None:
             remarks.append(f"Pair {name}: ISO 6336-1 gives no c': {found.stiffness.reason}")
         else:
-            unit = "N/(mm.um)"
+            unit, check = "N/(mm.um)", asked.helical
+            under = load_of_stiffness(check.applied_load, check.load_factor) if check else ""
             values += [
-                Value(f"{name}.single_stiffness_iso", iso.single, unit, None, "ISO 6336-1 c', solid blank"),
+                Value(f"{name}.single_stiffness_iso", iso.single, unit, None, f"ISO 6336-1 c', solid blank, {under}"),
                 Value(f"{name}.mesh_stiffness_iso", iso.mesh_alpha, unit, None, "ISO 6336-1 c_gamma_alpha"),
             ]
         remarks.append(

@@ -203,7 +203,8 @@ class ComplianceFormula:
 
     @staticmethod
     def _constant(pair: GearPair, line_load: float) -> ConstantCompliance:
-        return ConstantCompliance(compliance=0.5 / pair_stiffness(pair, line_load).single, source="c' of ISO 6336-1")
+        single = pair_stiffness(pair, specific_load=pair.tangential_load(line_load)).single
+        return ConstantCompliance(compliance=0.5 / single, source="c' of ISO 6336-1")
 
 
 @dataclass(frozen=True)
