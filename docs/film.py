@@ -27,7 +27,8 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from shortened import chosen
 
-from fegear.base.plain import code_version, content_key
+from fegear.base.code_version import code_version
+from fegear.base.plain import content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -22,7 +22,8 @@ from mkdocs.structure.files import File
 from pathspec.gitignore import GitIgnoreSpec
 from shortened import chosen
 
-from fegear.base.plain import code_version, content_key
+from fegear.base.code_version import code_version
+from fegear.base.plain import content_key
 from fegear.engine.citation import bibliography
 
 if TYPE_CHECKING:

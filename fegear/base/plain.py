@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import copyreg
 import dataclasses
-import functools
 import hashlib
 import json
 import struct
@@ -24,8 +23,6 @@ K = TypeVar("K")
 V = TypeVar("V")
 _ALIGN = 64
 _KINDS = "biufcSU"
-#: Libraries whose version may change the last bits of a result.
-_LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
 
 
 def read_only(content: Mapping[K, V]) -> MappingProxyType[K, V]:
@@ -165,27 +162,3 @@ def _canonical(item: object) -> object:
         fields = [[f.name, _canonical(getattr(item, f.name))] for f in dataclasses.fields(item) if f.compare]
         return ["data", type(item).__qualname__, *fields]
     raise TypeError(f"{type(item).__name__} has no content key")
-
-
-@functools.cache
-def code_version(*packages: str) -> str:
-    """Version of the code that makes results: a digest of its source and of the libraries below it.
-
-    Parameters
-    ----------
-    *packages : str
-        Subpackages of fegear to count in; all of it by default.
-    """
-    from importlib.metadata import PackageNotFoundError, version
-
-    root = Path(__file__).parent
-    digest = hashlib.sha256()
-    for folder in [root / name for name in packages] or [root]:
-        for path in sorted(folder.rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
-    for library in _LIBRARIES:
-        try:
-            digest.update(f"{library} {version(library)}".encode())
-        except PackageNotFoundError:  # a program without it makes no result that depends on it
-            continue
-    return digest.hexdigest()

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 #: First bytes of an entry; the SHA-256 of its key and of the rest follows.
-_MAGIC = b"fegear2\n"
+_MAGIC = b"fegear3\n"
 _HEAD = len(_MAGIC) + 32
 _SUFFIX = ".entry"
 #: After pruning, this share of the limit is left, so that not every write prunes.

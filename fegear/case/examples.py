@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from fegear.base.code_version import package_folder
 from fegear.base.errors import FegearError, InputError, shown
 from fegear.case.part import nearest
 
-_PACKAGE = Path(__file__).resolve().parents[1]
 #: Files that a case names by a path of its own.
 _NAMED = re.compile(r'"((?:data|meshes)/[\w./-]+)"')
 
@@ -21,7 +21,8 @@ def folder() -> Path:
     FegearError
         If this installation has none.
     """
-    for place in (_PACKAGE / "examples", _PACKAGE.parent / "cases"):
+    package = package_folder().resolve()
+    for place in (package / "examples", package.parent / "cases"):
         if place.is_dir():
             return place
     raise FegearError("the examples are not there; install fegear anew.")

@@ -6,9 +6,11 @@ import contextlib
 import logging
 import threading
 import time
+from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
+from fegear.base.code_version import made_by, unlike
 from fegear.base.errors import InputError, MissingLibraryError
 from fegear.engine.processes import Job, Reply, failed
 
@@ -116,22 +118,36 @@ def _quiet(library: str) -> Iterator[None]:
 
 
 def _check_workers(client: Client, address: str) -> None:
-    """Refuse a cluster without workers, or one that has no fegear: a worker that cannot read a point just dies."""
+    """Refuse a cluster without workers, or one that has no fegear: a worker that cannot read a point just dies.
+
+    One of other code or other libraries is refused, too: what it computes would be kept as if this program had.
+    """
     from distributed.comm import CommClosedError
 
     try:
         client.wait_for_workers(1, timeout=_PATIENCE)
         found = {"scheduler": client.run_on_scheduler(find_spec, "fegear"), **client.run(find_spec, "fegear")}
+        without = [name for name, spec in found.items() if spec is None]
+        if without:
+            raise MissingLibraryError(
+                f"--scheduler {address}: fegear is not installed where {', '.join(without)} runs; "
+                "scheduler and workers need the same environment as this program."
+            )
+        # One that is too old to say what it is answers with an error.
+        told = client.run(lambda: dict(import_module("fegear.base.code_version").made_by()), on_error="return")
     except CommClosedError:
         raise _gone(address) from None
     except TimeoutError:
         raise _refused(address, "has no workers", f"start some with `dask worker {address} --nthreads 1`") from None
-    without = [name for name, spec in found.items() if spec is None]
-    if without:
-        raise MissingLibraryError(
-            f"--scheduler {address}: fegear is not installed where {', '.join(without)} runs; "
-            "scheduler and workers need the same environment as this program."
-        )
+    ours = made_by()
+    for name, there in told.items():
+        older = {**ours, "fegear": "of an older release"}
+        differ = unlike(ours, there if isinstance(there, dict) else older)
+        if differ:
+            raise _refused(
+                address, f"worker {name} has {differ[1]} where this program has {differ[0]}",
+                "start its workers with the code and the libraries of this program",
+            )  # fmt: skip
 
 
 def _finished(client: Client, futures: list[Future], address: str) -> Iterator[Future]:

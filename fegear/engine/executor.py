@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import hashlib
+import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+from fegear.base.code_version import code_version
 from fegear.base.errors import InputError
-from fegear.base.plain import code_version, content_key
+from fegear.base.plain import content_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
@@ -56,7 +60,13 @@ def _name(function: Callable[..., object]) -> object:
     name = f"{function.__module__}.{function.__qualname__}"
     if "<" in name:
         raise ValueError(f"map_points needs a function of a module, not {name}, so that other processes can import it")
-    return name
+    return name if name.startswith("fegear.") else [name, _foreign_code(function.__module__)]
+
+
+def _foreign_code(module: str) -> str:
+    """Digest of the file of a module that is not fegear's, whose version says nothing of it."""
+    place = Path(getattr(sys.modules.get(module), "__file__", None) or "")
+    return hashlib.sha256(place.read_bytes()).hexdigest() if place.suffix == ".py" and place.is_file() else ""
 
 
 def map_points(

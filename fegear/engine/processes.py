@@ -20,9 +20,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, cast
 
+from fegear.base.code_version import code_version, made_by, unlike
 from fegear.base.errors import FegearError, MissingLibraryError
 from fegear.base.one_thread import one_thread
-from fegear.base.plain import code_version, pack, unpack
+from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import SolutionCache, cache_on_disk
 
 if TYPE_CHECKING:
@@ -85,18 +86,33 @@ class Job:
         Whether tooth shapes are kept beyond the process.
     folder : str or None
         Where; None for the worker's own cache folder.
+    made_by : dict of str to str
+        The code and the libraries that a worker must have.
+    version : str
+        What workers of 0.2.0 compare, which may join when the others have begun.
     """
 
     function: Callable[..., object]
     shares_cache: bool
     on_disk: bool
     folder: str | None
+    made_by: dict[str, str] = field(default_factory=lambda: dict(made_by()))
     version: str = field(default_factory=code_version)
 
     def __call__(self, point: object) -> Reply:
-        """Compute one point in this process."""
-        if self.version != code_version():
-            raise FegearError("the workers run another version of fegear or of its libraries than this program.")
+        """Compute one point in this process.
+
+        Raises
+        ------
+        FegearError
+            If this process has other code or other libraries than the one that wants the result.
+        """
+        differ = unlike(self.made_by, made_by())
+        if differ:
+            raise FegearError(
+                f"A worker has {differ[1]} where this program has {differ[0]}; start it again with the code and the "
+                "libraries of this program."
+            )
         # A worker that somebody else started may have loaded its BLAS with many threads, and sums with other last bits.
         with _alone, one_thread():
             cache = self._cache()

@@ -13,8 +13,9 @@ import signal
 import threading
 from collections import deque
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from fegear.base.code_version import package_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,7 +32,7 @@ _AGAIN = 0.05
 
 
 #: Where fegear's own code lies.
-_OWN = str(Path(__file__).parents[1])
+_OWN = str(package_folder())
 
 
 #: Code that must not be left half-way: a module half imported, a message half sent, a place half registered.

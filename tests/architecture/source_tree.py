@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,6 +79,7 @@ def _imports(called: ast.expr) -> bool:
     return name in ("import_module", "__import__") and ast.unparse(called) in ("importlib.import_module", "__import__")
 
 
+@functools.cache
 def all_imports() -> list[Import]:
     """Every import in the package."""
     files = modules()

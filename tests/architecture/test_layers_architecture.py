@@ -12,12 +12,13 @@ from pathlib import Path
 
 import pytest
 
-_spec = importlib.util.spec_from_file_location("source_tree", Path(__file__).with_name("source_tree.py"))
-assert _spec is not None
-assert _spec.loader is not None
-source_tree = importlib.util.module_from_spec(_spec)
-sys.modules["source_tree"] = source_tree
-_spec.loader.exec_module(source_tree)
+if "source_tree" not in sys.modules:  # once for all tests: it keeps what it has read
+    _spec = importlib.util.spec_from_file_location("source_tree", Path(__file__).with_name("source_tree.py"))
+    assert _spec is not None
+    assert _spec.loader is not None
+    sys.modules["source_tree"] = importlib.util.module_from_spec(_spec)
+    _spec.loader.exec_module(sys.modules["source_tree"])
+source_tree = sys.modules["source_tree"]
 
 #: Layer of each package or top-level module; an import must go to a lower layer or stay in its own package.
 LAYERS = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import math
 import operator
 import os
@@ -20,6 +21,7 @@ import pytest
 from distributed.comm import CommClosedError
 
 import fegear
+from fegear.base.code_version import made_by
 from fegear.base.errors import FegearError, InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
@@ -80,6 +82,64 @@ def test_a_cluster_gives_the_same(scheduler, tmp_path):
     cache = SolutionCache(Store(tmp_path))
     assert map_points(operator.neg, [1, 2.5], Executor(scheduler), cache) == (-1, -2.5)
     assert count_kept(operator.neg, [1, 2.5], cache) == 2
+
+
+@pytest.mark.parametrize(
+    ("here", "sentence"),
+    [
+        ({"numpy": "1.99.0"}, r"worker tcp://\S+ has numpy [\d.]+ where this program has numpy 1\.99\.0; start its"),
+        (
+            {"fegear": "0.2.0 (code 12345678)"},
+            r"worker tcp://\S+ has fegear \S+ \(code (?!12345678)\w{8}\) where this program has fegear \S+ \(code 1",
+        ),
+    ],
+)
+def test_a_worker_of_other_code_or_libraries_is_refused_with_both_named(
+    scheduler, monkeypatch, tmp_path, here, sentence
+):
+    monkeypatch.setattr("fegear.engine.cluster.made_by", lambda: {**made_by(), **here})
+    cache = SolutionCache(Store(tmp_path))
+    with pytest.raises(InputError, match=sentence):
+        map_points(operator.neg, [1, 2.5], Executor(scheduler), cache)
+    assert count_kept(operator.neg, [1, 2.5], cache) == 0
+
+
+def no_such_module(name: str) -> None:
+    raise ModuleNotFoundError(name)
+
+
+def test_a_worker_too_old_to_say_what_it_is_is_refused(scheduler, monkeypatch):
+    monkeypatch.setattr("fegear.engine.cluster.import_module", no_such_module)
+    with pytest.raises(InputError, match=r"has fegear of an older release where this program has fegear 0\.\d"):
+        map_points(math.sqrt, [1.0], Executor(scheduler))
+
+
+def test_a_worker_that_joins_later_is_refused_as_well(scheduler, monkeypatch):
+    monkeypatch.setattr("fegear.engine.cluster._check_workers", lambda *_: None)
+    monkeypatch.setattr("fegear.engine.processes.made_by", lambda: {**made_by(), "scipy": "1.0.0"})
+    with pytest.raises(FegearError, match=r"^A worker has scipy [\d.]+ where this program has scipy 1\.0\.0; start it"):
+        map_points(math.sqrt, [1.0], Executor(scheduler))
+
+
+def test_a_process_that_finds_other_code_is_refused(monkeypatch):
+    """The files may have changed since the program that wants the points has begun."""
+    monkeypatch.setattr("fegear.engine.processes.made_by", lambda: {**made_by(), "fegear": "0.2.0 (code 12345678)"})
+    with pytest.raises(
+        FegearError, match=r"has fegear 0\S+ \(code \w{8}\) where this program has fegear 0\.2\.0 \(code 1"
+    ):
+        map_points(math.sqrt, [1.0], Executor(workers=1))
+
+
+def test_points_of_a_users_function_are_computed_again_when_its_file_has_changed(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    cache, found = SolutionCache(Store(tmp_path / "kept")), []
+    for factor in (2, 3):
+        (tmp_path / "users_own.py").write_text(f"def scaled(x):\n    return {factor} * x\n")
+        sys.modules.pop("users_own", None)
+        importlib.invalidate_caches()
+        monkeypatch.setattr(sys, "dont_write_bytecode", True)
+        found.append(map_points(importlib.import_module("users_own").scaled, [1.0], Executor(here=True), cache))
+    assert found == [(2.0,), (3.0,)]
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):

@@ -18,7 +18,8 @@ from typing import Literal
 import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
-from fegear.base.plain import code_version, content_key, pack, unpack
+from fegear.base.code_version import code_version
+from fegear.base.plain import content_key, pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
 from fegear.contact.wide.complementarity import Averages, averages
@@ -142,7 +143,7 @@ def flank_compliance(
     mean = _line_means(lines, b)
     # Apart, so that a changed load has little to find anew, and changed gaps nothing.
     known = cache or SolutionCache()
-    made_of = code_version("contact", "fem", "geometry"), pair, lines, [gears[member].identity for member in MEMBERS]
+    made_of = code_version("contact"), pair, lines, [gears[member].identity for member in MEMBERS]
     matrix = known.solve(content_key("own", *made_of), lambda: _own(pair, gears, lines), _PLAIN).value
     matrix = (
         matrix

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
+from fegear.base.code_version import code_version
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
-from fegear.base.plain import code_version, content_key
+from fegear.base.plain import content_key
 from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.fourier import Panels
@@ -333,7 +334,7 @@ class FlankPair:
         if roll is not None:  # places between these, which the next gaps move
             return self._compliance(load, roll)
         key = content_key(
-            code_version("contact", "fem", "geometry"), "compliance", self.pair, self.coupling, self.hertz, self.panel,
+            code_version("contact"), "compliance", self.pair, self.coupling, self.hertz, self.panel,
             self.positions, self.most_gap, load, [self.gears[member].identity for member in MEMBERS],
         )  # fmt: skip
         return self.cache.solve(key, lambda: self._compliance(load, None)).value

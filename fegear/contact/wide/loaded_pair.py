@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, first_of_largest
-from fegear.base.plain import code_version, content_key
+from fegear.base.code_version import code_version
+from fegear.base.plain import content_key
 from fegear.contact.loaded_teeth import (
     ErrorOverPitch,
     FlankLoad,
@@ -221,7 +222,7 @@ class LoadedWidePair:
         """Mean transmission error of perfect flanks at the nominal load [m], recalled where it is known."""
         known, flanks = self.over.found.known, self.flanks
         key = content_key(
-            code_version("contact", "fem", "geometry"), "without gaps", self.pair, known.lines, self.nominal,
+            code_version("contact"), "without gaps", self.pair, known.lines, self.nominal,
             [flanks.gears[member].identity for member in MEMBERS], flanks.coupling, flanks.hertz, known.spot,
             known.line_half_width, known.fixed_half_width,
         )  # fmt: skip
@@ -268,7 +269,7 @@ class LoadedWidePair:
         from fegear.contact.wide.root_stress import rooted_lines
 
         key = content_key(
-            code_version("contact", "fem", "geometry"), "rooted", self.pair, member, found.lines, solution.identity,
+            code_version("contact"), "rooted", self.pair, member, found.lines, solution.identity,
             self.coupling,
         )  # fmt: skip
         return self.flanks.cache.solve(

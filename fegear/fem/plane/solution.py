@@ -14,7 +14,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from fegear.base.plain import code_version, content_key, pack, unpack
+from fegear.base.code_version import code_version
+from fegear.base.plain import content_key, pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
 from fegear.fem.plane.estimate import Estimate
@@ -255,7 +256,7 @@ def known_or_solved(
     kinds : tuple of type
         Dataclasses that the solution consists of, its own first; it has the tooth as a field.
     """
-    key = content_key(code_version("fem", "geometry"), tooth, what)
+    key = content_key(code_version("fem"), tooth, what)
     codec: Codec[Shape] = Codec(lambda found: pack(_plain(found, kinds)), lambda data: _restored(data, tooth, kinds))
     return cache.solve(key, solve, codec).value
 

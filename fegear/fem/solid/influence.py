@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask
-from fegear.base.plain import code_version, content_key, pack, read_only, unpack
+from fegear.base.code_version import code_version
+from fegear.base.plain import content_key, pack, read_only, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
@@ -204,7 +205,7 @@ class SolidInfluence:
     def with_error(self, cache: SolutionCache) -> SolidInfluence:
         """The same with `error` found now, or recalled: all contact lines of the flank are solved for it."""
         both = [one.identity for one in (self.fine, self.coarse) if one is not None]
-        key = content_key(code_version("fem", "geometry"), "errors of a solid gear", both)
+        key = content_key(code_version("fem"), "errors of a solid gear", both)
         return replace(self, known_error=cache.solve(key, lambda: dict(self.error), _ERRORS).value)
 
 
