@@ -32,6 +32,7 @@ KERNELS = MappingProxyType(
         "friction fits": "friction torques of one gear pair at one speed",
         "tooth contacts": "earliest contact of helical flanks at many angles",
         "misaligned flanks": "a flank placed off its nominal axis",
+        "neglected effects": "the size of an effect that is off estimated for one pair, design or motion",
     }
 )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -34,6 +34,11 @@ class Case(Part):
     )
     results: Annotated[list[str], Field(min_length=1)] = Field(
         description="What is wanted: these results are computed, and what they need, nothing else."
+    )
+    neglected: bool | Literal["once"] | None = Field(
+        default=None,
+        description="Estimate in notes what effects that are off would change: `true`, `false`, or `once` (of a sweep "
+        "only its first point). Default: `true` in a run; `false` in sweeps, effect studies and questions from Python.",
     )
     gear: dict[str, Table[GearPart]] = Field(
         default_factory=dict, description="The gears, each by a name of your choice."

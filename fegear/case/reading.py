@@ -58,8 +58,10 @@ class Scene:
     document : mapping
         The same as plain tables, ``--set`` options included.
     estimates : bool
-        Whether errors and the sizes of neglected effects are estimated with the numbers of loaded pairs, which do not
-        depend on that: a first answer while a value is being moved does without.
+        Whether errors are estimated with the numbers of loaded pairs, which do not depend on that: a first answer while
+        a value is being moved does without.
+    neglects : bool
+        Whether the sizes of neglected effects are estimated where the case does not say (`sizes_neglected`).
     drafts : mapping of str to float
         Gears of which a draft is enough, with its relative tolerance: their teeth are solved once, as that tolerance
         usually wants, and not compared with it.
@@ -76,8 +78,15 @@ class Scene:
     text: str = ""
     document: Mapping[str, object] = field(default_factory=dict)
     estimates: bool = True
+    neglects: bool = True
     drafts: Mapping[str, float] = field(default_factory=dict)
     renamed: tuple[str, ...] = ()
+
+    @property
+    def sizes_neglected(self) -> bool:
+        """Whether it is estimated what effects that are off would change; never without estimates of errors."""
+        given = self.case.neglected
+        return self.estimates and (self.neglects if given is None else given is not False)
 
     @property
     def spur_gears(self) -> dict[str, Gear]:

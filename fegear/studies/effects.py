@@ -110,7 +110,11 @@ def _without(tables: Document, key: str) -> Document:
 
 
 def measure(scene: Scene) -> Measured:
-    """Run a scene from nothing, with its processor seconds (worker processes included) and its kernels counted."""
+    """Run a scene from nothing, with its processor seconds (worker processes included) and its kernels counted.
+
+    What an effect that is off would change is estimated only where the case asks for it: it would count, too.
+    """
+    scene = replace(scene, neglects=False)
     plan = make_plan(scene, STAGES)
     with tallying() as counts:
         children, own = sum(os.times()[2:4]), time.process_time()

@@ -162,7 +162,7 @@ def sweep_case(
     _check(axes, document)
     points = [
         {"document": changed, "name": path.stem, "folder": str(path.parent.absolute())}
-        for changed in _grid(document, axes)
+        for changed in map(_neglecting, itertools.count(), _grid(document, axes))
     ]
     cache = SolutionCache() if cache is None else cache
     kept = count_kept(compute_point, points, cache, point_content)
@@ -200,6 +200,12 @@ def _grid(document: Mapping[str, Any], axes: Sequence[Axis]) -> Iterator[dict[st
         for axis, value in zip(axes, values, strict=True):
             set_key(changed, axis.key, value, "--over")
         yield changed
+
+
+def _neglecting(index: int, document: dict[str, Any]) -> dict[str, Any]:
+    """A point's document that says whether neglected effects are sized there: only where it is asked for."""
+    given = document.get("neglected", False)
+    return {**document, "neglected": index == 0 if given == "once" else given}
 
 
 def compute_point(point: Mapping[str, Any], cache: SolutionCache) -> dict[str, object]:

@@ -65,10 +65,12 @@ def ask_of_pair(
     tolerance: float | None,
     progress: bool | None,
     cache: SolutionCache | None,
+    *,
+    neglected: bool,
 ) -> Results:
     """Run the case with the effects that its description calls for, and with those given."""
     start = {"start": "described", **table(effects, "effects")}
-    scene = _scene(wanted, {**document, "effects": start}, tolerance)
+    scene = replace(_scene(wanted, {**document, "effects": start}, tolerance), neglects=neglected)
     return run_scene(scene, progress=progress, cache=cache_of(cache, pair.known))
 
 
@@ -152,6 +154,7 @@ def root_stress(
     load: Force | Iterable[Force] | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
+    neglected: bool = False,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
@@ -170,6 +173,8 @@ def root_stress(
         Of a pair, as in `transmission_error`.
     tolerance : float, optional
         Relative error that the mesh is chosen for.
+    neglected : bool, optional
+        Whether to estimate what effects that are off would change, for `Results.remarks`: some tenths of a second.
     progress, cache
         As in `run`; by default what was solved for the same gear before is recalled.
 
@@ -185,7 +190,9 @@ def root_stress(
                 "positions", shown(positions), "is for gears: a pair's contacts pass along the flank", "leave it out"
             )
         document = _loaded(gears, torque, load)
-        return ask_of_pair("root-stress-history", gears, document, effects, tolerance, progress, cache)
+        return ask_of_pair(
+            "root-stress-history", gears, document, effects, tolerance, progress, cache, neglected=neglected
+        )
     for key, given in (("torque", torque), ("load", load), ("effects", effects)):
         if given is not None:
             raise InputError(key, brief(given), "is for pairs, and these are gears", "give a fegear.Pair, or no load")
@@ -207,6 +214,7 @@ def transmission_error(
     load: Force | Iterable[Force] | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
+    neglected: bool = False,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
@@ -226,6 +234,8 @@ def transmission_error(
         gears or pair have them. ``{"start": "none"}`` starts without any.
     tolerance : float, optional
         Relative error that the meshes are chosen for.
+    neglected : bool, optional
+        Whether to estimate what effects that are off would change, for `Results.remarks`: some tenths of a second.
     progress, cache
         As in `run`; by default what was solved for the same gear before is recalled.
 
@@ -235,7 +245,16 @@ def transmission_error(
         Tables ``transmission_error_<pair>``, ``transmission_error_harmonics_<pair>``; for several loads
         ``transmission_error_summary_<pair>``. Values ``<pair>.te_peak_to_peak``, ...
     """
-    return ask_of_pair("transmission-error", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
+    return ask_of_pair(
+        "transmission-error",
+        pair,
+        _loaded(pair, torque, load),
+        effects,
+        tolerance,
+        progress,
+        cache,
+        neglected=neglected,
+    )
 
 
 def load_sharing(
@@ -245,6 +264,7 @@ def load_sharing(
     load: Force | Iterable[Force] | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
+    neglected: bool = False,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
@@ -253,7 +273,7 @@ def load_sharing(
     Parameters
     ----------
     pair : Pair
-    torque, load, effects, tolerance, progress, cache
+    torque, load, effects, tolerance, neglected, progress, cache
         As in `transmission_error`.
 
     Returns
@@ -262,7 +282,9 @@ def load_sharing(
         Table ``load_sharing_<pair>``, for several loads ``load_sharing_loads_<pair>``. Values
         ``<pair>.largest_load``, ``<pair>.largest_hertz_pressure``, ...
     """
-    return ask_of_pair("load-sharing", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
+    return ask_of_pair(
+        "load-sharing", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache, neglected=neglected
+    )
 
 
 def relief(
@@ -273,6 +295,7 @@ def relief(
     design: Mapping[str, Any] | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
+    neglected: bool = False,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
@@ -285,7 +308,7 @@ def relief(
         The load that the relief is made for.
     design : mapping, optional
         Keys of ``[design]`` of a case file: ``family``, ``peak``, ``grind``, ``metric``, ...
-    effects, tolerance, progress, cache
+    effects, tolerance, neglected, progress, cache
         As in `transmission_error`.
 
     Returns
@@ -295,7 +318,7 @@ def relief(
     """
     document = _loaded(pair, torque, load)
     document["design"] = {"pair": pair.name, **table(design, "design")}
-    return ask_of_pair("relief", pair, document, effects, tolerance, progress, cache)
+    return ask_of_pair("relief", pair, document, effects, tolerance, progress, cache, neglected=neglected)
 
 
 def dynamic_factor(
@@ -308,6 +331,7 @@ def dynamic_factor(
     dynamics: Mapping[str, Any] | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
+    neglected: bool = False,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
@@ -327,7 +351,7 @@ def dynamic_factor(
         ``[train]`` of a case file. By default the two gears turn as discs between steady torques, without shafts.
     dynamics : mapping, optional
         More keys of ``[dynamics]``: ``direction``, ``tolerance``, ...
-    effects, tolerance, progress, cache
+    effects, tolerance, neglected, progress, cache
         As in `transmission_error`; stiffness varies over the mesh cycle and teeth may part.
 
     Returns
@@ -345,7 +369,7 @@ def dynamic_factor(
     }  # fmt: skip
     several = speeds if isinstance(speeds, Mapping) else listed(speeds, "speeds") or [speeds]
     document["dynamics"] = {"speeds": several, **table(dynamics, "dynamics")}
-    found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)
+    found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache, neglected=neglected)
     if train is not None:
         return found
     said = "No train was given; assumed default: the gears turn as discs between steady torques, without shafts."
@@ -364,6 +388,7 @@ def rating(
     beside: str | Iterable[str] = ("agma-2101",),
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
+    neglected: bool = False,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
@@ -382,7 +407,7 @@ def rating(
         default.
     beside : str or iterable of str
         ``"computed"``: with the computed load distribution and root stress; ``"agma-2101"``.
-    effects, tolerance, progress, cache
+    effects, tolerance, neglected, progress, cache
         As in `transmission_error`.
 
     Returns
@@ -394,4 +419,4 @@ def rating(
     given: dict[str, Any] = {"torque": torque, "load": load, "speed": speed, "operation": operation}
     document = pair.document(**{key: value for key, value in given.items() if value is not None})
     document["rating"] = {"beside": texts(beside, "beside")}
-    return ask_of_pair("rating", pair, document, effects, tolerance, progress, cache)
+    return ask_of_pair("rating", pair, document, effects, tolerance, progress, cache, neglected=neglected)

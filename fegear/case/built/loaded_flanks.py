@@ -52,7 +52,7 @@ class FlanksToLoad:
         Of the pair.
     tolerance : float
         That the changes by neglected effects are compared with.
-    estimates : bool
+    estimates, neglected : bool
         Whether errors and the changes by neglected effects are estimated, some three fifths of the time.
     """
 
@@ -71,6 +71,7 @@ class FlanksToLoad:
     name: str = field(default="", compare=False)
     tolerance: float = field(default=0.0, compare=False)
     estimates: bool = True
+    neglected: bool = True
 
     @property
     def gears(self) -> tuple[str, str]:
@@ -147,6 +148,7 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
     return FlanksToLoad(
         pair, own, (first, second), faces, cutter_modification(scene, name), errors, part.all_loads(pair), nominal,
         asked.positions, panels, width, asked.base_pitch, name, scene.case.accuracy.tolerance, scene.estimates,
+        scene.sizes_neglected,
     )  # fmt: skip
 
 

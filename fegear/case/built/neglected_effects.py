@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import FegearError, InputError
-from fegear.base.tally import tallying
+from fegear.base.tally import note
 from fegear.case.built.loaded_pair import relieved, spaced
 from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
 from fegear.contact.loaded_teeth import Answer, Change, Neglected
@@ -42,6 +42,8 @@ _SAID: dict[Answer, tuple[str, float, str]] = {
 }
 
 
+#: The kernel that counts effects whose size is estimated; what an estimate runs counts as what it is.
+_COUNTED = "neglected effects"
 #: Tip reliefs that leave so little more than the best are as good.
 _EQUALLY_GOOD = 0.01
 #: Contact ratios nearer to a whole number than this leave transmission error a spike of almost no width.
@@ -130,19 +132,19 @@ def neglected_effects(
         return Neglected()
     others: dict[str, Engagement] = {}
     wrong: dict[str, InputError] = {}
-    with tallying():  # what the estimate runs is no part of the case's own work
-        for effect in _off(asked.effects, PLANE_EFFECTS):
-            try:
-                other = with_effect(asked, pair.engagement, effect)
-            except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
-                wrong[effect] = error
-                continue
-            if other is not None:
-                others[effect] = other
-        if not others:
-            return Neglected({}, wrong)
-        cycle = _uneven(others["spacing_errors"]) if "spacing_errors" in others else 0
-        return Neglected(changes(pair.engagement, others, loads, answers, cycle), wrong)
+    for effect in _off(asked.effects, PLANE_EFFECTS):
+        try:
+            other = with_effect(asked, pair.engagement, effect)
+        except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
+            wrong[effect] = error
+            continue
+        if other is not None:
+            others[effect] = other
+    if not others:
+        return Neglected({}, wrong)
+    note(_COUNTED, len(others))
+    cycle = _uneven(others["spacing_errors"]) if "spacing_errors" in others else 0
+    return Neglected(changes(pair.engagement, others, loads, answers, cycle), wrong)
 
 
 def neglected_remarks(
@@ -199,34 +201,34 @@ def neglected_in_design(
 
     load = task.load
     found: dict[str, tuple[str, ...]] = {}
-    with tallying():
-        for effect in _off(asked.effects, AT_REST):
-            other = with_effect(asked, designed, effect)
-            if other is None:
-                continue
-            sizes = []
-            if effect == "corner_contact":
-                change = changes(designed, {effect: other}, [load], ("transmission error",))[effect][0]
-                sizes = [_size(change, load)] if change.share > tolerance else []
-            for member in MEMBERS if effect != "corner_contact" else ():
-                relief = designed.driver_relief if member == "driver" else designed.driven_relief
-                if isinstance(relief, MinimumExcitationRelief):
-                    x = np.linspace(designed.pair.x_start, designed.pair.x_end, 25)
-                    now, then = relief.at(x), replace(relief, compliance=other.compliance).at(x)
-                    at, largest = int(np.argmax(np.abs(then - now))), float(now.max())
-                    size = float(then[at] - now[at])
-                    if abs(size) > tolerance * largest:
-                        share = percent(abs(size) / largest)
-                        where = f"{share} of its largest value, at x = {x[at] * 1e3:.4g} mm"
-                        sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
-            if effect == "corner_contact" and ground is not None:
-                shape, best = ground
-                other_best = grindable(other, load, shape, task.metric)
-                if abs(other_best.objective - best.objective) > max(tolerance, _EQUALLY_GOOD) * best.objective:
-                    to_grind = f"{_to_grind(other_best)}, instead of {_to_grind(best)}"
-                    sizes.append(f"the best {shape} tip relief to grind: {to_grind}")
-            if sizes:
-                found[effect] = tuple(sizes)
+    for effect in _off(asked.effects, AT_REST):
+        other = with_effect(asked, designed, effect)
+        if other is None:
+            continue
+        note(_COUNTED)
+        sizes = []
+        if effect == "corner_contact":
+            change = changes(designed, {effect: other}, [load], ("transmission error",))[effect][0]
+            sizes = [_size(change, load)] if change.share > tolerance else []
+        for member in MEMBERS if effect != "corner_contact" else ():
+            relief = designed.driver_relief if member == "driver" else designed.driven_relief
+            if isinstance(relief, MinimumExcitationRelief):
+                x = np.linspace(designed.pair.x_start, designed.pair.x_end, 25)
+                now, then = relief.at(x), replace(relief, compliance=other.compliance).at(x)
+                at, largest = int(np.argmax(np.abs(then - now))), float(now.max())
+                size = float(then[at] - now[at])
+                if abs(size) > tolerance * largest:
+                    share = percent(abs(size) / largest)
+                    where = f"{share} of its largest value, at x = {x[at] * 1e3:.4g} mm"
+                    sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
+        if effect == "corner_contact" and ground is not None:
+            shape, best = ground
+            other_best = grindable(other, load, shape, task.metric)
+            if abs(other_best.objective - best.objective) > max(tolerance, _EQUALLY_GOOD) * best.objective:
+                to_grind = f"{_to_grind(other_best)}, instead of {_to_grind(best)}"
+                sizes.append(f"the best {shape} tip relief to grind: {to_grind}")
+        if sizes:
+            found[effect] = tuple(sizes)
     return found
 
 
@@ -376,8 +378,8 @@ def neglected_in_motion(asked: MotionInputs, data: GearTrain, states: Sequence[S
         if not off[effect] or not states:
             continue
         try:
-            with tallying():  # what the estimate runs is no part of the case's own work
-                changes[effect] = tuple(estimate(asked, data, states))
+            note(_COUNTED)
+            changes[effect] = tuple(estimate(asked, data, states))
         except FegearError as error:
             failed[effect] = str(error)
     return NeglectedInMotion(changes, failed)

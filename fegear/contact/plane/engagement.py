@@ -162,8 +162,12 @@ class Engagement:
         return self.grids.at(at) if again else self.grids.new(at)
 
     def modification(self, contacts: Contacts) -> Array:
-        """m_j of both gears together, shape (n, P) [m]."""
-        return self.driver_relief.removal(contacts.roll_driver) + self.driven_relief.removal(contacts.roll_driven)
+        """m_j of both gears together, shape (n, P) [m]; a flank without modification is not asked."""
+        total = np.zeros(contacts.gap.shape)
+        for relief, roll in ((self.driver_relief, contacts.roll_driver), (self.driven_relief, contacts.roll_driven)):
+            if relief != UNMODIFIED:
+                total = total + relief.removal(roll)
+        return total
 
     def spacing(self, contacts: Contacts, cycle: int) -> Array:
         """Spacing error of each pair, shape (n, 1) [m], in the base pitch number `cycle`.
@@ -184,7 +188,9 @@ class Engagement:
 
     def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
         """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""
-        added = self.modification(contacts) + self.spacing(contacts, cycle)
+        added = self.modification(contacts)
+        if self.driver_spacing.size or self.driven_spacing.size:
+            added = added + self.spacing(contacts, cycle)
         return np.where(contacts.present, contacts.gap + added, np.inf)
 
     def solve(self, grid: RollGrid, load: ArrayLike, cycle: int = 0) -> Loaded:

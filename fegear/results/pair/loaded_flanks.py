@@ -122,7 +122,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
         if effect == "corner_contact"
         else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
         for effect in WIDE_EFFECTS
-        if asked.estimates and not effects.is_on(effect) and asked.has_data(effect)
+        if asked.neglected and not effects.is_on(effect) and asked.has_data(effect)
     }
     stated, i = over.stated, asked.loads.index(asked.nominal)
     changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}

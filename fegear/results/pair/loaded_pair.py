@@ -43,7 +43,7 @@ class LoadedPairInputs:
         That the sizes of neglected effects are compared with.
     effects : EffectsPart
         All of the case, for the remedies.
-    estimates : bool
+    estimates, neglected : bool
         Whether errors and neglected effects are estimated.
     answers : tuple of str
         What the results stand on that read the pair: these sizes are of it.
@@ -55,13 +55,16 @@ class LoadedPairInputs:
     tolerance: float = field(compare=False)
     effects: EffectsPart = field(compare=False)
     estimates: bool = True
+    neglected: bool = True
     answers: tuple[Answer, ...] = ()
     loads: tuple[float, ...] = ()
 
 
 def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
     asked = pair_inputs(scene, name)
-    return LoadedPairInputs(asked, scene.case.accuracy.tolerance, scene.case.effects, scene.estimates)
+    return LoadedPairInputs(
+        asked, scene.case.accuracy.tolerance, scene.case.effects, scene.estimates, scene.sizes_neglected
+    )
 
 
 def _for_readers(inputs: LoadedPairInputs, readers: Sequence[Stage]) -> LoadedPairInputs:
@@ -101,6 +104,8 @@ def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> Loaded
     pair = build_loaded_pair(asked, at_rest, shifted)
     if not inputs.estimates:
         return replace(pair, exact=False)
+    if not inputs.neglected:
+        return pair
     return replace(pair, neglected=neglected_effects(asked, pair, inputs.answers, inputs.loads))
 
 

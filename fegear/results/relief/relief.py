@@ -87,6 +87,8 @@ class ReliefInputs:
         That neglected effects are compared with.
     effects : EffectsPart
         All of the case, for the remedies.
+    neglected : bool
+        Whether the sizes of effects that are off are estimated.
     labels, gears : mapping of str to str
         Names of the tables and of the gears by member.
     """
@@ -95,6 +97,7 @@ class ReliefInputs:
     asked: PairInputs
     tolerance: float
     effects: EffectsPart = field(compare=False)
+    neglected: bool
     labels: Mapping[Member, str] = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
 
@@ -150,7 +153,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
     case = scene.case
     return ReliefInputs(
         design_part(scene), pair_inputs(scene, name), case.accuracy.tolerance, case.effects,
-        table_names(scene, name), gears,
+        scene.sizes_neglected, table_names(scene, name), gears,
     )  # fmt: skip
 
 
@@ -172,7 +175,9 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
     best = best_ground(design) if design.ground else None
-    neglected = neglected_in_design(inputs.asked, design.designed, best, task, inputs.tolerance)
+    neglected: dict[str, tuple[str, ...]] = {}
+    if inputs.neglected:
+        neglected = neglected_in_design(inputs.asked, design.designed, best, task, inputs.tolerance)
     wanted = part.roll_angles or ()
     points = {member: relief_at(design.designed, member, wanted) for member in MEMBERS if wanted}
     return ReliefData(pair, design, neglected, points)

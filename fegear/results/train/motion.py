@@ -48,12 +48,15 @@ class SweepInputs:
         Whether the case describes a friction that is off.
     effects : EffectsPart
         All of the case, for the remedies.
+    neglected : bool
+        Whether the sizes of effects that are off are estimated.
     """
 
     motion: MotionInputs
     tolerance: float = field(compare=False)
     idle_friction: bool = field(compare=False)
     effects: EffectsPart = field(compare=False)
+    neglected: bool
 
 
 def check_friction(scene: Scene, _subject: str = "") -> None:
@@ -83,13 +86,14 @@ def check_motion(scene: Scene, subject: str = "") -> None:
 def _inputs(scene: Scene, _subject: str) -> SweepInputs:
     effects = scene.case.effects
     idle = "friction" in scene.case.dynamics.model_fields_set and not effects.friction
-    return SweepInputs(motion_inputs(scene), scene.case.accuracy.tolerance, idle, effects)
+    return SweepInputs(motion_inputs(scene), scene.case.accuracy.tolerance, idle, effects, scene.sizes_neglected)
 
 
 def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
     data = gear_train(upstream)
     states = steady_motions(asked.motion, data, work.progress)
-    return SweepData(data, states, neglected_in_motion(asked.motion, data, states))
+    neglected = neglected_in_motion(asked.motion, data, states) if asked.neglected else NeglectedInMotion({}, {})
+    return SweepData(data, states, neglected)
 
 
 def _present(found: SweepData, asked: SweepInputs) -> Outcome:
@@ -156,7 +160,8 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     """One steady motion for each speed; one that does not repeat takes ten times as long, which cannot be foreseen."""
     speeds = int(scene.case.dynamics.speed_values.size)
     settings = {"speeds": speeds, "periods": forecasts.periods(scene), "tolerance": scene.case.dynamics.tolerance}
-    neglected = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
+    off = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
+    neglected = off if scene.sizes_neglected else 0
     return Forecast(settings, forecasts.seconds_per_speed(scene) * speeds + 0.1 * neglected)
 
 
