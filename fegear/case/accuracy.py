@@ -117,10 +117,10 @@ class StiffnessPart(Part):
     radii: Annotated[list[PositiveLength], Field(min_length=1), at_most(100_000, "load positions")] | None = Field(
         default=None, description="Radii at which the flank is loaded; give these or `positions`."
     )
-    positions: Annotated[int, Field(ge=2, le=100_000)] = Field(
-        default=_POSITIONS,
+    positions: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
+        default=None,
         description="Load positions, equally spaced in roll angle over the active profile (without a pair over the "
-        "whole involute); with `face_positions` 12 unless given.",
+        "whole involute). Default: 100, with `face_positions` 12.",
     )
     contact_half_width: PositiveLength | None = Field(
         default=None, description="Half-width of the contact; without it and `load` 0.02 modules."
@@ -146,7 +146,7 @@ class StiffnessPart(Part):
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
-        if self.radii is not None and self.positions != _POSITIONS:
+        if self.radii is not None and self.positions is not None:
             raise refuse("contradicts radii", "give either radii or positions", key="positions")
         if self.contact_half_width is not None and self.load is not None:
             raise refuse("contradicts contact_half_width", "give either of them", key="load")
@@ -166,8 +166,13 @@ class StiffnessPart(Part):
         refuse_more(_MOST_BANDS, "bands", self.band_radii, count, key="face_positions")
 
     @property
+    def load_positions(self) -> int:
+        """How many positions a plane table has."""
+        return _POSITIONS if self.positions is None else self.positions
+
+    @property
     def band_radii(self) -> int:
         """How many radii a solid table has: twelve where the case does not say."""
         if self.radii is not None:
             return len(self.radii)
-        return self.positions if "positions" in self.model_fields_set else _USUAL_BAND_RADII
+        return _USUAL_BAND_RADII if self.positions is None else self.positions

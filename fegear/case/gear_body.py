@@ -84,7 +84,7 @@ class GearBodyPart(Part):
             )  # fmt: skip
         if self.hub_radius is None:
             for key in ("hub_width", "hub_offset"):
-                if key in self.model_fields_set:
+                if key in self.given:
                     raise refuse("has a meaning only with hub_radius", 'write hub_radius = "25 mm"', key=key)
         return self
 
@@ -128,7 +128,7 @@ class RimSupportPart(Part):
             if self.kind == "pins" and getattr(self, key) is None:
                 raise refuse("is missing for a rim on pins", 'write pins = 6, width = "12 mm"', key=key)
         for key in ("pins", "width", "angle"):
-            if self.kind != "pins" and key in self.model_fields_set:
+            if self.kind != "pins" and key in self.given:
                 raise refuse("has a meaning only for a rim on pins", 'write kind = "pins"', key=key)
         if self.pins is not None and self.pins < 2:
             raise refuse(

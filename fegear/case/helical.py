@@ -65,7 +65,7 @@ class MisalignmentPart(Part):
 
     @model_validator(mode="after")
     def _one_lead(self) -> Self:
-        if self.lead is not None and "lead_angle" in self.model_fields_set:
+        if self.lead is not None and "lead_angle" in self.given:
             raise refuse("contradicts lead_angle", "give either the error of the lead or that of its angle", key="lead")
         return self
 

@@ -160,6 +160,6 @@ class TransmissionErrorPart(Part):
 
     @model_validator(mode="after")
     def _terms_of_a_series(self) -> Self:
-        if "terms" in self.model_fields_set and self.method != "mark-series":
+        if "terms" in self.given and self.method != "mark-series":
             raise refuse('has a meaning only with method = "mark-series"', key="terms")
         return self

@@ -73,9 +73,10 @@ class OperationPart(Part):
         default=1.0,
         description="Application factor K_A: what both machines add to the nominal load; 1 with a spectrum.",
     )
-    mesh_load_factor: Factor = Field(
-        default=1.0,
-        description="Mesh load factor K_gamma: what uneven sharing between several paths adds to the load.",
+    mesh_load_factor: Factor | None = Field(
+        default=None,
+        description="Mesh load factor K_gamma: what uneven sharing between several paths adds to the load. Default: 1, "
+        "in a pair of a planetary set that of its planet-load-sharing.",
     )
     dynamic_factor: Factor | None = Field(
         default=None,
@@ -91,10 +92,11 @@ class OperationPart(Part):
     load_cycles: Annotated[Number, Field(ge=1.0)] | None = Field(
         default=None, description="Load cycles that a flank of the driver must bear, in place of life."
     )
-    contacts: list[Annotated[int, Field(ge=1, le=100)]] = Field(
-        default=[1, 1],
-        description="How often a flank of the driver and of the driven gear is loaded per revolution: 3 for a sun "
-        "gear with three planets, of whose mass K_v then takes a third for each mesh.",
+    contacts: list[Annotated[int, Field(ge=1, le=100)]] | None = Field(
+        default=None,
+        description="How often a flank of driver and driven gear is loaded per revolution: 3 for a sun with three "
+        "planets, of whose mass K_v takes a third for each mesh. Default: `[1, 1]`, in a planetary set the planets of "
+        "sun and ring.",
     )
     idler: Literal["driver", "driven", "both"] | None = Field(
         default=None, description="Gear whose teeth are bent to either side once per revolution, as those of an idler."
@@ -126,19 +128,29 @@ class OperationPart(Part):
     @property
     def applied_factor(self) -> float:
         """K_A K_gamma, by which ISO 6336-1 multiplies F_t before it asks for stiffness and dynamic factor."""
-        return self.application_factor * self.mesh_load_factor
+        return self.application_factor * self.k_gamma
+
+    @property
+    def k_gamma(self) -> float:
+        """K_gamma as given, else that of loads which are shared evenly."""
+        return self.mesh_load_factor or 1.0
+
+    @property
+    def loaded_per_turn(self) -> list[int]:
+        """Contacts of a flank of driver and driven gear in a turn."""
+        return [1, 1] if self.contacts is None else self.contacts
 
     @model_validator(mode="after")
     def _one_life(self) -> Self:
         if self.life is not None and self.load_cycles is not None:
             raise refuse("contradicts life", "give life or load_cycles", key="load_cycles")
         for key in ("application_factor", "mesh_load_factor"):
-            if getattr(self, key) > _LARGEST:
+            if (getattr(self, key) or 1.0) > _LARGEST:
                 raise refuse(
                     f"multiplies the load by more than {_LARGEST:g}, as no drive does",
                     "check the decimal point, or give a larger load", key=key,
                 )  # fmt: skip
-        if len(self.contacts) != 2:
+        if len(self.loaded_per_turn) != 2:
             raise refuse(
                 "must hold two numbers, of the driver and of the driven gear", "[1, 1] as a rule", key="contacts"
             )

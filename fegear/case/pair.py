@@ -224,7 +224,7 @@ class PairPart(Part):
             )  # fmt: skip
         if self.width_in(pair) == "plane":
             return
-        if "compliance" in self.model_fields_set:
+        if "compliance" in self.given:
             raise InputError(
                 f"{prefix}.compliance", "(given)",
                 "is for plane teeth, and gears with a width are solved by finite elements",

@@ -61,7 +61,7 @@ class MeshErrorPart(Part):
         if self.harmonic is not None and given != ["amplitude"]:
             raise refuse("belongs to amplitude", "leave it out", key="harmonic")
         for key in ("flanks", "shuttling"):
-            if key in self.model_fields_set and given != ["pair"]:
+            if key in self.given and given != ["pair"]:
                 raise refuse("belongs to pair", "leave it out", key=key)
         if self.shuttling and self.along != "y":
             raise refuse("goes with an error along y", "leave along out", key="shuttling")

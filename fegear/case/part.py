@@ -61,9 +61,12 @@ class Part(BaseModel):
 
     @property
     def given(self) -> set[str]:
-        """Keys that say more than nothing: a plain default that is written out contradicts no other key."""
+        """Keys that say more than nothing: a default that is written out contradicts no other key."""
         fields = type(self).model_fields
-        return {key for key in self.model_fields_set if getattr(self, key) != fields[key].default}
+        return {
+            key for key in self.model_fields_set
+            if getattr(self, key) != fields[key].get_default(call_default_factory=True, validated_data={})
+        }  # fmt: skip
 
 
 class OnDemand:

@@ -145,10 +145,10 @@ class PlanetaryPart(Part):
     speeds: SpeedsPart | None = Field(
         default=None, description="Speeds of the driving member over which vibration is computed."
     )
-    backlash: PositiveLength | None = Field(
-        default=None,
-        description="Backlash of every mesh along the line of action, for `planet-motion`; without it back flanks "
-        "never touch.",
+    backlash: PositiveLength | Literal["unlimited"] = Field(
+        default="unlimited",
+        description='Backlash of every mesh along the line of action, for `planet-motion`, or "unlimited", with which '
+        "back flanks never touch.",
     )
     mesh_efficiency: Annotated[Number, Field(gt=0.0, le=1.0)] = Field(
         default=1.0, description="Efficiency of both meshes one after the other with the carrier at rest."
@@ -316,7 +316,7 @@ def _operation(part: PlanetaryPart, given: PairPart, planet_drives: bool) -> Ope
     """
     said = given.operation.model_fields_set
     filled: dict[str, Any] = {}
-    if "contacts" not in said:
+    if given.operation.contacts is None:
         filled["contacts"] = [1, part.count] if planet_drives else [part.count, 1]
     if not said & {"idler", "reversed_load", "mean_stress_factor"}:
         filled["idler"] = "driver" if planet_drives else "driven"
@@ -331,7 +331,7 @@ def set_of_pair(case: Case, pair: str) -> str | None:
 def set_that_shares(case: Case, pair: str) -> str | None:
     """The set whose load sharing gives the K_gamma of a pair: its own, unless the case gives a K_gamma, or no ring."""
     name = set_of_pair(case, pair)
-    if name is None or "mesh_load_factor" in case.pair[pair].operation.model_fields_set:
+    if name is None or case.pair[pair].operation.mesh_load_factor is not None:
         return None
     part = case.planetary[name]
     return None if part.ring is None and part.stiffness.ring_mesh is None else name

@@ -63,6 +63,9 @@ def _plain(node: Any) -> Any:
         return node
     made: dict[str, Any] = {_LIMITS.get(str(key), str(key)): _plain(value) for key, value in node.items()}
     default = made.pop("default", None)
+    each = node.get("items")
+    if isinstance(default, list) and isinstance(each, dict) and QUANTITY in each:
+        default = [_written(value, each[QUANTITY]) for value in default]
     if isinstance(made.get("title"), str):
         del made["title"]  # the key once more, with blanks; a table of properties may have one of that name
     if QUANTITY in made:

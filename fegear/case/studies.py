@@ -63,7 +63,8 @@ class StudyPart(Part):
     load_position: Shares = Field(
         default_factory=lambda: [0.1, 0.4, 0.7, 1.0],
         description="Where the load acts, as shares of the roll angle between start (0) and end (1) of the involute; "
-        "with `samples` the first and the last, and eight loads a gear between them.",
+        "with `samples` the first and the last, and eight loads a gear between them. Default: 0.1, 0.4, 0.7, 1; with "
+        "`samples` 0 to 1.",
     )
     samples: int | None = Field(
         default=None, ge=2, le=10_000,

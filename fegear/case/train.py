@@ -24,6 +24,8 @@ TorsionalDamping = Annotated[float, quantity("torsional_damping", not_negative=T
 MeshDamping = Annotated[float, quantity("damping", not_negative=True)]
 TorqueValue = Annotated[float, quantity("torque")]
 Ratio = Annotated[Number, Field(ge=0.0)]
+#: A length, or the word for back flanks that never touch.
+Backlash = LengthOrZero | Literal["unlimited"]
 
 
 class BodyPart(Part):
@@ -67,7 +69,7 @@ class ShaftPart(Part):
 
     @model_validator(mode="after")
     def _one_stiffness(self) -> Self:
-        size = {"length", "diameter", "bore_diameter", "shear_modulus"} & self.model_fields_set
+        size = {"length", "diameter", "bore_diameter", "shear_modulus"} & self.given
         ways = [self.stiffness is not None, bool(size), self.rigid]
         if sum(ways) != 1:
             raise refuse(
@@ -113,8 +115,10 @@ class TrainMeshPart(Part):
         description="Damping that is constant, from the mean stiffness, or that follows the stiffness of the teeth "
         "that touch (TM-100180).",
     )
-    backlash: LengthOrZero | None = Field(
-        default=None, description="Backlash along the line of action; without it that of the gears."
+    backlash: Backlash | None = Field(
+        default=None,
+        description='Backlash along the line of action, or "unlimited", with which back flanks never touch. Default: '
+        "that of the gears at their tooth thickness and centre distance, zero where they jam by rounding.",
     )
     phase: Number = Field(default=0.0, description="Phase of the mesh at time zero, in base pitches.")
 

@@ -175,7 +175,7 @@ class MeshStiffnessPart(Part):
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         if self.pair is not None:
-            for key in sorted(self.model_fields_set - {"pair"}):
+            for key in sorted(self.given - {"pair"}):
                 raise refuse("comes from the teeth of the pair already", "leave it out", key=key)
             return self
         if (self.stiffness is None) == (self.distribution is None):
@@ -207,7 +207,7 @@ class BearingPart(Part):
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        if self.matrix is not None and self.model_fields_set != {"matrix"}:
+        if self.matrix is not None and self.given != {"matrix"}:
             raise refuse("contradicts the single stiffnesses", "give either", key="matrix")
         return self
 

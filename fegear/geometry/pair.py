@@ -221,6 +221,14 @@ class GearPair:
         return along * math.cos(self.driver.base_helix_angle)
 
     @property
+    def free_backlash(self) -> float:
+        """Way of the driven gear back along the transverse line of action until back flanks touch [m].
+
+        Zero for gears that jam by the rounding of their profile shifts (`ROUNDED_JAM`).
+        """
+        return max(self.normal_backlash, 0.0) / math.cos(self.driver.base_helix_angle)
+
+    @property
     @shows("mm", "backlash on the working pitch circle")
     def circumferential_backlash(self) -> float:
         """j_wt, the same as an arc of the working pitch circles [m]: j_bn / (cos(alpha_wt) cos(beta_b))."""

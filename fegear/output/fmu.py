@@ -52,6 +52,8 @@ if TYPE_CHECKING:
 _SOURCE = Path(__file__).with_name("fmu_mesh.c")
 #: A step of a stiffness or a separation by more of its largest value is a jump, which integrators are warned of.
 _JUMP = 1e-6
+#: Backlash of meshes whose back flanks never touch [m].
+_NEVER_USED_UP = 1.0
 #: Name, unit, causality and variability, description; in the order of the value references of `fmu_mesh.c`.
 _VARIABLES = (
     ("time", "s", "independent", "continuous", "Time"),
@@ -320,9 +322,7 @@ def _model(scene: Scene, name: str, teeth: LoadedTeeth) -> tuple[MeshModel, str]
         found = tuple(replace(one, phase=part.mesh[of[0]].phase) for one in found)
         about = f"damping and phase are those of train.mesh.{of[0]}"
     pair = teeth.pair if forward else teeth.pair.reversed()
-    backlash = max(pair.normal_backlash, 0.0) / math.cos(pair.driver.base_helix_angle)
-    if mesh and math.isfinite(mesh.backlash):
-        backlash = mesh.backlash
+    backlash = min(mesh.backlash, _NEVER_USED_UP) if mesh else pair.free_backlash
     model = MeshModel(
         name, pair, teeth.loads, teeth.nominal, found, backlash, mesh.damping if mesh else 0.0,
         mesh is not None and mesh.damping_law == "momentary",

@@ -1,10 +1,178 @@
-"""A default that is written out contradicts no other key; another value does."""
+"""A default that is written out changes nothing: no refusal, no other case, no other plan, no other input of a stage.
+
+Every key that the schema gives a default is written into every shipped case that may have it, and into a few more that
+have what no shipped one has.
+"""
+
+import copy
+import tomllib
+from functools import cache
+from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
+from written_defaults import Schema, places, without, written
 
+from fegear.base.errors import FegearError
 from fegear.case.gear import GearPart
+from fegear.case.reading import build_scene
 from fegear.case.shaft import BearingPart
+from fegear.engine.plan import make_plan, plan_content
+from fegear.results.catalogue import STAGES
+
+CASES = Path(__file__).parents[2] / "cases"
+SCHEMA = Schema()
+#: A note on what was assumed goes when the default is written: it was confirmed.
+CONFIRMED = {"MaterialPart.young_modulus", "StrengthPart.quality", "OperationPart.application_factor"}
+#: The first and the last with `samples`, as the page says.
+DRAWN = {"StudyPart.load_position": [0.0, 1.0]}
+
+
+def plan_of(document, folder):
+    scene = build_scene(document, "case", folder)
+    plan = make_plan(scene, STAGES)
+    return scene, plan
+
+
+def difference(one, other):
+    """What of two cases is not the same; empty if all is, fields that do not count in comparisons included."""
+    (scene, plan), (scene_2, plan_2) = one, other
+    if scene.case.model_dump() != scene_2.case.model_dump():
+        return "the case"
+    if plan_content(scene, plan) != plan_content(scene_2, plan_2):
+        return "the plan"
+    for step, step_2 in zip(plan.steps, plan_2.steps, strict=True):
+        if repr(step.inputs(scene)) != repr(step_2.inputs(scene_2)):
+            return f"what {step.task} reads"
+    return ""
+
+
+def stated(document):
+    """Key, place and default of all that may be written out."""
+    found = []
+    for ident, path, node in places(SCHEMA, document):
+        default = SCHEMA.default(ident, node)
+        if ident in DRAWN and document["study"].get("samples"):
+            default = DRAWN[ident]
+        if default is not None and ident not in CONFIRMED:
+            found.append((ident, path, default))
+    return found
+
+
+def wrong(document, folder):
+    """Keys whose defaults change something, with what; all at once first, for they nearly never do."""
+    base = plan_of(document, folder)
+
+    def tried(some):
+        made = document
+        for _, path, default in some:
+            made = written(made, path, default)
+        try:
+            return difference(base, plan_of(made, folder))
+        except FegearError as refusal:
+            return str(refusal)
+
+    def narrowed(some):
+        change = tried(some)
+        if not change:
+            return []
+        half = len(some) // 2
+        return narrowed(some[:half]) + narrowed(some[half:]) if half else [(*some[0], change)]
+
+    return narrowed(stated(document))
+
+
+def shipped():
+    return sorted(CASES.rglob("*.toml"))
+
+
+@cache
+def document_of(path):
+    return tomllib.loads(path.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("path", shipped(), ids=lambda path: path.stem)
+def test_in_a_shipped_case(path):
+    assert wrong(document_of(path), path.parent) == []
+
+
+#: What no shipped case has: a case, and tables that are joined to it.
+MORE = {
+    "pins": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "pins", "pins": 6, "width": "5 mm"}}}}),
+    "held": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "held"}}}}),
+    "friction": ("surface_and_loss", {"pair": {"I": {"friction": {"coefficient": 0.05}}}}),
+    "root relief": ("nasa_four_square", {"gear": {"test": {"relief": {"root": {
+        "amount": "5 um", "length": "1 mm"}}}}}),
+    "lead": ("spur_over_the_face", {"effects": {"relief": True}, "gear": {"a": {"lead": {"slope": "3 um"}}}}),
+    "line error": ("spur_misaligned", {"pair": {"I": {"line_error": {"crowning": "3 um"}}}}),
+    "grid": ("helical_flank_design", {"flank_design": {"grid": {"crownings": ["2 um"]}}}),
+    "followed": ("blankenship_singh", {"transmissibility": {"I": {"follow": {
+        "bearing_stiffness": {"start": 0.5, "stop": 2.0},
+        "mesh_stiffness": {"start": "100 N/um", "stop": "200 N/um"}}}}}),
+    "force": ("blankenship_singh_forces", {"transmissibility": {"I": {"excitation": {
+        "external": [{"on": "driver", "order": 1, "y": "1 N"}]}}}}),
+    "sleeve": ("two_stage_shafts", {"shaft": {
+        "in": {"bearings": [{"bearing": "ball", "at": "10 mm"}, {"bearing": "ball", "at": "110 mm"},
+                            *({"bearing": "ball", "at": at, "around": "sleeve"} for at in ("70 mm", "90 mm"))]},
+        "sleeve": {"start": "65 mm", "sections": [{"length": "30 mm", "outer": "50 mm", "inner": "40 mm"}]}}}),
+}  # fmt: skip
+
+
+def joined(document, more):
+    """A document with tables added, key by key."""
+    made = copy.deepcopy(document)
+    for key, value in more.items():
+        made[key] = joined(made.get(key, {}), value) if isinstance(value, dict) else value
+    return made
+
+
+def more(name):
+    stem, tables = MORE[name]
+    path = next(path for path in shipped() if path.stem == stem)
+    return joined(document_of(path), tables), path.parent
+
+
+@pytest.mark.parametrize("name", MORE)
+def test_in_a_case_with_what_no_shipped_one_has(name):
+    assert wrong(*more(name)) == []
+
+
+def documents():
+    return [(document_of(path), path.parent) for path in shipped()] + [more(name) for name in MORE]
+
+
+def never_absent():
+    """Keys with a default that every one of these cases states where it has their table."""
+    everywhere = {f"{part}.{key}" for part, key, node in SCHEMA.every() if SCHEMA.default(f"{part}.{key}", node)}
+    seen = {ident for document, _ in documents() for ident, _, _ in stated(document)}
+    return everywhere - seen - CONFIRMED
+
+
+def given_at(document, idents):
+    return [(ident, path, node) for ident, path, node, given in SCHEMA.entries(document) if given and ident in idents]
+
+
+def test_every_default_of_the_schema_stands_in_one_of_these_cases():
+    left = never_absent()
+    for document, _ in documents():
+        left -= {ident for ident, _, _ in given_at(document, left)}
+    assert left == set()
+
+
+@pytest.mark.dear
+def test_of_keys_that_every_case_states_once_they_are_taken_out():
+    left = never_absent()
+    for document, folder in documents():
+        for ident, path, node in given_at(document, left):
+            taken = without(document, path)
+            try:
+                base = plan_of(taken, folder)
+            except FegearError:  # here the case needs what it says
+                continue
+            assert difference(base, plan_of(written(taken, path, SCHEMA.default(ident, node)), folder)) == "", ident
+            left.discard(ident)
+    assert left == set()
+
 
 BALLS = {"kind": "ball", "count": 9, "diameter": "12.7 mm", "pitch_diameter": "65 mm"}
 RING = {
@@ -22,5 +190,6 @@ def test_of_a_bearing_with_elements():
 
 def test_of_an_internal_gear():
     assert GearPart.model_validate(RING | {"tooth_mesh_fillet": "rack"}).internal
+    assert GearPart.model_validate(RING | {"rack": {}}).internal
     with pytest.raises(ValidationError, match="no meaning for an internal gear"):
         GearPart.model_validate(RING | {"rack": "ISO 53 C"})

@@ -68,7 +68,7 @@ def mates_of(contacts: Sequence[int], *, first: bool) -> tuple[int, int]:
 def load_cycles(part: PairPart, pair: GearPair, said: list[str], name: str) -> Both:
     """N_L of driver and driven over the life."""
     operation, speed = part.operation, part.speed or math.nan
-    one, other = operation.contacts
+    one, other = operation.loaded_per_turn
     ratio = pair.driver.teeth / pair.driven.teeth
     if operation.load_cycles is not None:
         return operation.load_cycles, operation.load_cycles / one * ratio * other
@@ -119,7 +119,7 @@ def spectrum_levels(
         rule = "is missing: shares of a spectrum are shares of a life"
         raise InputError(f"pair.{name}.operation.life", "(not given)", rule, 'write life = "20000 h"')
     shares = sum(level.share or 0.0 for level in bins)
-    one, other = operation.contacts
+    one, other = operation.loaded_per_turn
     ratio = pair.driver.teeth / pair.driven.teeth
     found = []
     for level in bins:

@@ -180,8 +180,8 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     refuse_fast(part, pair, name)
     cycles = in_order(load_cycles(part, pair, said, name), first=first)
     duty = Duty(
-        tangential, speed, cycles, viscosity, operation.application_factor, operation.mesh_load_factor,
-        meshes=mates_of(operation.contacts, first=first),
+        tangential, speed, cycles, viscosity, operation.application_factor, operation.k_gamma,
+        meshes=mates_of(operation.loaded_per_turn, first=first),
     )  # fmt: skip
     conditions = Conditions(
         geometry, (strength[0], strength[1]), (quality[0], quality[1]), duty,
@@ -227,10 +227,10 @@ def _of_its_set(scene: Scene, name: str) -> list[str]:
     part, operation = scene.case.planetary[found], scene.case.pair[name].operation
     told = f"Pair {name} belongs to planetary set {found}"
     if operation.idler is not None:
-        told += f": the planet's teeth count as bent to either side, and contacts as {operation.contacts}"
+        told += f": the planet's teeth count as bent to either side, and contacts as {operation.loaded_per_turn}"
     if set_that_shares(scene.case, name):
         told += "; K_gamma is that of its planet-load-sharing"
-    elif "mesh_load_factor" not in operation.model_fields_set and part.count > 1:
+    elif operation.mesh_load_factor is None and part.count > 1:
         told += f"; K_gamma counts as 1, for planetary.{found}.stiffness.ring_mesh is not given"
     said = [f"{told}."]
     if part.ring is not None and not scene.pairs[name].internal and scene.case.gear[part.ring].strength is None:

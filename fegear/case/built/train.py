@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.dynamics import FrictionPart
     from fegear.case.reading import Scene
-    from fegear.case.train import BodyPart, ShaftPart, TrainPart
+    from fegear.case.train import BodyPart, ShaftPart, TrainMeshPart, TrainPart
     from fegear.dynamics.motion.motion_model import MotionModel
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.charts import Direction
@@ -126,6 +126,13 @@ def _shaft(name: str, part: ShaftPart, inertias: Mapping[str, float]) -> Shaft:
     return Shaft(name, part.a, part.b, stiffness, damping)
 
 
+def backlash_of(mesh: TrainMeshPart, pair: GearPair) -> float:
+    """Backlash of a mesh along the transverse line of action [m]: as it is given, else that of its gears."""
+    if mesh.backlash is None:
+        return pair.free_backlash
+    return math.inf if mesh.backlash == "unlimited" else mesh.backlash
+
+
 def build_train(asked: TrainInputs, stiffness: Mapping[str, float] | None = None) -> Train:
     """Make the train for mean mesh stiffnesses [N/m]; without them only ratios and static forces mean anything.
 
@@ -146,7 +153,7 @@ def build_train(asked: TrainInputs, stiffness: Mapping[str, float] | None = None
         damping = mesh.damping or 0.0
         if mesh.damping_ratio is not None:
             damping = mesh_damping(mesh.damping_ratio, k, r1, r2, inertias[mesh.driver], inertias[mesh.driven])
-        backlash = math.inf if mesh.backlash is None else mesh.backlash
+        backlash = backlash_of(mesh, pair)
         teeth = pair.driver.teeth, pair.driven.teeth
         meshes.append(Mesh(name, mesh.driver, mesh.driven, r1, r2, *teeth, k, damping, backlash, mesh.damping_law))
     dampers = tuple(Damper(damper.a, damper.b, damper.damping) for damper in part.damper.values())

@@ -100,6 +100,8 @@ _SLOWEST, _FASTEST = 0.5, 1.5
 #: Inertia of motor and machine over that of the gear beside them, assumed.
 _BODIES = 10.0
 _STEEL = 7850.0
+#: Backlash of a train's mesh, assumed [modules].
+_BACKLASH = 0.05
 #: Mesh stiffness per face width, assumed for a ring [Pa]: c_gamma of ISO 6336 for steel.
 _PER_WIDTH = 20e9
 
@@ -210,6 +212,7 @@ def _train(answers: Answers) -> Mapping[str, str]:
     speed = answers.si("speed")
     return {
         "torque": answers["torque"],
+        "backlash": _amount(_BACKLASH * answers.si("module"), "um"),
         "motor_inertia": f"{inertia[0]:.3g} kg*m^2",
         "load_inertia": f"{inertia[1]:.3g} kg*m^2",
         "shaft_length": millimetres(8.0 * radii[0]),

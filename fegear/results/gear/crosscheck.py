@@ -104,10 +104,10 @@ def _helical(scene: Scene) -> tuple[str, ...]:
 def _pair_check(scene: Scene, name: str) -> PairCheck:
     pair, part, stiffness = scene.pairs[name], scene.case.pair[name], scene.case.stiffness
     load = part.normal_load(pair)
-    gears, line_load = (part.driver, part.driven), stiffness.load
+    gears, line_load, count = (part.driver, part.driven), stiffness.load, stiffness.load_positions
     if line_load is None and load is not None:
-        return PairCheck(pair, gears, stiffness.positions, load / pair.face_width, False, part.operation.applied_factor)
-    return PairCheck(pair, gears, stiffness.positions, line_load or USUAL_LINE_LOAD, line_load is None)
+        return PairCheck(pair, gears, count, load / pair.face_width, False, part.operation.applied_factor)
+    return PairCheck(pair, gears, count, line_load or USUAL_LINE_LOAD, line_load is None)
 
 
 def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:

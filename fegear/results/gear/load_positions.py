@@ -85,7 +85,7 @@ def load_radii(scene: Scene, name: str) -> Array:
     low, high = np.clip(ends, *gear.involute_radii)
     first, last = (float(np.sqrt((r - gear.base_radius) * (r + gear.base_radius))) for r in (low, high))
     if part.face_positions is None:
-        return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.positions)), low, high)
+        return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.load_positions)), low, high)
     # Arc lengths go with the squares; within this share of the flank's ends a solid's bands are poorly resolved.
     low_2, high_2 = (r**2 - gear.base_radius**2 for r in gear.involute_radii)
     inner = [np.sqrt(low_2 + share * (high_2 - low_2)) for share in (END_SHARE, 1.0 - END_SHARE)]

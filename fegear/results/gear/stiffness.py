@@ -133,7 +133,7 @@ def _present(table: StiffnessTable, asked: StiffnessInputs) -> Outcome:
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
-    positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
+    positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.load_positions
     return Forecast({"positions": positions}, _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions)
 
 

@@ -67,7 +67,7 @@ def _inputs(scene: Scene, name: str) -> SetMotionInputs:
     part, run, dynamics = planetary_part(scene, name), set_inputs(scene, name).run, scene.case.dynamics
     speeds = np.zeros(0) if part.speeds is None else np.sort(part.speeds.array)
     per_turn = run.mesh_frequency * 2.0 * math.pi / abs(run.speed[run.input])
-    backlash = math.inf if part.backlash is None else part.backlash
+    backlash = math.inf if part.backlash == "unlimited" else part.backlash
     return SetMotionInputs(
         speeds, per_turn, pin_errors(part), backlash, dynamics.direction, dynamics.tolerance, part.input, name
     )  # fmt: skip

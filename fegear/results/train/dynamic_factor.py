@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.train import MotionInputs, motion_inputs, train_part
+from fegear.case.built.train import MotionInputs, backlash_of, motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -146,7 +147,10 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
 
 def _check(scene: Scene, name: str) -> None:
     needs_speeds(scene, name)
-    if scene.case.effects.contact_loss is False and train_part(scene).mesh[name].backlash is not None:
+    mesh, pair = train_part(scene).mesh[name], scene.pairs[train_part(scene).pair_of(name)]
+    given, own = backlash_of(mesh, pair), pair.free_backlash  # said once more, that of the gears changes nothing
+    said_nothing = math.isinf(given) or math.isclose(given, own, rel_tol=1e-6, abs_tol=1e-12)
+    if scene.case.effects.contact_loss is False and not said_nothing:
         raise InputError(
             f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
             "switch the effect on, or remove the backlash",

@@ -85,7 +85,7 @@ def check_motion(scene: Scene, subject: str = "") -> None:
 
 def _inputs(scene: Scene, _subject: str) -> SweepInputs:
     effects = scene.case.effects
-    idle = "friction" in scene.case.dynamics.model_fields_set and not effects.friction
+    idle = "friction" in scene.case.dynamics.given and not effects.friction
     return SweepInputs(motion_inputs(scene), scene.case.accuracy.tolerance, idle, effects, scene.sizes_neglected)
 
 
@@ -99,11 +99,27 @@ def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
 def _present(found: SweepData, asked: SweepInputs) -> Outcome:
     data, states, motion = found.train, found.states, asked.motion
     remarks = [*motion_remarks(found.neglected, data, asked.effects, asked.tolerance)]
+    remarks += _without_backlash(data) if motion.contact_loss else []
     if asked.idle_friction:
         remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
     remarks += _unsteady(data, states)
     settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
     return Outcome(found, settings=settings, remarks=tuple(remarks))
+
+
+def _without_backlash(data: GearTrain) -> list[str]:
+    """Meshes whose teeth touch on both flanks, so that contact loss cannot act."""
+    said = []
+    for mesh, one in zip(data.train.meshes, data.meshes, strict=True):
+        if mesh.backlash > 0.0:
+            continue
+        jam = one.pair.normal_backlash
+        why = f" (the gears jam by {-jam * 1e6:.3g} um, as those with rounded profile shifts do)" if jam < 0.0 else ""
+        said.append(
+            f"Mesh {mesh.name}: no backlash{why}, so teeth touch on both flanks and contact is never lost; set "
+            f'thickness_allowance of a gear, or train.mesh.{mesh.name}.backlash (a length or "unlimited").'
+        )
+    return said
 
 
 def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
