@@ -9,6 +9,7 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from fegear.cli import app
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.study import forecast, ladder_of
 
+CASES = Path(__file__).parents[2] / "cases"
 CASE = """
 title = "A pair"
 results = ["stiffness", "root-stress", "transmission-error", "load-sharing"]
@@ -275,10 +277,7 @@ def test_effects_that_only_the_cost_study_depends_on_are_not_idle(case):
         ("cost.quantity=1", "unknown key"),
         ("cost.gear=b", 'cost.gear = "b": is no spur gear of this case'),
         ("cost.pair=J", 'cost.pair = "J": is no pair of this case'),
-        ('results=["geometry"]', "ask for nothing whose cost can be chosen"),
-        ("effects.hertz=none", "nothing converges"),
         ('cost.quantities=["dynamic-factor"]', "needs a train"),
-        ("gear.a.tooth_mesh=own.msh", "fixes the mesh"),
     ],
 )
 def test_what_cannot_be_studied_is_refused_with_the_remedy(case, override, words):
@@ -286,11 +285,44 @@ def test_what_cannot_be_studied_is_refused_with_the_remedy(case, override, words
         asked(read_scene(case, [override]))
 
 
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [("effects.hertz=none", "nothing converges"), ("gear.a.tooth_mesh=own.msh", "fixes the mesh")],
+)
+def test_what_is_named_under_cost_is_refused_where_the_usual_study_takes_its_place(case, override, words):
+    named = 'cost.quantities=["te-peak-to-peak", "c_0"]'
+    with pytest.raises(InputError, match=words):
+        asked(read_scene(case, [override, named]))
+    found = asked(read_scene(case, [override]))
+    assert {"c_0", "root-stress"} <= {quantity.name for quantity in found.quantities}
+    assert words in found.notes[0]
+    assert found.notes[0].startswith("Studied instead of what the results stand for: ")
+
+
 def test_a_case_without_a_load_has_no_pair_to_study(tmp_path):
     path = tmp_path / "bare.toml"
     path.write_text(CASE.replace('load = "4000 N"\n', ""))
     with pytest.raises(InputError, match=r"cost\.pair = \(not given\): must be a pair of spur gears that carries"):
-        asked(read_scene(path))
+        asked(read_scene(path, ['cost.quantities=["te-peak-to-peak"]']))
+    found = asked(read_scene(path))
+    assert [quantity.name for quantity in found.quantities] == ["c_0", "c_1", "root-stress"]
+    assert "must be a pair of spur gears that carries a load" in found.notes[0]
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in CASES.glob("*.toml")))
+def test_every_shipped_case_can_be_studied(name):
+    scene = read_scene(CASES / f"{name}.toml")
+    if not scene.gears:  # rigid gears on springs: nothing to choose, which the command says
+        assert name == "blankenship_singh"
+        return
+    found = asked(scene)
+    assert found.quantities
+    assert ladder_of(found, quick=True).configurations
+
+
+def test_a_case_without_gears_has_nothing_to_choose(capsys):
+    app(["cost", str(CASES / "blankenship_singh.toml"), "--quick"], standalone_mode=False)
+    assert "the case describes no gears, so there is no mesh, formula or tolerance to choose" in capsys.readouterr().out
 
 
 @pytest.mark.dear

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,8 @@ _OF_RESULT = {
 #: Results that report a pair over its face, and those of plane gears, which a study of such a pair says nothing of.
 _OVER_FACE = frozenset({"load-distribution", "transmission-error", "load-sharing"})
 _OF_PLANE_GEARS = frozenset({"stiffness", "root-stress", "crosscheck"})
+#: What is studied where the results stand for nothing that can be: the first that the case can be asked.
+_INSTEAD = (("te-peak-to-peak", "tooth-force"), OF_FLANKS, ("c_0", "root-stress"))
 #: Line load where the case names none [N/m].
 _USUAL_LINE_LOAD = 100e3
 
@@ -57,6 +59,8 @@ class Asked:
         [N/m], for closed forms whose contact is not linear in it.
     over_face : bool
         Whether the pair is loaded over its face: then there is nothing of gears, meshes and closed forms.
+    notes : tuple of str
+        What is studied in place of what the results stand for, and why.
     """
 
     scene: Scene
@@ -68,6 +72,7 @@ class Asked:
     half_width: Array
     line_load: float
     over_face: bool = False
+    notes: tuple[str, ...] = ()
 
     @property
     def pairs(self) -> tuple[str, ...]:
@@ -154,10 +159,10 @@ def _pair(scene: Scene, names: list[str]) -> str:
 def _gear(scene: Scene, names: list[str], pair: str) -> str:
     if not set(names) & set(OF_GEAR):
         return ""
-    first = scene.case.pair[pair].driver if pair else next(iter(scene.spur_gears), "")
+    first = scene.case.pair[pair].driver if pair else next(iter({**scene.spur_gears, **scene.gears}), "")
     chosen = scene.case.cost.gear or scene.case.stiffness.gear or first
     if not chosen:
-        raise InputError("gear", "(none)", "a spur gear is needed for these quantities", "describe one")
+        raise InputError("gear", "(none)", "a gear is needed for these quantities", "describe one")
     return chosen
 
 
@@ -245,11 +250,55 @@ def _asked_of_flanks(scene: Scene, pair: str) -> Asked:
 def asked(scene: Scene) -> Asked:
     """Read from a case what is to be studied.
 
+    Without a word of ``[cost]`` on quantities, pair or gear it is what the results stand for; where that cannot be
+    studied, the nearest that can: the same at rest, a pair over its face, the teeth of a gear (`Asked.notes`).
+
     Raises
     ------
     InputError
-        If nothing can be, or a quantity lacks its gear, pair, load or train.
+        If what ``[cost]`` names lacks its gear, pair, load or train; of a case without gears.
     """
+    part = scene.case.cost
+    try:
+        return _asked(scene)
+    except InputError as error:
+        if part.quantities is not None or part.pair is not None or part.gear is not None:
+            raise
+        refusal = error
+    wanted = [name for result in scene.case.results for name in _OF_RESULT.get(result, ())]
+    still = [[n for n in wanted if n != "dynamic-factor"], [n for n in wanted if n in OF_GEAR]]
+    for names in (*filter(None, still), *_INSTEAD):
+        for taken in (scene, _with_generated_meshes(scene)):
+            cost = part.model_copy(update={"quantities": list(names)})
+            try:
+                found = _asked(replace(taken, case=taken.case.model_copy(update={"cost": cost})))
+            except InputError:
+                continue
+            return replace(found, notes=_notes(found, refusal, scene))
+    raise refusal
+
+
+def _with_generated_meshes(scene: Scene) -> Scene:
+    """The same case, its gears without meshes of their own."""
+    gears = {name: part.model_copy(update={"tooth_mesh": None}) for name, part in scene.case.gear.items()}
+    return replace(scene, case=scene.case.model_copy(update={"gear": gears}))
+
+
+def _notes(found: Asked, refusal: InputError, scene: Scene) -> tuple[str, ...]:
+    """What is studied in place of what the results stand for, and why."""
+    of = " and ".join(f"{kind} {name}" for kind, name in (("gear", found.gear), ("pair", found.pair)) if name)
+    names = ", ".join(quantity.name for quantity in found.quantities)
+    why = f"{refusal.key} = {refusal.value}: {refusal.rule}"
+    notes = [f"Studied instead of what the results stand for: {names} of {of} ({why})."]
+    if found.gear and scene.gears[found.gear].helix_angle:
+        notes.append(f"Gear {found.gear} is helical: its transverse section is studied as a plane problem.")
+    own = [name for name in found.gears if scene.case.gear[name].tooth_mesh is not None]
+    if own:
+        notes.append(f"Gear {', '.join(own)}: meshes of the study are generated, in place of tooth_mesh.")
+    return tuple(notes)
+
+
+def _asked(scene: Scene) -> Asked:
     over_face = _flank_pair(scene)
     if over_face:
         return _asked_of_flanks(scene, over_face)

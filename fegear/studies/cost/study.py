@@ -94,7 +94,7 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
         if not found.rows:
             raise
         found.remarks.append("Interrupted: only the configurations that were finished are here.")
-    found.remarks.extend(_saved_by_condensation(found.rows))
+    found.remarks.extend([*asked.notes, *_saved_by_condensation(found.rows)])
     whole = {one: len(answered(asked, one)) for one in ladder.configurations}
     done = [one for one, count in whole.items() if sum(row.configuration == one for row in found.rows) == count]
     return CostResults(
