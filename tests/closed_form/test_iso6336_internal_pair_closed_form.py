@@ -12,6 +12,7 @@ from fegear.formulas.iso6336.part1_dynamic import reduced_mass
 from fegear.formulas.iso6336.part1_stiffness import stiffness
 from fegear.formulas.iso6336.part3_internal import ring_root_form, ring_tooth
 from fegear.formulas.iso6336.part3_root_stress import ring_rim_factor
+from fegear.formulas.iso6336.part5_materials import crushing_depth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
@@ -103,8 +104,8 @@ def test_a_helix_that_vanishes_leaves_the_rating_of_the_spur_pair():
 def test_angles_contact_ratio_and_reduced_curvature_are_those_of_the_pair(pairs):
     for pair in pairs:
         geometry = of_pair(pair)
-        assert geometry.gears[1].teeth == -max(pair.driver.teeth, pair.driven.teeth)
-        assert geometry.ratio < 0.0 < geometry.diameters[0]
+        assert geometry.gears[1].signed_teeth == -max(pair.driver.teeth, pair.driven.teeth)
+        assert geometry.signed_ratio < 0.0 < geometry.signed_diameters[0]
         assert geometry.working_pressure_angle == pytest.approx(pair.working_pressure_angle, rel=1e-12)
         assert geometry._contact_ratio() == pytest.approx(pair.contact_ratio, rel=1e-9)
         assert 1.0 / geometry.relative_curvature_radius == pytest.approx(curvature(pair, 0.0), rel=1e-9)
@@ -127,9 +128,11 @@ def test_a_ring_is_as_stiff_as_a_rack_and_moves_as_its_rim_does(pairs):
         one, two = geometry.gears
         shifts = {"profile_shift": (0.3, -0.1)}
         rack = stiffness((one.teeth, 10**9), 1.5, **shifts).single
-        assert stiffness((one.teeth, two.teeth), 1.5, **shifts).single == pytest.approx(rack, rel=1e-7)
+        assert stiffness((one.teeth, two.signed_teeth), 1.5, **shifts).single == pytest.approx(rack, rel=1e-7)
         masses = []
-        for gear, base, edge in zip(geometry.gears, geometry.base_diameters, (0.0, two.bore_diameter), strict=True):
+        for gear, base, edge in zip(
+            geometry.gears, geometry.signed_base_diameters, (0.0, two.bore_diameter), strict=True
+        ):
             middle, inside = 0.5 * (gear.tip_diameter + gear.root_diameter), gear.bore_diameter if not edge else 0.0
             ends = (middle, edge) if edge else (inside, middle)
             inertia = 0.5 * math.pi * gear.density * ((0.5 * ends[1]) ** 4 - (0.5 * ends[0]) ** 4)
@@ -162,3 +165,14 @@ def test_thin_rims_of_rings_weaken_their_roots():
     assert ring_rim_factor(8.324 / math.e) == pytest.approx(1.15)
     with pytest.raises(RangeError, match="must exceed"):
         ring_rim_factor(1.75)
+
+
+def test_a_case_is_crushed_at_the_depth_that_the_curvature_at_the_pitch_point_asks_for(pairs):
+    """Eht_c = 2 sigma_H rho_red / (U_H cos(beta_b)) at the pitch point."""
+    outer = Gear(Tooth(21), 4e-3, 15e-3), Gear(Tooth(62, profile_shift=0.2), 4e-3, 50e-3)
+    for pair in (*pairs, GearPair(*outer), GearPair(*outer[::-1])):
+        one, two = (pair.gear(name) for name in ("driver", "driven"))
+        tangent = math.tan(pair.working_pressure_angle)
+        curvature = sum(g.tooth.side / (g.base_radius * tangent) for g in (one, two))
+        expected = 2.0 * 1.2e9 / abs(curvature) / (60e9 * math.cos(one.base_helix_angle))
+        assert crushing_depth(pair, 1.2e9, 60e9) == pytest.approx(expected, rel=1e-12)

@@ -61,7 +61,7 @@ def test_zone_factor_of_helical_gears_is_hertz_along_the_contact_line():
 def test_reduced_mass_is_that_of_two_inertias():
     g = of_pair(PAIRS[1])
     masses = []
-    for shape, d_b in zip(g.gears, g.base_diameters, strict=True):
+    for shape, d_b in zip(g.gears, g.signed_base_diameters, strict=True):
         radii = np.linspace(0.5 * shape.bore_diameter, 0.25 * (shape.tip_diameter + shape.root_diameter), 200_001)
         inertia = np.trapezoid(2.0 * math.pi * shape.density * radii**3, radii)  # per face width
         masses.append(inertia / (0.5 * d_b) ** 2)

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.base.errors import InputError
+from fegear.base.errors import InputError, RangeError
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.pair import MEMBERS, GearPair
 
@@ -52,6 +52,16 @@ class Level:
     speed: float
     share: float
     cycles: Both
+
+    def __post_init__(self) -> None:
+        """Refuse loads, speeds, shares and load cycles below zero."""
+        for name, values in (
+            ("load", (self.tangential,)), ("speed", (self.speed,)), ("share", (self.share,)),
+            ("load cycles", self.cycles),
+        ):  # fmt: skip
+            for value in values:
+                if value < 0.0:
+                    raise RangeError(f"{name} of a level", value, "must not be negative")
 
 
 def in_order(values: Both, *, first: bool) -> Both:

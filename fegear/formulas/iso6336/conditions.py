@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from fegear.base.errors import RangeError
 from fegear.formulas.iso6336.part1_dynamic import running_in_relief
 from fegear.formulas.iso6336.part1_face_load import Alignment
 from fegear.formulas.symbols import ISO_6336
@@ -158,6 +159,15 @@ class PairRating:
     bending_stress: Both
     bending_permissible: Both
     bending_safety: Both
+
+    def __post_init__(self) -> None:
+        """Refuse stresses and safety factors that no pair has, such as those of a length with the wrong sign."""
+        for name in (
+            "contact_stress", "contact_permissible", "contact_safety", "bending_stress", "bending_permissible",
+            "bending_safety",
+        ):  # fmt: skip
+            if not all(value > 0.0 for value in getattr(self, name)):
+                raise RangeError(name, getattr(self, name), "must be positive")
 
     def __getitem__(self, symbol: str) -> Factor:
         """Return a factor by its symbol; KeyError if there is none."""

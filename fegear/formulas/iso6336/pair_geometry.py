@@ -1,8 +1,10 @@
 """Geometry of a pair as ISO 6336-1 uses it: diameters, angles, contact ratios, curvature at the pitch point.
 
 `PairGeometry` holds plain numbers, so that a published example can be typed in; `of_pair` takes them from two gears.
-As in the standard an internal gear has a negative number of teeth, and with it negative reference and base
-diameters and a negative gear ratio; tip, root and outside diameters and centre distance are written without the sign.
+In the standard an internal gear has a negative number of teeth, and with it negative reference and base diameters
+and a negative gear ratio. That sign belongs to the equations of involutes: `signed_teeth`, `signed_diameters`,
+`signed_base_diameters` and `signed_ratio` have it. Everything else is counted and measured without it: speeds, torques,
+load cycles and lives are made from `teeth`, `diameters` and `turns`.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ class GearShape:
     Parameters
     ----------
     teeth : int
-        z; negative of an internal gear.
+        Number of teeth, positive of an internal gear as well.
     profile_shift : float
         x, nominal.
     tip_diameter, root_diameter, face_width : float
@@ -46,7 +48,7 @@ class GearShape:
     young_modulus, poisson_ratio, density : float
         [Pa], 1, [kg/m^3].
     outline : InternalTooth, optional
-        Teeth of an internal gear, for the root: no rack describes them.
+        Teeth of an internal gear, for the root: no rack describes them. An external gear has None.
     fixed : bool
         Whether the gear stands still with the casing, as the ring of most planetary sets: its mass counts as infinite.
     """
@@ -72,8 +74,8 @@ class GearShape:
 
     def __post_init__(self) -> None:
         """Fill in what follows from the rest; refuse what no gear has."""
-        if not self.teeth or self.internal != (self.outline is not None):
-            raise RangeError("teeth", self.teeth, "must be positive, or negative of an internal gear with its outline")
+        if not self.teeth > 0:
+            raise RangeError("teeth", self.teeth, "must be positive, of an internal gear as well")
         for name in ("face_width", "root_diameter", "young_modulus", "density"):
             if not getattr(self, name) > 0.0:
                 raise RangeError(name, getattr(self, name), "must be positive")
@@ -92,7 +94,12 @@ class GearShape:
     @property
     def internal(self) -> bool:
         """Whether the teeth point inward."""
-        return self.teeth < 0
+        return self.outline is not None
+
+    @property
+    def signed_teeth(self) -> int:
+        """z of the equations of involutes: negative of an internal gear."""
+        return -self.teeth if self.internal else self.teeth
 
     @property
     def depth(self) -> float:
@@ -136,7 +143,7 @@ class PairGeometry:
 
     def __post_init__(self) -> None:
         """Fill in face width and contact ratio; refuse what is no pair."""
-        if self.gears[0].internal or self.gears[0].teeth > abs(self.gears[1].teeth):
+        if self.gears[0].internal or self.gears[0].teeth > self.gears[1].teeth:
             given = f"{self.gears[0].teeth}, {self.gears[1].teeth}"
             raise RangeError(
                 "teeth of pinion and wheel", given, "must not fall", "name the gear with fewer teeth first"
@@ -147,7 +154,7 @@ class PairGeometry:
             raise RangeError("helix angle", self.helix_angle, "must lie between 0 and 90 deg, without the hand's sign")
         if math.isnan(self.face_width):
             object.__setattr__(self, "face_width", min(g.face_width for g in self.gears))
-        if not self.centre_distance > 0.5 * abs(sum(self.base_diameters)):
+        if not self.centre_distance > 0.5 * abs(sum(self.signed_base_diameters)):
             raise RangeError(
                 "centre distance", f"{self.centre_distance:.6g} m",
                 f"must exceed the {'difference' if self.internal else 'sum'} of the base radii",
@@ -158,7 +165,7 @@ class PairGeometry:
     def _contact_ratio(self) -> float:
         reach = sum(
             math.copysign(0.5, d_b) * math.sqrt(max(g.active_tip_diameter**2 - d_b**2, 0.0))
-            for g, d_b in zip(self.gears, self.base_diameters, strict=True)
+            for g, d_b in zip(self.gears, self.signed_base_diameters, strict=True)
         )
         between = self.centre_distance * math.sin(self.working_pressure_angle)
         path = reach + between if self.internal else reach - between
@@ -174,9 +181,14 @@ class PairGeometry:
         return self.gears[1].internal
 
     @property
-    def ratio(self) -> float:
-        """Gear ratio u = z_2 / z_1, at least 1; negative of an internal pair."""
-        return self.gears[1].teeth / self.gears[0].teeth
+    def signed_ratio(self) -> float:
+        """Gear ratio u = z_2 / z_1 of the equations of involutes: at least 1, or at most -1 of an internal pair."""
+        return self.gears[1].signed_teeth / self.gears[0].signed_teeth
+
+    @property
+    def turns(self) -> Both:
+        """Revolutions of pinion and wheel per revolution of the pinion, both positive: z_1 / z_1 and z_1 / abs(z_2)."""
+        return 1.0, self.gears[0].teeth / self.gears[1].teeth
 
     @property
     def transverse_pressure_angle(self) -> float:
@@ -190,26 +202,32 @@ class PairGeometry:
 
     @property
     def diameters(self) -> Both:
-        """d_1, d_2: reference diameters; negative of an internal gear."""
+        """abs(d_1), abs(d_2): reference diameters, positive of an internal gear as well."""
         d_1, d_2 = (g.teeth * self.module / math.cos(self.helix_angle) for g in self.gears)
         return d_1, d_2
 
     @property
-    def base_diameters(self) -> Both:
-        """d_b1, d_b2."""
-        d_1, d_2 = self.diameters
+    def signed_diameters(self) -> Both:
+        """d_1, d_2 of the equations of involutes: negative of an internal gear."""
+        d_1, d_2 = (g.signed_teeth * self.module / math.cos(self.helix_angle) for g in self.gears)
+        return d_1, d_2
+
+    @property
+    def signed_base_diameters(self) -> Both:
+        """d_b1, d_b2 of the equations of involutes: negative of an internal gear."""
+        d_1, d_2 = self.signed_diameters
         c = math.cos(self.transverse_pressure_angle)
         return d_1 * c, d_2 * c
 
     @property
     def base_pitch(self) -> float:
         """p_bt."""
-        return math.pi * self.base_diameters[0] / self.gears[0].teeth
+        return math.pi * self.signed_base_diameters[0] / self.gears[0].teeth
 
     @property
     def working_pressure_angle(self) -> float:
         """alpha_wt."""
-        return math.acos(0.5 * abs(sum(self.base_diameters)) / self.centre_distance)
+        return math.acos(0.5 * abs(sum(self.signed_base_diameters)) / self.centre_distance)
 
     @property
     def overlap_ratio(self) -> float:
@@ -229,7 +247,7 @@ class PairGeometry:
     @property
     def relative_curvature_radius(self) -> float:
         """rho_red at the pitch point, in the transverse section: rho_1 rho_2 / (rho_1 + rho_2)."""
-        rho = [0.5 * d * math.tan(self.working_pressure_angle) for d in self.base_diameters]
+        rho = [0.5 * d * math.tan(self.working_pressure_angle) for d in self.signed_base_diameters]
         return rho[0] * rho[1] / (rho[0] + rho[1])
 
     def pitch_line_velocity(self, speed: float) -> float:
@@ -275,7 +293,7 @@ SOLID = Body()
 
 def _ring_shape(gear: Gear, tooth: InternalTooth, body: Body) -> GearShape:
     return GearShape(
-        teeth=-gear.teeth,
+        teeth=gear.teeth,
         profile_shift=tooth.profile_shift,
         tip_diameter=2.0 * gear.tip_radius,
         root_diameter=2.0 * gear.root_radius,

@@ -114,7 +114,7 @@ def reduced_mass(pair: PairGeometry, meshes: tuple[int, int] = (1, 1)) -> float:
         How many mates pinion and wheel have.
     """
     masses = []
-    for gear, d_b, mates in zip(pair.gears, pair.base_diameters, meshes, strict=True):
+    for gear, d_b, mates in zip(pair.gears, pair.signed_base_diameters, meshes, strict=True):
         if gear.fixed:
             masses.append(math.inf)
             continue
@@ -233,7 +233,7 @@ def method_b(
 
 def speed_parameter(pair: PairGeometry, velocity: float) -> float:
     """v z_1 / 100 sqrt(u^2 / (1 + u^2)) [m/s] (ISO 6336-1:2006, 6.3.2 and 6.5)."""
-    u = pair.ratio
+    u = abs(pair.signed_ratio)
     return velocity * pair.gears[0].teeth / 100.0 * u / math.sqrt(1.0 + u * u)
 
 

@@ -88,9 +88,9 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
         return (1.0, 1.0), (1.0, 1.0)
     tips = [
         math.sqrt(max((g.active_tip_diameter / d_b) ** 2 - 1.0, 0.0))
-        for g, d_b in zip(pair.gears, pair.base_diameters, strict=True)
+        for g, d_b in zip(pair.gears, pair.signed_base_diameters, strict=True)
     ]
-    steps = [2.0 * math.pi / g.teeth for g in pair.gears]
+    steps = [2.0 * math.pi / g.signed_teeth for g in pair.gears]
     factors = []
     for one, other in ((0, 1), (1, 0)):
         product = (tips[one] - steps[one]) * (tips[other] - (e - 1.0) * steps[other])
@@ -148,7 +148,7 @@ def nominal_contact_stress(pair: PairGeometry, tangential: float, factors: tuple
     factors : tuple of float
         Z_H, Z_E, Z_epsilon, Z_beta.
     """
-    u = pair.ratio
+    u = pair.signed_ratio
     load = tangential * (u + 1.0) / (pair.diameters[0] * pair.face_width * u)
     return math.prod(factors) * math.sqrt(load)
 
@@ -254,11 +254,11 @@ def surface_hardened_factor(hardness: float, equivalent: float) -> tuple[float, 
 
 
 def through_hardened_factor(ratio_of_hardness: float, ratio: float) -> float:
-    """Z_W of the wheel on a harder, through-hardened pinion: HB_1/HB_2 and u (ISO 6336-2, 13.3), at least 1."""
+    """Z_W of the wheel on a harder, through-hardened pinion: HB_1/HB_2 and abs(u) (ISO 6336-2, 13.3), at least 1."""
     if ratio_of_hardness < 1.2:
         return 1.0
     slope = 0.00698 if ratio_of_hardness > 1.7 else 0.00898 * ratio_of_hardness - 0.00829
-    return max(1.0 + slope * (min(abs(ratio), _LARGEST_RATIO) - 1.0), 1.0)
+    return max(1.0 + slope * (min(ratio, _LARGEST_RATIO) - 1.0), 1.0)
 
 
 def work_hardening(
@@ -282,7 +282,7 @@ def work_hardening(
         hardness = strength[0].hardness / strength[1].hardness
         if math.isnan(hardness):
             return (1.0, 1.0), (1.0, 1.0), "Z_W: 1, for the hardness of both gears is not known"
-        reference[1] = static[1] = through_hardened_factor(hardness, pair.ratio)
+        reference[1] = static[1] = through_hardened_factor(hardness, abs(pair.signed_ratio))
     return (reference[0], reference[1]), (static[0], static[1]), remark
 
 

@@ -265,7 +265,7 @@ AGMA_CRUSHING = {"carburized": 44e9, "induction-hardened": 30e9}
 
 
 def crushing_depth(pair: GearPair, contact_stress: float, hardening: float) -> float:
-    """Eht_c = sigma_H d_w1 sin(alpha_wt) z2 / (U_H cos(beta_b) (z1 + z2)), below which the case is crushed [m].
+    """Eht_c = sigma_H d_w1 sin(alpha_wt) abs(z2 / (z1 + z2)) / (U_H cos(beta_b)), below which the case is crushed [m].
 
     The same form stands for ISO 6336-5 and for h_e,min of AGMA 2101.
 
@@ -280,7 +280,7 @@ def crushing_depth(pair: GearPair, contact_stress: float, hardening: float) -> f
     one, two = pair.driver, pair.driven
     angle = pair.working_pressure_angle
     diameter = 2.0 * one.base_radius / math.cos(angle)
-    share = two.teeth / (one.teeth + two.teeth)
+    share = two.teeth / abs(one.teeth * pair.side + two.teeth)
     return contact_stress * diameter * math.sin(angle) * share / (hardening * math.cos(one.base_helix_angle))
 
 

@@ -43,6 +43,31 @@ def cycles_to_failure(curve: Knots, stress: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
+class ServiceLife:
+    """Life of flank and root of one gear.
+
+    Parameters
+    ----------
+    flank, root : float
+        [s]; inf where nothing does damage, NaN where it is not known.
+
+    Raises
+    ------
+    RangeError
+        If a life is negative.
+    """
+
+    flank: float
+    root: float
+
+    def __post_init__(self) -> None:
+        """Refuse lives below zero."""
+        for name in ("flank", "root"):
+            if getattr(self, name) < 0.0:
+                raise RangeError(f"life of the {name}", f"{getattr(self, name):.6g} s", "must not be negative")
+
+
+@dataclass(frozen=True, slots=True)
 class Bin:
     """One level of a spectrum.
 
@@ -59,6 +84,12 @@ class Bin:
     stress: float
     cycles: float
     curve: Knots
+
+    def __post_init__(self) -> None:
+        """Refuse stresses and load cycles below zero."""
+        for name in ("stress", "cycles"):
+            if not getattr(self, name) >= 0.0:
+                raise RangeError(name, getattr(self, name), "must not be negative")
 
     def damage(self, safety: float = 1.0) -> float:
         """n_i / N_i of the stress times a safety."""

@@ -60,7 +60,7 @@ def _stiffness(table: FactorTable, conditions: Conditions, specific_load: float)
     one, two = pair.gears
     bodies = [(g.web_ratio, math.inf if g.rim_thickness is None else g.rim_thickness / pair.module) for g in pair.gears]
     found = stiffness(
-        (one.teeth, two.teeth),
+        (one.signed_teeth, two.signed_teeth),
         pair.contact_ratio,
         helix_angle=pair.helix_angle,
         profile_shift=(one.profile_shift, two.profile_shift),
@@ -278,14 +278,14 @@ def _root_rating(conditions: Conditions, i: int) -> RootRating:
     if gear.outline is not None:
         rim = 1.0 if gear.rim_thickness is None else ring_rim_factor(gear.rim_thickness / pair.module)
         ring = ring_tooth(gear.outline)
-        depth = (gear.active_tip_diameter + pair.diameters[i]) / pair.module
+        depth = (gear.active_tip_diameter + pair.signed_diameters[i]) / pair.module
         at = ring.load_diameter(ring.teeth + depth, load.contact_ratio)
         return rate_form(-ring.teeth, ring_root_form(ring, at), at, pair.module, load, choice, rim)
     z_n = virtual_teeth(gear.teeth, pair.helix_angle, pair.pressure_angle)
     tooth = RackTooth(
         z_n, gear.generating_shift, gear.dedendum, gear.tip_radius, pair.pressure_angle, gear.residual_undercut
     )
-    tip = z_n + (gear.active_tip_diameter - pair.diameters[i]) / pair.module
+    tip = z_n + (gear.active_tip_diameter - pair.signed_diameters[i]) / pair.module
     at = outer_single_contact_diameter(tooth, tip, load.contact_ratio)
     backup = math.inf if gear.rim_thickness is None else gear.rim_thickness / gear.depth
     return rate(tooth, at, pair.module, load, choice, backup)

@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import RangeError
 from fegear.formulas.iso6336 import part2_pitting as part2_permissible
 from fegear.formulas.iso6336 import part3_strength
 from fegear.formulas.iso6336.conditions import Conditions, FactorTable, PairRating, Replacement
@@ -72,7 +73,7 @@ def rate_pair(conditions: Conditions, computed: Replacement | None = None) -> Pa
 def _geometry(table: FactorTable, pair: PairGeometry, duty: Duty) -> None:
     table.add("F_t", duty.tangential, "ISO 6336-1, 4.2")
     table.add("v", pair.pitch_line_velocity(duty.speed), "ISO 6336-1, 4.2")
-    table.add("u", pair.ratio, "ISO 21771, 5.1")
+    table.add("u", pair.signed_ratio, "ISO 21771, 5.1")
     table.add("alpha_wt", pair.working_pressure_angle, "ISO 21771, 5.3")
     table.add("epsilon_alpha", pair.contact_ratio, "ISO 21771, 5.4")
     table.add("epsilon_beta", pair.overlap_ratio, "ISO 21771, 5.4")
@@ -118,6 +119,14 @@ class SpectrumRating:
     bending_damage: Both
     contact_life: Both
     bending_life: Both
+
+    def __post_init__(self) -> None:
+        """Refuse safety factors, damage and lives that no pair has."""
+        for name in ("contact_safety", "bending_safety", "contact_damage", "bending_damage", "contact_life",
+                     "bending_life"):  # fmt: skip
+            values = getattr(self, name)
+            if not all(value >= 0.0 for value in values):
+                raise RangeError(name, values, "must not be negative")
 
 
 def sn_curves(conditions: Conditions, computed: Replacement | None = None) -> Curves:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fegear.formulas.agma.agma2101 import AgmaRating
     from fegear.formulas.iso6336.conditions import Factor
     from fegear.formulas.iso6336.life import Knots
-    from fegear.formulas.iso6336.part6_spectrum import Bin
+    from fegear.formulas.iso6336.part6_spectrum import Bin, ServiceLife
     from fegear.formulas.iso6336.rated import Both
     from fegear.formulas.iso6336.safety import SpectrumRating
     from fegear.results.rating.rating import RatingData
@@ -130,7 +130,7 @@ def spectrum_table(found: SpectrumRating, asked: PairToRate, computed: SpectrumR
     geometry, levels = asked.conditions.geometry, found.levels
     driver = asked.of("driver")
     torque = [level.tangential * 0.5 * geometry.diameters[driver] for level in asked.levels]
-    turn = geometry.gears[0].teeth / geometry.gears[driver].teeth
+    turn = geometry.turns[driver]
 
     def factor(symbol: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
         return np.array([np.nan if one.rating is None else one.rating[symbol].value for one in levels])
@@ -267,9 +267,9 @@ def transmittable_power(data: RatingData, asked: PairToRate) -> Both:
     return power * (min(found.contact_safety) / of_flank) ** 2, power * min(found.bending_safety) / of_root
 
 
-def service_life(data: RatingData, asked: PairToRate, member: Member) -> Both:
+def service_life(data: RatingData, asked: PairToRate, member: Member) -> ServiceLife:
     """Life of flank and root at the required safeties [s]; inf where nothing does damage, NaN where it is not known."""
-    from fegear.formulas.iso6336.part6_spectrum import damage
+    from fegear.formulas.iso6336.part6_spectrum import ServiceLife, damage
 
     i, required = asked.of(member), asked.conditions.required
     if data.spectrum is not None:
@@ -278,17 +278,15 @@ def service_life(data: RatingData, asked: PairToRate, member: Member) -> Both:
             damage([level.contact[i] for level in data.spectrum.levels], required[0]),
             damage([level.bending[i] for level in data.spectrum.levels], required[1]),
         )
-        one, other = (life / total if total > 0.0 else math.inf for total in sums)
-        return one, other
+        return ServiceLife(*(life / total if total > 0.0 else math.inf for total in sums))
     rate = _cycles_per_second(asked, i)
-    one, other = (
+    return ServiceLife(*(
         _borne(curve, stress * least) / rate
         for curve, stress, least in zip(
             (data.curves.contact[i], data.curves.bending[i]),
             (data.formula.contact_stress[i], data.formula.bending_stress[i]), required, strict=True,
         )
-    )  # fmt: skip
-    return one, other
+    ))  # fmt: skip
 
 
 def nominal_damage(data: RatingData, asked: PairToRate, member: Member) -> Both:
@@ -309,8 +307,8 @@ def life_values(data: RatingData, asked: PairToRate) -> list[Value]:
         _value(name, "transmittable_power_F", root),
     ]
     for member in MEMBERS:
-        key, (of_flank, of_root) = f"{name}.{member}", service_life(data, asked, member)
-        found += [_value(key, "life_H", of_flank), _value(key, "life_F", of_root)]
+        key, life = f"{name}.{member}", service_life(data, asked, member)
+        found += [_value(key, "life_H", life.flank), _value(key, "life_F", life.root)]
         if data.spectrum is None:
             harm_flank, harm_root = nominal_damage(data, asked, member)
             found += [_value(key, "damage_H", harm_flank), _value(key, "damage_F", harm_root)]
@@ -319,9 +317,8 @@ def life_values(data: RatingData, asked: PairToRate) -> list[Value]:
 
 def _cycles_per_second(asked: PairToRate, i: int) -> float:
     """Load cycles of a flank of pinion or wheel per second."""
-    geometry, duty = asked.conditions.geometry, asked.conditions.duty
-    turning = duty.speed * geometry.gears[0].teeth / geometry.gears[i].teeth
-    return turning / (2.0 * math.pi) * duty.meshes[i]
+    duty = asked.conditions.duty
+    return duty.speed * asked.conditions.geometry.turns[i] / (2.0 * math.pi) * duty.meshes[i]
 
 
 def _borne(curve: Knots, stress: float) -> float:
