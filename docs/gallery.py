@@ -66,7 +66,7 @@ TEN = (
 #: Pages outside docs/ that belong to the site, and where links to them are found.
 _OUTSIDE = {
     "readme.md": ROOT / "README.md",
-    "meshes.md": ROOT / "cases" / "meshes" / "README.md",
+    "meshes.md": ROOT / "meshes" / "README.md",
     "packaging.md": ROOT / "packaging" / "README.md",
 } | {f"{name.lower()}.md": ROOT / f"{name}.md" for name in ("CONTRIBUTING", "SECURITY", "CHANGELOG")}
 

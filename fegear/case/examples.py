@@ -1,4 +1,7 @@
-"""The cases that come with fegear, by name: `cases/` of its tree, `fegear/examples` where it is installed."""
+"""The cases that come with fegear, by name: `cases/` of its tree, `fegear/examples` where it is installed.
+
+Tooth meshes that they name lie beside them: `meshes/` of the tree, `fegear/meshes` where it is installed.
+"""
 
 from __future__ import annotations
 
@@ -46,6 +49,11 @@ def example(name: str) -> tuple[str, dict[str, bytes]]:
     if name not in known:
         raise InputError("--example", shown(name), "is no example", nearest(name, known))
     path = folder() / f"{name}.toml"
-    # Cases of papers lie a folder deeper than what they name.
-    text = path.read_text("utf-8").replace('"../data/', '"data/')
-    return text, {named: (folder() / named).read_bytes() for named in dict.fromkeys(_NAMED.findall(text))}
+    # Cases of papers lie a folder deeper than what they name, and meshes beside all cases: a copy has both below it.
+    text = path.read_text("utf-8").replace('"../data/', '"data/').replace('"../meshes/', '"meshes/')
+    return text, {named: _place(named).read_bytes() for named in dict.fromkeys(_NAMED.findall(text))}
+
+
+def _place(named: str) -> Path:
+    """Where a file that a copied example names lies."""
+    return (folder().parent if named.startswith("meshes/") else folder()) / named

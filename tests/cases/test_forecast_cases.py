@@ -63,7 +63,7 @@ def test_what_costs_more_is_predicted_to_cost_more(name, more, less):
 
 
 def test_the_plan_says_where_the_run_time_is_unknown():
-    mesh = next((ROOT / "cases" / "meshes").glob("*.msh"))
+    mesh = next((ROOT / "meshes").glob("*.msh"))
     lines = plan_lines(*planned("lin_table1", f"gear.a.tooth_mesh='{mesh}'"))
     assert any("without gear-solution of a, whose run time is unknown" in line for line in lines)
     assert any("run time unknown" in line for line in lines)

@@ -136,7 +136,7 @@ def test_what_the_table_cannot_be_made_for_is_refused(overrides, words):
 
 @pytest.mark.dear
 def test_a_tooth_mesh_of_the_users_own_takes_the_place_of_the_generated_one():
-    own = 'gear.a.tooth_mesh="meshes/four_square_test_gear.msh"'
+    own = 'gear.a.tooth_mesh="../meshes/four_square_test_gear.msh"'
     table = 'stiffness={gear="a", radii=["44.45 mm"], contact_half_width="0.08 mm"}'
     _, values, results = run("lin_table1", own, table)
     _, generated, _ = run("lin_table1", table)

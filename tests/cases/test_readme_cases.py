@@ -95,7 +95,7 @@ def test_version_and_name_are_the_same_everywhere():
 def test_every_link_leads_somewhere():
     pages = [
         *sorted(ROOT.glob("*.md")),
-        ROOT / "cases" / "meshes" / "README.md",
+        ROOT / "meshes" / "README.md",
         *sorted((ROOT / "docs").rglob("*.md")),
     ]
     for page in pages:

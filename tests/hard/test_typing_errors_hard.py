@@ -177,11 +177,12 @@ def original(name: str):
 def outcome(name: str, text: str, folder: Path) -> str:
     """Empty if a slip was refused in a sentence or may stand; else what was wrong."""
     before, meant = original(name)
-    path = folder / f"{name}.toml"
+    if not (folder / "cases").exists():
+        (folder / "cases").mkdir()
+        (folder / "cases" / "data").symlink_to(CASES / "data")
+        (folder / "meshes").symlink_to(CASES.parent / "meshes")
+    path = folder / "cases" / f"{name}.toml"
     path.write_text(text, "utf-8")
-    if not (folder / "data").exists():
-        for named in ("data", "meshes"):
-            (folder / named).symlink_to(CASES / named)
     try:
         scene = read_scene(path)
         make_plan(scene, STAGES)

@@ -34,7 +34,7 @@ CASE = {
     "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "relief": True},
     "accuracy": {"tolerance": 1e-3},
 }  # fmt: skip
-MESHES = Path(__file__).parents[2] / "cases" / "meshes"
+MESHES = Path(__file__).parents[2] / "meshes"
 STRESS, DEFORMED = Task("stress-in-mesh", "I"), Task("deformed-in-mesh", "I")
 WIDE = Task("stress-in-mesh", "I")
 

@@ -17,7 +17,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
-MESHES = Path(__file__).parents[2] / "cases" / "meshes"
+MESHES = Path(__file__).parents[2] / "meshes"
 
 
 def four_square():
