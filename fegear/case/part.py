@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from fegear.case.model import Case
     from fegear.case.reading import Scene
+    from fegear.case.trade_words import Meaning
     from fegear.case.train import TrainPart
 
 
@@ -261,23 +262,31 @@ def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> F
     return type(error)(f"{prefix}.{key}" if key else prefix, error.value, error.rule, error.remedy)
 
 
-#: Symbols on drawings (ISO 701, ISO 21771) and the keys that they may stand for.
-_SYMBOLS: dict[str, tuple[str, ...]] = {
-    "x": ("profile_shift",), "z": ("teeth",), "m": ("module",), "m_n": ("normal_module",), "mn": ("normal_module",),
-    "b": ("face_width",), "alpha": ("pressure_angle",), "alpha_n": ("pressure_angle",), "beta": ("helix_angle",),
-    "d_a": ("tip_diameter",), "da": ("tip_diameter",), "a": ("centre_distance",), "a_w": ("centre_distance",),
-    "t": ("torque",), "n": ("speed",), "c_a": ("amount",), "c_beta": ("crowning",), "e": ("young_modulus",),
-    "nu": ("poisson_ratio",), "rho": ("density",), "s_r": ("rim_thickness",),
-}  # fmt: skip
+#: How alike two spellings must be, 0 to 1: words of the trade that are not in `trade_words` are no misspelt keys.
+_ALIKE = 0.65
 
 
-def nearest(name: str, known: Iterable[str], lists_all: str = "") -> str:
-    """Return a remedy that says which known name is nearest to `name` if one is, and lists them or says what does."""
+def nearest(
+    name: str, known: Iterable[str], lists_all: str = "", words: Callable[[str], Meaning | None] | None = None
+) -> str:
+    """Return a remedy that says which known name is nearest to `name` if one is, and lists them or says what does.
+
+    Parameters
+    ----------
+    name : str
+    known : iterable of str
+    lists_all : str
+        What lists all of them, where they are too many for a sentence.
+    words : callable, optional
+        ``words(name)`` -> what a word of the trade means, which comes before its spelling.
+    """
     names = sorted(known)
-    near = [key for key in _SYMBOLS.get(name.lower(), ()) if key in names]
-    near = near or difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5)
     listed = f"known here: {', '.join(names)}" if names else "none is known here"
     listed = f"{lists_all} lists all {len(names)}" if lists_all else listed
+    meaning = words(name) if words else None
+    if meaning is not None:
+        return f"{meaning.remedy(names)}; {listed}"
+    near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE)
     return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed
 
 

@@ -20,8 +20,9 @@ from fegear.case.model import Case
 from fegear.case.part import BARE_SI, check_references, nearest
 from fegear.case.planetary import with_set_pairs
 from fegear.case.renamed import current, current_key, without_old
-from fegear.case.schema import keys_at
+from fegear.case.schema import keys_at, places_of
 from fegear.case.text_file import read_text
+from fegear.case.trade_words import Meaning, of_key, of_value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -299,15 +300,28 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
             if not known:  # a misspelt name would otherwise begin a gear, a body or a shaft of its own
                 raise InputError(option, f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
             if step not in known:
-                raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known))
+                raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known, words=_meant))
             table[step] = {}
         if not isinstance(table[step], dict):
             raise InputError(option, f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
         table = table[step]
     known = keys_at(steps[:-1])
     if known and steps[-1] not in known and steps[-1] not in table:
-        raise InputError(option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
+        raise InputError(
+            option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known, words=_meant)
+        )
     table[steps[-1]] = value
+
+
+#: A key that stands in more tables than these says nothing of the one that is meant.
+_FEW_PLACES = 2
+
+
+def _meant(word: str) -> Meaning | None:
+    """What an unknown key means: a word of the trade, or a key of another table."""
+    found = of_key(word)
+    places = () if found else tuple(places_of(word))
+    return Meaning(places) if 0 < len(places) <= _FEW_PLACES else found
 
 
 _KINDS = {
@@ -363,13 +377,13 @@ def _sentence(error: ErrorDetails) -> InputError:
         return InputError(key, shown, context["rule"], context["remedy"])
     if kind == "extra_forbidden":
         known = keys_at(loc[:-1])
-        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known))
+        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known, words=_meant))
     if kind == "missing":
         return InputError(key, "(not given)", "is required")
     if kind == "literal_error":
-        return InputError(key, _show(value), f"must be {context['expected']}")
+        return InputError(key, _show(value), f"must be {context['expected']}", of_value(key, value))
     rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
-    return InputError(key, _show(value), rule[0].lower() + rule[1:])
+    return InputError(key, _show(value), rule[0].lower() + rule[1:], of_value(key, value))
 
 
 def _dotted(loc: list[str]) -> str:

@@ -300,6 +300,23 @@ def keys_at(loc: Sequence[str]) -> list[str]:
     return sorted({name for model in models for name in model.model_fields})
 
 
+def places_of(key: str) -> list[str]:
+    """Where a case file has a key of this name: ``gear.NAME.face_width``."""
+    found: list[str] = []
+
+    def look(model: type[BaseModel], prefix: str, above: tuple[type[BaseModel], ...]) -> None:
+        for name, field in model.model_fields.items():
+            here = f"{prefix}{name}"
+            found.extend([here] if name == key else [])
+            named = ".NAME." if get_origin(field.annotation) is dict else "."
+            for inner in part_models(field.annotation):
+                if inner not in above:
+                    look(inner, f"{here}{named}", (*above, inner))
+
+    look(Case, "", (Case,))
+    return found
+
+
 def flat(document: Mapping[str, object], prefix: str = "") -> dict[str, object]:
     """Tables within tables as dotted keys; lists of tables are numbered."""
     found: dict[str, object] = {}

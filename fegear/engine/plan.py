@@ -16,6 +16,7 @@ from typing import Any, NamedTuple, overload
 from fegear.base.errors import InputError
 from fegear.case.part import nearest
 from fegear.case.reading import Scene
+from fegear.case.trade_words import of_result
 from fegear.engine.stage import Stage, Task
 
 
@@ -217,7 +218,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     for result in wanted:
         if result not in by_result:
-            rule, remedy = "is no result that fegear knows", nearest(result, by_result, '"fegear results"')
+            rule, remedy = "is no result that fegear knows", nearest(result, by_result, '"fegear results"', of_result)
             raise InputError("results", f'"{result}"', rule, remedy)
         asked = [known.called(name) for name in by_result[result]]
         described = [(stage, subject) for stage in asked for subject in stage.subjects(scene)]

@@ -155,7 +155,7 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
         (SLOPES, "loading.peaks=[]", "loading.peaks", "must not be empty"),
         (SLOPES, "loading={}", "loading.contact_ratio", "no pair is named"),
         ("sources/mark_series", "transmission_error.terms=201", "transmission_error.terms", "equal to 200"),
-        ("sources/mark_series", "transmission_error={terms=3}", "transmission_error.terms", "mark-series"),
+        ("sources/mark_series", "transmission_error={terms=4}", "transmission_error.terms", "mark-series"),
         ("sources/mark_fig22", "pair.I.root_stress={source=5}", "pair.I.root_stress.source", "quotes or a list"),
         ("sources/mark_fig22", "pair.I.root_stress={source=[]}", "pair.I.root_stress.source", "must not be empty"),
         ("sources/mark_fig22", "dynamics.speed=0 rpm", "dynamics.speed", "greater than zero"),

@@ -1,0 +1,262 @@
+"""Words of the trade for keys and results: other English words, those of other programs and of AGMA, German, symbols.
+
+Whoever types one of them means a certain key, and spelling would lead to another: `bore_diameter` is no misspelt
+`ball_diameter`. What cannot be described at all is told here too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What somebody who types a word looks for.
+
+    Parameters
+    ----------
+    keys : tuple of str
+        Keys with the tables in which they are, ``gear.NAME.bore_radius``, or names of results; the first that is known
+        where the word was typed is meant, or else the first.
+    how : str
+        What is to be known of it: "half the diameter".
+    """
+
+    keys: tuple[str, ...] = ()
+    how: str = ""
+
+    def remedy(self, known: Collection[str]) -> str:
+        """What to write instead, where these names are known."""
+        here = next((name for key in self.keys if (name := key.rpartition(".")[2]) in known), "")
+        if here:
+            return f'the nearest known name is "{here}"' + (f" ({self.how})" if self.how else "")
+        if self.keys:
+            return f"set {self.keys[0]} for it" + (f" ({self.how})" if self.how else "")
+        return self.how
+
+
+def of_key(word: str) -> Meaning | None:
+    """What a word means among the keys of a case; None for one that is not in the list."""
+    return _KEYS.get(plain(word))
+
+
+def of_result(word: str) -> Meaning | None:
+    """What a word means among the results."""
+    return _RESULTS.get(plain(word))
+
+
+def of_value(key: str, value: object) -> str:
+    """What is to be known of a value that is refused, by the last name of its key; empty where nothing is."""
+    name = key.rpartition(".")[2]
+    if name == "planet" and isinstance(value, list):
+        return _STEPPED
+    return _VALUES.get(name, {}).get(plain(value), "") if isinstance(value, str) else ""
+
+
+def plain(word: str) -> str:
+    """A word without capitals, umlauts and hyphens."""
+    return word.strip().lower().translate(_LETTERS)
+
+
+_LETTERS = str.maketrans({
+    "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "α": "alpha", "β": "beta", "ρ": "rho", "ν": "nu", "σ": "sigma",
+    "-": "_", " ": "_", "'": "",
+})  # fmt: skip
+_RACK = "a rack is not possible in fegear: a gear of 1000 teeth comes nearest"
+_STEPPED = "stepped planets are not possible in fegear: a planet is one gear, which meshes with sun and ring"
+_DOUBLE = (
+    "double-helical gears are not possible in fegear: describe one half, with half the face width and half the torque"
+)
+_CRACK = "cracks are not possible in fegear: all teeth of a gear are whole"
+_WORN = "worn flanks can be given as measured ones (gear.NAME.measured); wear is not computed in fegear"
+_CROSSED = "axes that cross are not possible in fegear: gears are cylindrical, on parallel axes"
+_UNEVEN = "both flanks of a tooth are equal in fegear: one pressure angle serves both"
+_SPACING = "give its course as gear.NAME.spacing_errors, one value for each tooth"
+_HEAT = "gears are not heated in fegear; flank-surface computes temperatures of flanks"
+
+_THICKNESS = "how much thinner the tooth is at the pitch circle than pi/2 + 2 x tan(alpha) modules"
+_MEASURED = f"{_THICKNESS}; geometry reports the span and the dimension over balls that follow"
+_BACKLASH = (
+    ("gear.NAME.thickness_allowance",),
+    "with pair.NAME.centre_distance it gives the backlash, which geometry reports; of a train train.mesh.NAME.backlash",
+)
+_FOLLOWS = "it follows from the gears, and geometry reports it"
+
+#: Words, the keys that they mean, and what is to be known.
+_OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    # a gear
+    ("z z1 z2 number_of_teeth tooth_number teeth_number tooth_count num_teeth no_of_teeth n_teeth zaehnezahl np ng",
+     ("gear.NAME.teeth",), ""),
+    ("m modul", ("gear.NAME.module",), ""),
+    ("mn m_n normalmodul", ("gear.NAME.normal_module", "gear.NAME.module"), ""),
+    ("mt m_t transverse_module stirnmodul", ("gear.NAME.normal_module",), "m_n = m_t cos(beta)"),
+    ("dp p_d pd diametral transverse_diametral_pitch", ("gear.NAME.diametral_pitch",), ""),
+    ("pnd p_nd", ("gear.NAME.normal_diametral_pitch",), ""),
+    ("circular_pitch pitch p teilung base_pitch p_b tooth_pitch", ("gear.NAME.module",), "the circular pitch over pi"),
+    ("d pitch_diameter reference_diameter pitch_circle pitch_radius teilkreis teilkreisdurchmesser",
+     ("gear.NAME.module",), "the pitch diameter over the number of teeth"),
+    ("alpha alpha_n phi phi_n normal_pressure_angle eingriffswinkel", ("gear.NAME.pressure_angle",), ""),
+    ("beta psi helix schraegungswinkel spiral_angle", ("gear.NAME.helix_angle",), ""),
+    ("helix_hand hand_of_helix helix_direction flankenrichtung lead_direction", ("gear.NAME.hand",), ""),
+    (("x x1 x2 shift addendum_modification addendum_shift profile_shift_coefficient shift_coefficient "
+     "profilverschiebung profilverschiebungsfaktor"), ("gear.NAME.profile_shift",), ""),
+    ("b width facewidth zahnbreite breite gear_width", ("gear.NAME.face_width",), ""),
+    (("d_a da od do tip_circle tip_circle_diameter outside_diameter outer_diameter addendum_diameter kopfkreis "
+     "kopfkreisdurchmesser"), ("gear.NAME.tip_diameter",), ""),
+    ("r_a ra_tip tip_circle_radius outside_radius", ("gear.NAME.tip_diameter",), "twice the radius"),
+    ("d_f df root_circle root_circle_diameter fusskreis fusskreisdurchmesser root_diameter",
+     ("gear.NAME.cutter.root_diameter", "gear.NAME.rack.dedendum"), "d_f = m (z + 2 x - 2 h_fP*)"),
+    (("bore bore_diameter bore_dia d_i di inner_diameter inside_diameter shaft_hole hole_diameter bohrung "
+     "bohrungsdurchmesser"), ("gear.NAME.bore_radius",), "half the diameter"),
+    ("hub_diameter nabendurchmesser", ("gear.NAME.body.hub_radius",), "half the diameter"),
+    (("tooth_thickness s_n sn s_t s thickness circular_tooth_thickness chordal_thickness zahndicke "
+     "tooth_thickness_tolerance zahndickenabmass"), ("gear.NAME.thickness_allowance",), _THICKNESS),
+    (("span span_measurement base_tangent base_tangent_length w_k wk zahnweite over_pins over_balls "
+     "measurement_over_pins dimension_over_balls m_dk mdk"), ("gear.NAME.thickness_allowance",), _MEASURED),
+    ("backlash j_bn jbn j_n j_t jt flankenspiel drehflankenspiel play clearance_of_flanks", *_BACKLASH),
+    ("tip_relief kopfruecknahme c_a ca cay",
+     ("gear.NAME.relief.tip.amount", "gear.NAME.relief"), "with its amount and length"),
+    ("root_relief fussruecknahme c_f cf", ("gear.NAME.relief.root", "gear.NAME.relief"), "with its amount and length"),
+    ("profile_crowning c_alpha barrelling hoehenballigkeit", ("gear.NAME.relief.crowning", "gear.NAME.relief"), ""),
+    ("crowning lead_crowning c_beta cb cbeta breitenballigkeit helix_crowning",
+     ("gear.NAME.lead.crowning", "gear.NAME.lead"), ""),
+    ("end_relief endruecknahme", ("gear.NAME.lead.end_relief", "gear.NAME.lead"), ""),
+    ("helix_correction helix_modification c_hb chb schraegungswinkelkorrektur lead_correction",
+     ("gear.NAME.lead.slope", "gear.NAME.lead"), ""),
+    ("chamfer kantenbruch tip_edge_break", ("gear.NAME.tip_chamfer",), ""),
+    ("tip_rounding edge_radius kopfkantenrundung", ("gear.NAME.tip_radius_rounding",), ""),
+    ("addendum h_ap hap ha kopfhoehe addendum_coefficient addendum_factor kopfhoehenfaktor",
+     ("gear.NAME.rack.addendum",), "in modules"),
+    ("dedendum h_fp hfp hf fusshoehe dedendum_coefficient dedendum_factor fusshoehenfaktor",
+     ("gear.NAME.rack.dedendum",), "in modules"),
+    (("rho_fp rhofp rho_f fillet fillet_radius root_fillet root_radius hob_tip_radius cutter_tip_radius "
+     "fussrundung fussrundungsradius"), ("gear.NAME.rack.tip_radius",), "in modules"),
+    ("tool hob basic_rack reference_profile profile bezugsprofil werkzeug", ("gear.NAME.rack",), ""),
+    ("pinion_cutter shaper_cutter shaper schneidrad", ("gear.NAME.cutter",), ""),
+    ("ring internal_gear hohlrad inner_gear", ("gear.NAME.internal",), "`internal = true`"),
+    ("accuracy_class accuracy_grade quality q agma_quality iso_quality grade toleranzklasse verzahnungsqualitaet",
+     ("gear.NAME.tolerance_class", "pair.NAME.iso_6336.accuracy_grade"), ""),
+    ("ra rz surface_roughness surface_finish rauheit", ("gear.NAME.roughness",), ""),
+    ("rim s_r sr rim_height kranzdicke zahnkranzdicke", ("gear.NAME.rim_thickness",), ""),
+    ("web bs b_s stegdicke", ("gear.NAME.web_thickness",), ""),
+    ("e youngs_modulus elastic_modulus elasticity e_modul e_modulus modulus_of_elasticity elastizitaetsmodul",
+     ("gear.NAME.material.young_modulus",), ""),
+    ("nu poisson poissons_ratio querkontraktionszahl querdehnzahl", ("gear.NAME.material.poisson_ratio",), ""),
+    ("rho dichte mass_density", ("gear.NAME.material.density",), ""),
+    ("steel werkstoff material_name", ("gear.NAME.strength", "gear.NAME.material"), ""),
+    ("hb hbw hrc hv haerte surface_hardness hardness", ("gear.NAME.strength.hardness",), ""),
+    ("sigma_hlim shlim sac s_ac allowable_contact_stress contact_fatigue_limit", ("gear.NAME.strength.contact",), ""),
+    ("sigma_flim sflim sat s_at allowable_bending_stress bending_fatigue_limit", ("gear.NAME.strength.bending",), ""),
+    ("chd eht case_hardening_depth einsatzhaertungstiefe", ("gear.NAME.strength.case_depth",), ""),
+    ("pitch_error pitch_errors spacing_error f_pt fpt teilungsfehler teilungsabweichung index_errors",
+     ("gear.NAME.spacing_errors",), ""),
+    # a pair
+    ("a a_w aw c center_distance centre_dist axis_distance achsabstand", ("pair.NAME.centre_distance",), ""),
+    ("pinion ritzel gear_1 gear1 input_gear", ("pair.NAME.driver",), ""),
+    ("wheel rad gear_2 gear2 output_gear gear", ("pair.NAME.driven",), ""),
+    ("t t1 t_1 input_torque torque_1 pinion_torque moment drehmoment", ("pair.NAME.torque", "train.torque"), ""),
+    ("power leistung p_kw kw hp transmitted_power", ("pair.NAME.torque",), "the power over the angular speed"),
+    ("f_t ft w_t wt force tangential_force transmitted_load umfangskraft normal_force f_n fn",
+     ("pair.NAME.load",), "along the line of action: F_t / cos(alpha_wt)"),
+    ("n n1 n_1 rpm speed drehzahl input_speed pinion_speed rotational_speed angular_velocity omega",
+     ("pair.NAME.speed", "dynamics.speed"), ""),
+    ("ratio gear_ratio i u uebersetzung", ("gear.NAME.teeth",), "of both gears, from which the ratio follows"),
+    ("k_a ka k_o ko overload_factor anwendungsfaktor application_factor service_factor",
+     ("pair.NAME.operation.application_factor", "pair.NAME.operation"), ""),
+    ("k_v kv dynamikfaktor dynamic_factor", ("pair.NAME.operation.dynamic_factor", "pair.NAME.operation"), ""),
+    ("k_hbeta khbeta khb kh_beta k_m km load_distribution_factor breitenlastfaktor face_load_factor",
+     ("pair.NAME.operation.face_load_factor", "pair.NAME.operation"), ""),
+    ("k_halpha khalpha kha transverse_load_factor stirnlastfaktor",
+     ("pair.NAME.operation.transverse_load_factor", "pair.NAME.operation"), ""),
+    ("k_gamma kgamma kgam mesh_load_factor", ("pair.NAME.operation.mesh_load_factor", "pair.NAME.operation"), ""),
+    ("lifetime l_h lh hours required_life lebensdauer service_life life",
+     ("pair.NAME.operation.life", "pair.NAME.operation"), ""),
+    ("s_hmin shmin required_safety_contact", ("pair.NAME.operation.safety_contact", "pair.NAME.operation"), ""),
+    ("s_fmin sfmin required_safety_root", ("pair.NAME.operation.safety_root", "pair.NAME.operation"), ""),
+    ("load_spectrum lastkollektiv duty_cycle spectrum", ("pair.NAME.operation.spectrum", "pair.NAME.operation"), ""),
+    ("oil lube lubrication schmierstoff oel viscosity iso_vg",
+     ("pair.NAME.lubricant.viscosity_40", "pair.NAME.lubricant"), ""),
+    ("mu friction_coefficient coefficient_of_friction reibungszahl",
+     ("pair.NAME.friction.coefficient", "pair.NAME.friction"), ""),
+    ("lead_error helix_error f_hbeta fhbeta helix_deviation flankenlinienabweichung helix_slope_deviation",
+     ("gear.NAME.deviations.helix_slope", "pair.NAME.line_error.over_face", "pair.NAME.line_error"), ""),
+    ("profile_error f_falpha ffalpha profilabweichung profile_deviation",
+     ("gear.NAME.deviations.profile_form", "gear.NAME.deviations"), ""),
+    ("shaft_misalignment alignment_error achsneigung achsschraenkung axis_error",
+     ("pair.NAME.misalignment",), ""),
+    ("mesh_stiffness c_gamma cgamma eingriffssteifigkeit",
+     ("train.mesh.NAME.stiffness",), "without it that of the teeth, which transmission-error reports"),
+    (("contact_ratio epsilon_alpha eps_alpha profilueberdeckung overlap_ratio working_pressure_angle alpha_w alpha_wt "
+     "betriebseingriffswinkel base_circle d_b base_diameter base_radius grundkreis tip_clearance"), (), _FOLLOWS),
+    # the case
+    ("gears raeder", ("gear.NAME",), "a table for each: [gear.a]"),
+    ("pairs gear_pair gear_pairs stage stages stufe", ("pair.NAME",), "a table for each: [pair.I]"),
+    ("shafts wellen", ("shaft.NAME",), "a table for each: [shaft.in]"),
+    ("bearings lager", ("bearing.NAME",), "a table for each: [bearing.ball]"),
+    ("planets planetary_set planet_set planetengetriebe epicyclic", ("planetary.NAME",), "a table: [planetary.P]"),
+    ("outputs output result wanted ergebnisse", ("results",), ""),
+    ("tolerance mesh_size element_size elements refinement solver netz", ("accuracy.tolerance", "accuracy"), ""),
+    ("headline titel", ("title",), ""),
+    ("coupling_between_teeth coupled_teeth", ("effects.neighbour_coupling", "effects"), ""),
+    ("tip_contact premature_contact off_line_contact vorzeitiger_eingriff", ("effects.corner_contact", "effects"), ""),
+    ("gravity weight_of_gears", (), "weight is not counted in fegear; give forces as shaft.NAME.loads"),
+    # what is not there
+    ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", (), _RACK),
+    ("herringbone double_helical double_helix pfeilverzahnung gap_width", (), _DOUBLE),
+    ("stepped_planet compound_planet stufenplanet", (), _STEPPED),
+    ("crack cracks tooth_crack crack_length riss broken_tooth missing_tooth", (), _CRACK),
+    ("wear wear_depth spall spalling pit pits verschleiss", (), _WORN),
+    (("bevel bevel_gear worm worm_gear hypoid crossed_axes shaft_angle_of_axes cone_angle kegelrad schnecke "
+     "achsenwinkel"), (), _CROSSED),
+    ("coast_pressure_angle drive_pressure_angle asymmetric pressure_angle_2 asymmetrisch", (), _UNEVEN),
+    ("runout run_out eccentricity rundlauf f_r exzentrizitaet wobble", (), _SPACING),
+    ("temperature thermal_expansion thermal temperatur waermeausdehnung", (), _HEAT),
+)  # fmt: skip
+_OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("mass inertia weight dimensions span tip_diameter contact_ratio backlash drawing base_tangent geometrie",
+     ("geometry",), ""),
+    (("te loaded_transmission_error static_transmission_error ste pte drehwegabweichung drehfehler mesh_stiffness tvms "
+     "gear_mesh_stiffness time_varying_mesh_stiffness stiffness_of_mesh eingriffssteifigkeit c_gamma"),
+     ("transmission-error",), ""),
+    ("tooth_stiffness single_tooth_stiffness compliance c_prime zahnfedersteifigkeit", ("stiffness",), ""),
+    ("load_share load_distribution_between_teeth lastaufteilung", ("load-sharing",), ""),
+    ("contact_stress hertz hertz_pressure hertzian_stress pressure pressung flankenpressung", ("load-sharing",),
+     "over the face load-distribution"),
+    ("bending_stress tooth_root_stress fillet_stress root_bending zahnfussspannung", ("root-stress",),
+     "in the mesh root-stress-history"),
+    (("safety safety_factor safety_factors iso_6336 iso6336 agma agma_2101 din_3990 strength life lifetime s_h s_f "
+     "pitting tragfaehigkeit"), ("rating",), ""),
+    (("scuffing micropitting flash_temperature temperature film film_thickness fressen graufleckigkeit sliding "
+     "gleitgeschwindigkeit"), ("flank-surface",), ""),
+    ("efficiency power_loss losses friction_loss wirkungsgrad verlustleistung", ("gear-mesh-power-loss",), ""),
+    ("contact_pattern tragbild face_load_factor k_hbeta khbeta line_load", ("load-distribution",),
+     "of unloaded flanks tooth-contact"),
+    ("ltca loaded_tooth_contact_analysis", ("load-distribution",), ""),
+    ("tca tooth_contact_analysis", ("tooth-contact",), ""),
+    ("natural_frequencies eigenfrequencies modal modes eigenfrequenzen critical_speeds", ("natural-modes",), ""),
+    ("dynamics vibration dynamic_load dynamic_response k_v kv dynamic_transmission_error dte", ("dynamic-factor",), ""),
+    ("bearing_life bearings bearing_forces deflection shaft_deflections biegelinie lagerkraefte",
+     ("shaft-deflection",), ""),
+    ("tip_relief profile_modification microgeometry micro_geometry profilkorrektur", ("relief",),
+     "over the face flank-design"),
+    ("undercut clearance interference tip_thickness plausibility", ("tooth-geometry-check",), ""),
+    ("tolerance_analysis monte_carlo sensitivity", ("robustness",), ""),
+    ("planet_load_share k_gamma lastverteilung", ("planet-load-sharing",), ""),
+    ("crack crack_propagation stress_intensity_factor sif riss", (), _CRACK),
+    ("wear wear_depth verschleiss", (), _WORN),
+    ("noise sound_power sound_pressure acoustics geraeusch", (),
+     "sound is not computed in fegear; transmission-error and dynamic-factor are what excites it"),
+)  # fmt: skip
+_VALUES = {
+    "hand": dict.fromkeys(("double", "double_helical", "herringbone", "both"), _DOUBLE),
+}
+
+
+def _rows(rows: tuple[tuple[str, tuple[str, ...], str], ...]) -> Iterator[tuple[str, Meaning]]:
+    for words, keys, how in rows:
+        yield from ((word, Meaning(keys, how)) for word in words.split())
+
+
+_KEYS = dict(_rows(_OF_KEYS))
+_RESULTS = dict(_rows(_OF_RESULTS))

@@ -1,0 +1,201 @@
+"""Words that gear engineers type: each leads to the key that it means, or is told not to be possible."""
+
+import tomllib
+from collections import Counter
+from functools import cache
+
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case import trade_words
+from fegear.case.model import Case
+from fegear.case.reading import build_scene, set_key
+from fegear.case.schema import keys_at
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
+
+CASE = """
+results = ["geometry"]
+[gear.a]
+teeth = 24
+module = "3 mm"
+rack = { addendum = 1.0 }
+material = { density = "7850 kg/m^3" }
+strength = { quality = "MQ" }
+relief = { tip = { amount = "1 um", length = "1 mm" } }
+[pair.I]
+driver = "a"
+driven = "a"
+operation = { life = "1 h" }
+"""
+
+
+def said(path, value="1"):
+    with pytest.raises(InputError) as refusal:
+        set_key(tomllib.loads(CASE), path, value)
+    return refusal.value.remedy
+
+
+#: What is typed, and the key that is named first or what is told.
+TYPED = {
+    # strangers' words, which spelling led astray
+    "gear.a.bore_diameter": '"bore_radius" (half the diameter)',
+    "gear.a.backlash": '"thickness_allowance" (with pair.NAME.centre_distance it gives the backlash',
+    "gear.a.tooth_thickness": '"thickness_allowance"',
+    "gear.a.span": '"thickness_allowance"',
+    "gear.a.crack": "cracks are not possible in fegear",
+    "gear.a.circular_pitch": '"module" (the circular pitch over pi)',
+    # English
+    "gear.a.number_of_teeth": '"teeth"',
+    "gear.a.outside_diameter": '"tip_diameter"',
+    "gear.a.pitch_diameter": '"module" (the pitch diameter over the number of teeth)',
+    "gear.a.root_diameter": "set gear.NAME.cutter.root_diameter for it",
+    "gear.a.addendum_modification": '"profile_shift"',
+    "gear.a.crowning": '"lead"',
+    "gear.a.profile_crowning": '"relief"',
+    "gear.a.tip_relief": '"relief"',
+    "gear.a.fillet_radius": "set gear.NAME.rack.tip_radius for it (in modules)",
+    "gear.a.hob": '"rack"',
+    "gear.a.youngs_modulus": "set gear.NAME.material.young_modulus for it",
+    "gear.a.hardness": "set gear.NAME.strength.hardness for it",
+    "gear.a.quality": '"tolerance_class"',
+    "gear.a.runout": "gear.NAME.spacing_errors",
+    "gear.a.wear": "wear is not computed in fegear",
+    "gear.a.temperature": "gears are not heated in fegear",
+    "gear.a.herringbone": "double-helical gears are not possible",
+    "gear.a.asymmetric": "both flanks of a tooth are equal",
+    "gear.a.contact_ratio": "it follows from the gears, and geometry reports it",
+    "gear.a.torque": "set pair.NAME.torque for it",
+    "gear.a.speed": "set pair.NAME.speed for it",
+    "gear.a.material.youngs_modulus": '"young_modulus"',
+    "gear.a.material.poisson": '"poisson_ratio"',
+    "gear.a.rack.fillet_radius": '"tip_radius" (in modules)',
+    "pair.I.center_distance": '"centre_distance"',
+    "pair.I.pinion": '"driver"',
+    "pair.I.wheel": '"driven"',
+    "pair.I.power": '"torque" (the power over the angular speed)',
+    "pair.I.tangential_force": '"load" (along the line of action',
+    "pair.I.rpm": '"speed"',
+    "pair.I.ratio": "set gear.NAME.teeth for it",
+    "pair.I.backlash": "set gear.NAME.thickness_allowance for it",
+    "pair.I.mesh_stiffness": "set train.mesh.NAME.stiffness for it",
+    "pair.I.crossed_axes": "axes that cross are not possible",
+    "pair.I.rack": "set gear.NAME.rack for it",
+    "pair.I.face_width": "set gear.NAME.face_width for it",
+    "pair.I.lead_error": '"line_error"',
+    "pair.I.oil": '"lubricant"',
+    "pair.I.operation.service_factor": '"application_factor"',
+    "pair.I.operation.lifetime": '"life"',
+    # KISSsoft, ISO, DIN: symbols and German
+    "gear.a.z": '"teeth"',
+    "gear.a.mn": '"normal_module"',
+    "gear.a.alpha_n": '"pressure_angle"',
+    "gear.a.b": '"face_width"',
+    "gear.a.Zähnezahl": '"teeth"',
+    "gear.a.Profilverschiebung": '"profile_shift"',
+    "gear.a.Schrägungswinkel": '"helix_angle"',
+    "gear.a.Zahnbreite": '"face_width"',
+    "gear.a.Kopfkreis": '"tip_diameter"',
+    "gear.a.Bohrung": '"bore_radius" (half the diameter)',
+    "gear.a.Zahnweite": '"thickness_allowance"',
+    "gear.a.Flankenspiel": '"thickness_allowance"',
+    "gear.a.Kopfrücknahme": '"relief"',
+    "gear.a.Zahnstange": "a rack is not possible",
+    "gear.a.Kegelrad": "axes that cross are not possible",
+    "gear.a.rack.rhofP": '"tip_radius" (in modules)',
+    "gear.a.rack.haP": '"addendum" (in modules)',
+    "gear.a.strength.sigmaHlim": '"contact"',
+    "gear.a.relief.tip.Ca": '"amount"',
+    "pair.I.Achsabstand": '"centre_distance"',
+    "pair.I.Drehmoment": '"torque"',
+    "pair.I.Drehzahl": '"speed"',
+    "pair.I.operation.KA": '"application_factor"',
+    "pair.I.operation.KHb": '"face_load_factor"',
+    # AGMA
+    "gear.a.Pnd": '"normal_diametral_pitch"',
+    "gear.a.psi": '"helix_angle"',
+    "gear.a.strength.sac": '"contact"',
+    "gear.a.strength.sat": '"bending"',
+    "pair.I.Wt": '"load"',
+    "pair.I.C": '"centre_distance"',
+    "pair.I.operation.Ko": '"application_factor"',
+    "pair.I.operation.Km": '"face_load_factor"',
+    # misspelt
+    "gear.a.face_with": '"face_width"',
+    "gear.a.teth": '"teeth"',
+    "gear.a.profil_shift": '"profile_shift"',
+}
+
+
+@pytest.mark.parametrize("path", TYPED)
+def test_a_word_of_the_trade_leads_to_what_it_means(path):
+    remedy = said(path)
+    assert remedy.removeprefix("the nearest known name is ").startswith(TYPED[path]) or (
+        TYPED[path] in remedy.partition("; known here")[0] and '"' not in TYPED[path]
+    )
+
+
+RESULTS = {
+    "contact-ratio": "geometry", "mesh_stiffness": "transmission-error", "te": "transmission-error",
+    "bending-stress": "root-stress", "safety": "rating", "AGMA": "rating", "scuffing": "flank-surface",
+    "Wirkungsgrad": "gear-mesh-power-loss", "Tragbild": "load-distribution", "eigenfrequencies": "natural-modes",
+    "vibration": "dynamic-factor", "bearing-life": "shaft-deflection", "undercut": "tooth-geometry-check",
+    "mass": "geometry", "tip-relief": "relief",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("word", [*RESULTS, "crack", "noise"])
+def test_of_a_result(word, tmp_path):
+    document = {"results": [word], "gear": {"a": {"teeth": 24, "module": "3 mm"}}}
+    with pytest.raises(InputError) as refusal:
+        make_plan(build_scene(document, "case", tmp_path), STAGES)
+    wanted = f'nearest known name is "{RESULTS[word]}"' if word in RESULTS else "in fegear"
+    assert wanted in refusal.value.remedy
+
+
+@cache
+def rows(name):
+    return getattr(trade_words, name)
+
+
+def test_every_word_stands_once_and_every_key_that_is_named_exists():
+    results = {result for entry in STAGES.entries for result in entry.results}
+    for table in ("_OF_KEYS", "_OF_RESULTS"):
+        words = Counter(word for words, _, _ in rows(table) for word in words.split())
+        assert [word for word, count in words.items() if count > 1] == []
+        assert all(word == trade_words.plain(word) for word in words)
+    for words, keys, how in rows("_OF_KEYS"):
+        assert keys or how
+        for key in keys:
+            *above, name = key.split(".")
+            known = keys_at(above) if above else list(Case.model_fields)
+            assert not known or name in known, (words, key)
+    for words, keys, how in rows("_OF_RESULTS"):
+        assert set(keys) <= results, words
+        assert keys or how
+
+
+def test_no_word_hides_a_key_of_its_own_table():
+    """A word may be a key elsewhere (`quality` of a strength), never where it is meant."""
+    for words, keys, _ in rows("_OF_KEYS"):
+        for key in keys:
+            *above, name = key.split(".")
+            if above:
+                assert not set(words.split()) & (set(keys_at(above)) - {name}), words
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"gear": {"a": {"teeth": 30, "normal_module": "1 mm", "helix_angle": "30 deg", "hand": "double"}}},
+         "double-helical gears are not possible in fegear"),
+        ({"gear": {"a": {"teeth": 1001, "module": "1 mm"}}}, "model a rack as a gear with many teeth"),
+        ({"planetary": {"P": {"sun": "a", "planet": ["a", "b"], "torque": "1 N m"}}},
+         "stepped planets are not possible in fegear"),
+    ],
+    ids=["herringbone", "rack", "stepped planet"],
+)  # fmt: skip
+def test_what_is_not_possible_is_said_of_values_too(change, told, tmp_path):
+    with pytest.raises(InputError) as refusal:
+        build_scene({"results": ["geometry"], **change}, "case", tmp_path)
+    assert told in str(refusal.value)
