@@ -17,6 +17,10 @@ _HEAD = len(_MAGIC) + 32
 _SUFFIX = ".entry"
 #: After pruning, this share of the limit is left, so that not every write prunes.
 _KEEP = 0.9
+#: Share of the limit that is written, on the average, between two looks at all entries, by whatever processes.
+_BETWEEN_LOOKS = 1 / 64
+#: What an entry takes of a disk at least [bytes].
+_BLOCK = 4096
 #: Temporary files older than this were left behind by a killed process [s].
 _ABANDONED = 3600.0
 _GIB = 1 << 30
@@ -39,6 +43,14 @@ def _head(key: str, payload: bytes) -> bytes:
     return _MAGIC + digest.digest()
 
 
+def _within(folder: Path) -> Iterator[os.DirEntry[str]]:
+    """Files in the folders of a folder; none of one that is not there."""
+    with contextlib.suppress(OSError), os.scandir(folder) as parts:
+        for part in parts:
+            with contextlib.suppress(OSError), os.scandir(part) as files:
+                yield from files
+
+
 @dataclass(frozen=True, slots=True)
 class Store:
     """A folder of entries by key.
@@ -48,7 +60,8 @@ class Store:
     folder : Path
         Made when the first entry is written.
     limit : int
-        Bytes that all entries together may take; the ones unused for longest go first.
+        Bytes that all entries together may take, and now and then some hundredths more; the ones unused for longest go
+        first.
     """
 
     folder: Path
@@ -94,23 +107,32 @@ class Store:
             with contextlib.suppress(OSError):
                 Path(name).unlink()
             raise
-        self._prune()
+        if self._look_due(key, len(payload)):
+            self._prune()
+
+    def _look_due(self, key: str, size: int) -> bool:
+        """Whether to look at all entries now, which takes as long as there are many.
+
+        Keys are as good as random, so that it falls on all processes alike, however few entries each of them writes.
+        """
+        drawn = int.from_bytes(hashlib.sha256(key.encode()).digest()[:8]) / 2**64
+        return drawn < max(size, _BLOCK) / (_BETWEEN_LOOKS * self.limit)
 
     def _prune(self) -> None:
-        entries = []
-        for path in self.folder.glob("*/*"):
+        now, entries = time.time(), []
+        for found in _within(self.folder):
             with contextlib.suppress(OSError):  # another process may prune as well
-                stat = path.stat()
-                if path.suffix == _SUFFIX:
-                    entries.append((stat.st_mtime, stat.st_size, path))
-                elif path.name.startswith(".") and time.time() - stat.st_mtime > _ABANDONED:
-                    path.unlink()
+                stat = found.stat()
+                if found.name.endswith(_SUFFIX):
+                    entries.append((stat.st_mtime, stat.st_size, found.path))
+                elif found.name.startswith(".") and now - stat.st_mtime > _ABANDONED:
+                    Path(found.path).unlink()
         total = sum(size for _, size, _ in entries)
         if total <= self.limit:
             return
         for _, size, path in sorted(entries):
             with contextlib.suppress(OSError):
-                path.unlink()
+                Path(path).unlink()
             total -= size
             if total <= _KEEP * self.limit:
                 return

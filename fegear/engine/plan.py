@@ -39,6 +39,8 @@ class Entry(NamedTuple):
         What of `fegear.engine.extras` it needs besides fegear itself; empty for most.
     formerly : str
         Name by which older cases ask for it; empty for most.
+    effects : tuple of str
+        Effects that change what it computes.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Entry(NamedTuple):
     about: str = ""
     extra: str = ""
     formerly: str = ""
+    effects: tuple[str, ...] = ()
 
 
 class Catalogue(Sequence[Stage]):
@@ -72,7 +75,11 @@ class Catalogue(Sequence[Stage]):
         if isinstance(stages, cls):
             return stages
         made = cls(
-            (Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra) for stage in stages), ""
+            (
+                Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects)
+                for stage in stages
+            ),
+            "",
         )
         made._loaded.update({stage.name: stage for stage in stages})
         return made
@@ -90,8 +97,9 @@ class Catalogue(Sequence[Stage]):
             module, _, attribute = entry.home.rpartition(".")
             found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
             named = replace(
-                found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra
-            )
+                found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra,
+                effects=entry.effects,
+            )  # fmt: skip
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)
         return self._loaded[name]
@@ -248,8 +256,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     skipped = tuple((one.name, _why_not(one, wanted)) for one in known.entries if one.name not in running)
     used = {effect for step in steps for effect in step.effects}
     # What `fegear cost` studies in this case is wanted too, if not by a run.
-    names = {entry.name for entry in known.entries}
-    used |= {effect for name in scene.case.cost.stages if name in names for effect in known.called(name).effects}
+    used |= {effect for entry in known.entries if entry.name in scene.case.cost.stages for effect in entry.effects}
     idle = tuple(effect for effect in on if effect not in used)
     said = [
         f'results: "{result}" is called "{former[result]}" now; fegear migrate writes it anew.'
@@ -257,12 +264,12 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     ]  # fmt: skip
     # What the description calls for, and no wanted result uses, was not asked for.
     named = idle if scene.case.effects.start == "none" else scene.case.effects.named
-    said += [_idle(effect, known) for effect in idle if effect in named]
+    said += [_idle(effect, known.entries) for effect in idle if effect in named]
     return Plan(steps, skipped, idle, (*scene.renamed, *said))
 
 
-def _idle(effect: str, stages: Sequence[Stage]) -> str:
-    results = dict.fromkeys(f'"{result}"' for stage in stages if effect in stage.effects for result in stage.results)
+def _idle(effect: str, stages: Sequence[Entry]) -> str:
+    results = dict.fromkeys(f'"{result}"' for one in stages if effect in one.effects for result in one.results)
     who = f"ask for {' or '.join(results)}, or leave the effect out"
     return f"effects.{effect} is on, but no requested result uses it; {who}."
 

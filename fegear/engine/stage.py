@@ -169,10 +169,8 @@ class Stage:
         ``needs(scene, subject)`` -> tasks that must run first.
     check : callable
         ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
-    effects : tuple of str
-        Effects that change what it computes.
     effects_of : callable or None
-        ``effects_of(scene, subject)`` -> those of them that do so for this subject; None where all do.
+        ``effects_of(scene, subject)`` -> those of its `effects` that change it for this subject; None where all do.
     requires : tuple of Need
         Effects that must be on; a scene that leaves them off is refused with the remedy.
     forecast : callable
@@ -197,6 +195,8 @@ class Stage:
         Whether it consists of points that other processes, or a cluster, can compute.
     name, title, results, about, extra : str, str, tuple of str, str, str
         What it is called: given by the catalogue, see `Entry`.
+    effects : tuple of str
+        Effects that change what it computes: given by the catalogue.
     """
 
     subjects: Callable[[Scene], tuple[str, ...]]
@@ -205,7 +205,6 @@ class Stage:
     present: Callable[[Any, Any], Outcome]
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
-    effects: tuple[str, ...] = ()
     effects_of: Callable[[Scene, str], tuple[str, ...]] | None = None
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
@@ -222,6 +221,7 @@ class Stage:
     results: tuple[str, ...] = ()
     about: str = ""
     extra: str = ""
+    effects: tuple[str, ...] = ()
 
     def effects_on(self, scene: Scene, subject: str) -> tuple[str, ...]:
         """Effects that change what it computes for a subject."""

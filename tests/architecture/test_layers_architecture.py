@@ -225,6 +225,24 @@ def test_a_plan_needs_none_of_the_mechanics_libraries():
     assert run.stdout.split() == []
 
 
+def test_a_plan_loads_no_result_that_it_does_not_compute():
+    """Effects that nothing uses are answered from the catalogue, with the results that would use them."""
+    probe = (
+        "import sys; from fegear.case.reading import build_scene; from fegear.engine.plan import make_plan;"
+        "from fegear.results.catalogue import STAGES;"
+        "case = {'results': ['geometry'], 'gear': {'a': {'teeth': 28, 'module': '1 mm'}}, 'cost': {'gear': 'a'},"
+        "'effects': {'friction': True, 'contact_loss': True, 'parametric': True}};"
+        "plan = make_plan(build_scene(case, 'case', None), STAGES);"
+        "print(len(plan.idle_effects), *[name for name in sys.modules if name.startswith('fegear.results.')])"
+    )
+    run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    idle, *loaded = run.stdout.split()
+    assert int(idle) == 3
+    others = {name for name in loaded if not name.startswith("fegear.results.gear")}
+    assert others == {"fegear.results.catalogue", "fegear.results.forecasts"}
+    assert len(loaded) <= 7
+
+
 def test_the_window_computes_and_draws_nothing_of_its_own(imports):
     """What it shows comes through the engine, the results and the output: no mechanics below the case, no plotting."""
     below = ("geometry", "formulas", "fem", "contact", "design", "dynamics")

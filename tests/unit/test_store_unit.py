@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from fegear.base import store as store_module
 from fegear.base.plain import content_key, pack, unpack
 from fegear.base.solution_cache import Account, Codec, SolutionCache, cache_on_disk
 from fegear.base.store import Store, cache_folder
@@ -148,6 +149,36 @@ def test_the_store_drops_what_was_unused_for_longest(tmp_path):
     assert keys[0] in store
     assert keys[11] in store
     assert keys[1] not in store
+
+
+def test_a_write_looks_at_the_other_entries_now_and_then_only(tmp_path, monkeypatch):
+    looks, within = [], store_module._within
+    monkeypatch.setattr(store_module, "_within", lambda folder: (looks.append(folder), within(folder))[1])
+    store = Store(tmp_path, limit=1 << 25)
+    for i in range(1000):
+        store.write(content_key(i), bytes(1500))
+    assert 1 <= len(looks) <= 20  # 1000 blocks of 4 KiB, a look for each half MiB
+
+
+def test_the_limit_holds_for_entries_that_processes_write_one_each(tmp_path):
+    sizes = []
+    for i in range(300):
+        Store(tmp_path, limit=1_000_000).write(content_key("one", i), bytes(9960))
+        if i % 10 == 0:
+            sizes.append(sum(path.stat().st_size for path in tmp_path.rglob("*.entry")))
+    assert 950_000 < max(sizes) < 1_100_000  # 16 kB are between two looks on the average
+    assert min(sizes[15:]) > 850_000
+
+
+def test_scratch_files_of_killed_processes_are_cleared_away(tmp_path):
+    store, scratch = Store(tmp_path, limit=10_000), tmp_path / "ab" / ".left"
+    scratch.parent.mkdir()
+    scratch.write_bytes(b"half an entry")
+    store.write(content_key(0), bytes(1000))
+    assert scratch.exists()
+    os.utime(scratch, (1e9, 1e9))
+    store.write(content_key(1), bytes(1000))
+    assert not scratch.exists()
 
 
 def test_the_cache_folder_can_be_chosen(monkeypatch, tmp_path):

@@ -223,7 +223,6 @@ CONTACT_LINES = Stage(
     compute=_compute,
     present=_present,
     check=check_misalignment,
-    effects=("misalignment",),
     cites=citing(Citation("litvin", "line contact of aligned helicoids", "Appendix 3, A.3.1 to A.3.9")),
     forecast=lambda scene, _name: Forecast({"positions": scene.case.tooth_contact.positions}, 0.02),
 )

@@ -407,7 +407,6 @@ FLANK_GENERATION = Stage(
     compute=_compute,
     present=_present,
     check=check_misalignment,
-    effects=("misalignment",),
     cites=citing(
         Citation("litvin", "rack cutters, equation of meshing, generated flanks", "Eqs. 19 to 22, Appendices 1, 2, 5")
     ),

@@ -383,7 +383,6 @@ TOOTH_CONTACT = Stage(
     compute=_compute,
     present=_present,
     check=check_misalignment,
-    effects=("misalignment",),
     cites=citing(
         Citation("litvin", "surfaces, tooth contact analysis, edge contact", "Appendices 1 to 5"),
         Citation("johnson", "contact ellipses"),

@@ -11,7 +11,6 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import check_relief
-from fegear.case.effects import PLANE_EFFECTS
 from fegear.case.reading import Scene
 from fegear.contact.plane.moved_outlines import MovedOutline
 from fegear.engine.citation import citing
@@ -128,7 +127,6 @@ DEFORMED_IN_MESH = Stage(
     compute=_deformed,
     present=lambda data, _inputs: Outcome(data),
     check=_check_compliance,
-    effects=PLANE_EFFECTS,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.05),
     internal=True,

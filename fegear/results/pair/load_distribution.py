@@ -13,7 +13,6 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.solid_influence import check_ends
-from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch, LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, error_column, value_of
@@ -209,7 +208,7 @@ def distributed_pairs(scene: Scene) -> tuple[str, ...]:
 
 
 #: Stage of a result that stands on a load distributed over the face.
-flank_stage = partial(Stage, subjects=distributed_pairs, needs=needs_flanks, effects=WIDE_EFFECTS, internal=True)
+flank_stage = partial(Stage, subjects=distributed_pairs, needs=needs_flanks, internal=True)
 
 
 def _check(scene: Scene, name: str) -> None:

@@ -262,7 +262,6 @@ LOADED_FLANKS = Stage(
     present=_present,
     needs=_needs,
     check=check_flanks_to_load,
-    effects=WIDE_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
     internal=True,

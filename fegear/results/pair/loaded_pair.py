@@ -15,7 +15,7 @@ from fegear.case.built.loaded_pair import (
 )
 from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks, whole_ratio_remarks
 from fegear.case.built.pair_inputs import PairInputs, pair_inputs
-from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
+from fegear.case.effects import AT_REST, EffectsPart
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
@@ -147,7 +147,6 @@ LOADED_PAIR = Stage(
     compute=_compute,
     present=_present,
     check=check_pair,
-    effects=PLANE_EFFECTS,
     cites=_cites,
     forecast=_forecast,
     internal=True,

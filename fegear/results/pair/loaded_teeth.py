@@ -78,8 +78,6 @@ class Kind:
 
 PLANE = Kind("loaded-pair", PLANE_EFFECTS, needs_solution, check_relief)
 WIDE = Kind("loaded-flanks", WIDE_EFFECTS, needs_solid_solution)
-#: Effects that change a loaded pair of any kind.
-TEETH_EFFECTS = tuple(dict.fromkeys((*PLANE.effects, *WIDE.effects)))
 
 
 def loaded_pairs(scene: Scene) -> tuple[str, ...]:
@@ -115,7 +113,7 @@ def effects_of_teeth(scene: Scene, name: str) -> tuple[str, ...]:
 
 #: Stage of a result that stands on loaded pairs of any kind.
 teeth_stage = partial(
-    Stage, subjects=loaded_pairs, needs=needs_teeth, check=check_teeth, effects=TEETH_EFFECTS,
+    Stage, subjects=loaded_pairs, needs=needs_teeth, check=check_teeth,
     effects_of=effects_of_teeth, internal=True,
 )  # fmt: skip
 

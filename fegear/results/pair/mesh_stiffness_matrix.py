@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.case.effects import WIDE_EFFECTS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -353,7 +352,6 @@ MESH_STIFFNESS_MATRIX = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=WIDE_EFFECTS,
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
     forecast=lambda _scene, _name: Forecast({}, 0.1),
     why_external="its signs of rotations and tilts are those of axes on either side of the pitch point",

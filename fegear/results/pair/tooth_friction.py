@@ -212,7 +212,6 @@ TOOTH_FRICTION = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=("friction",),
     requires=(Need("friction", "it is what this result shows"),),
     cites=_cites,
     forecast=_forecast,

@@ -29,7 +29,7 @@ from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
-from fegear.results.pair.loaded_teeth import TEETH_EFFECTS, effects_of_teeth, kind_of, loaded_pair
+from fegear.results.pair.loaded_teeth import effects_of_teeth, kind_of, loaded_pair
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _present_cycle(data: SetCycle, asked: SetInputs) -> Outcome:
 
 #: Stage of what the loaded teeth of a set's meshes are to its planets.
 _teeth_stage = partial(
-    Stage, subjects=planetary_sets, inputs=set_inputs, needs=needs_teeth, check=_check, effects=TEETH_EFFECTS,
+    Stage, subjects=planetary_sets, inputs=set_inputs, needs=needs_teeth, check=_check,
     effects_of=_effects, internal=True,
 )  # fmt: skip
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.loaded_flanks import check_flanks_to_load
-from fegear.case.effects import WIDE_EFFECTS
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
@@ -484,7 +483,6 @@ RATING = Stage(
     present=_present,
     needs=_needs,
     check=_check,
-    effects=WIDE_EFFECTS,
     cites=_cites,
     forecast=_forecast,
 )

@@ -42,10 +42,6 @@ if TYPE_CHECKING:
     from fegear.design.flanks.forms import ReliefGrid
 
 
-#: The gears' own reliefs are what the design replaces.
-FLANK_DESIGN_EFFECTS = ("neighbour_coupling", "hertz", "misalignment")
-
-
 #: Misalignments of a map: over the standard deviation of the scatter, or [m] without one.
 _MAPPED, _MAPPED_ALONE = (-2.0, -1.0, 0.0, 1.0, 2.0), (-10e-6, -5e-6, 0.0, 5e-6, 10e-6)
 
@@ -430,7 +426,6 @@ FLANK_DESIGN = Stage(
     present=_present,
     needs=_needs,
     check=_check,
-    effects=FLANK_DESIGN_EFFECTS,
     cites=citing(
         Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.14"),
         *RING, HERTZ, INVOLUTE,

@@ -18,7 +18,7 @@ from fegear.base.errors import InputError, RangeError
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
 from fegear.case.built.pair_inputs import PairInputs, gear_name, pair_inputs
 from fegear.case.design import DesignPart
-from fegear.case.effects import AT_REST, EffectsPart
+from fegear.case.effects import EffectsPart
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
@@ -118,7 +118,7 @@ def design_pairs(scene: Scene) -> tuple[str, ...]:
 
 
 #: Stage of a result about the reliefs that a case asks to design.
-relief_stage = partial(Stage, subjects=design_pairs, needs=needs_teeth, effects=AT_REST, internal=True)
+relief_stage = partial(Stage, subjects=design_pairs, needs=needs_teeth, internal=True)
 
 
 def _loading(part: DesignPart, p: GearPair) -> LoadingFunction:

@@ -162,7 +162,6 @@ LOADED_SHAFTS = Stage(
     present=_present,
     needs=_needs,
     check=_check,
-    effects=WIDE_EFFECTS,
     effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else ("misalignment",),
     forecast=_forecast,
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),

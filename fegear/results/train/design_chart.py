@@ -340,7 +340,6 @@ DESIGN_CHART = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=("contact_loss", "friction", "parametric"),
     requires=(
         Need("contact_loss", "reliefs are chosen for the forces at which teeth part"),
         Need("parametric", "relief acts on single tooth pairs, and without it all are one spring"),

@@ -206,7 +206,6 @@ DYNAMIC_FACTOR = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=("contact_loss", "friction", "parametric"),
     cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
     forecast=_forecast,
     internal=True,

@@ -198,7 +198,6 @@ DYNAMIC_ROOT_STRESS = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=("neighbour_coupling",),
     cites=_cites,
     forecast=_forecast,
     internal=True,

@@ -15,7 +15,6 @@ from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.neglected_effects import percent
 from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
-from fegear.case.effects import PLANE_EFFECTS
 from fegear.dynamics.train.gear_train import GearTrain, a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.engine.citation import Citation, citing
@@ -255,7 +254,6 @@ GEAR_TRAIN = Stage(
     compute=compute_train,
     present=_present,
     check=_check,
-    effects=PLANE_EFFECTS,
     answers=("transmission error",),
     cites=TRAIN_SOURCES,
     forecast=_forecast,

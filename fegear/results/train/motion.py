@@ -194,7 +194,6 @@ MOTION = Stage(
     compute=_compute,
     present=_present,
     check=check_motion,
-    effects=("contact_loss", "friction", "parametric"),
     cites=_sources,
     forecast=_forecast,
     internal=True,
