@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.base.errors import GeometryError
 from fegear.case.gear import MaterialPart
 from fegear.case.part import (
     Angle,
@@ -23,6 +24,7 @@ from fegear.case.part import (
     quantity,
     refuse,
 )
+from fegear.geometry.plausible import refuse_shaft
 
 if TYPE_CHECKING:
     from fegear.shafts.beam import Shaft
@@ -117,6 +119,15 @@ class ShaftInSpacePart(Part):
     clockwise: bool = Field(
         default=False, description="Sense in which it turns, seen from +z; shafts driven by others follow from these."
     )
+
+    @model_validator(mode="after")
+    def _of_a_gearbox(self) -> Self:
+        thickest = max(max(one.outer, one.outer_end or 0.0) for one in self.sections)
+        try:
+            refuse_shaft(sum(one.length for one in self.sections), thickest)
+        except GeometryError as error:
+            raise refuse(f"{error.rule} in {error.key}", error.remedy, key="sections", value=error.value) from None
+        return self
 
     def build(self, *, rigid: bool = False) -> Shaft:
         """Make the shaft."""

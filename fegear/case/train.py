@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.base.errors import GeometryError
 from fegear.case.part import (
     LengthOrZero,
     Number,
@@ -18,6 +19,7 @@ from fegear.case.part import (
     quantity,
     refuse,
 )
+from fegear.geometry.plausible import LONGEST_OF_TRAIN, refuse_shaft
 
 TorsionalStiffness = Annotated[float, quantity("torsional_stiffness", positive=True)]
 TorsionalDamping = Annotated[float, quantity("torsional_damping", not_negative=True)]
@@ -80,6 +82,10 @@ class ShaftPart(Part):
             for key in ("length", "diameter"):
                 if getattr(self, key) is None:
                     raise refuse("is missing", f'write {key} = "40 mm"', key=key, value="(not given)")
+            try:
+                refuse_shaft(self.length or 0.0, self.diameter or 0.0, LONGEST_OF_TRAIN)
+            except GeometryError as error:
+                raise refuse(error.rule, error.remedy, key=error.key, value=error.value) from None
         if self.damping is not None and self.damping_ratio is not None:
             raise refuse("contradicts damping", "give either", key="damping_ratio")
         if self.rigid and (self.damping or self.damping_ratio):

@@ -225,7 +225,7 @@ class Command(typer.core.TyperCommand):
 
 
 def _is_number(word: str) -> bool:
-    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", word) is not None
+    return re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)", word) is not None
 
 
 @contextlib.contextmanager

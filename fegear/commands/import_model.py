@@ -21,8 +21,14 @@ def import_(
         int | None, typer.Option("--load-case", metavar="N", help="Number of the load case; default the first.")
     ] = None,
     spectrum: Annotated[
-        bool, typer.Option("--spectrum", help="Take all load cases as the load spectrum of the ratings.")
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--spectrum/--no-spectrum",
+            help="All load cases are the load spectrum of the ratings. Default: if all say how long they last.",
+            show_default=False,
+        ),
+    ] = None,
+    unchecked: Annotated[bool, typer.Option("--unchecked", help="Write a case that cannot be planned, too.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
     quiet: Quiet = False,
 ) -> None:
@@ -34,10 +40,42 @@ def import_(
 
     voice = Voice(quiet)
     text = case_of(read_model(model), load_case, model.name, spectrum=spectrum)
+    if not unchecked:
+        refuse_unplanned(text, model.name)
     path = case_file(out or model.stem.replace(".", "_"), force=force)
     write_file(path, text.encode(), "--out")
     notes = sum(line.startswith("# Note: ") for line in text.splitlines())
     voice.say(f"Wrote {path}, with {notes} notes at its end; next: fegear run {path}")
+
+
+def refuse_unplanned(text: str, name: str) -> None:
+    """Refuse a model whose case `fegear plan` would refuse.
+
+    Parameters
+    ----------
+    text : str
+        The case.
+    name : str
+        Of the model's file.
+
+    Raises
+    ------
+    InputError
+        With what the plan says.
+    """
+    import tomllib
+
+    from fegear.base.errors import FegearError, InputError, shown
+    from fegear.case.reading import build_scene
+    from fegear.engine.plan import make_plan
+    from fegear.results.catalogue import STAGES
+
+    try:
+        make_plan(build_scene(tomllib.loads(text), "case", Path()), STAGES)
+    except FegearError as error:
+        rule = f"makes a case that cannot be computed: {str(error).rstrip('.')}"
+        remedy = "correct the model, or import with --unchecked and correct the case"
+        raise InputError("MODEL", shown(name), rule, remedy) from None
 
 
 import_.__name__ = "import"  # the command's name, which is a word of Python

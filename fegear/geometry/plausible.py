@@ -23,6 +23,9 @@ MODULES = (1e-6, 0.25)
 FACE_WIDTHS = (4e-3, 300.0)
 #: Young's moduli [Pa], from rubber to diamond, and densities [kg/m^3], from foam to osmium.
 YOUNG_MODULI, DENSITIES = (1e6, 1.5e12), (10.0, 25e3)
+#: Longest shaft in a gearbox, longest in a train (the propeller's), and thickest [m]; and how many times as thick as
+#: the tip circle of its largest gear.
+LONGEST_SHAFT, LONGEST_OF_TRAIN, THICKEST_SHAFT, THICKEST_BELOW_GEARS = 30.0, 300.0, 20.0, 5.0
 #: Below this Young's modulus [Pa] there is no solid: the gear is one of pure numbers, of module 1 and modulus 1.
 _NUMBERS = 1e3
 #: Deepest relief in modules. Deflections reach it only under line loads that no steel carries (some 1.5 GPa times the
@@ -59,6 +62,22 @@ def refuse_size(module: float, face_width: float, key: str = "module") -> None:
     _refuse(
         "face_width", face_width, ends, "m", f"the face widths of gears of module {module:.4g} m", "20 mm are 20e-3 m"
     )
+
+
+def refuse_shaft(length: float, diameter: float, longest: float = LONGEST_SHAFT) -> None:
+    """Refuse a length and a diameter [m] that no shaft has: millimetres that were taken for metres.
+
+    Raises
+    ------
+    GeometryError
+        With the remedy; its key is "length" or "diameter".
+    """
+    for key, value, most in (("length", length, longest), ("diameter", diameter, THICKEST_SHAFT)):
+        if not 0.0 <= value <= most:
+            raise GeometryError(
+                key, f"{value:.6g} m", f"is beyond the shafts of gears, up to {most:g} m",
+                "check the unit: 40 mm are 40e-3 m in SI",
+            )  # fmt: skip
 
 
 def refuse_material(material: Material) -> None:

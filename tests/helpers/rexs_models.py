@@ -72,33 +72,61 @@ def in_json(tree):
     return json.dumps({"model": tree})
 
 
-def planetary_set():
-    """18/24/66 teeth, three planets, the ring held by the casing; 90 N m and 1000 rpm on the sun."""
-    distance = 0.5 * 42 * 2.0
+def planetary_set(helix=0.0, angles=(0.0, 120.0, 240.0)):
+    """18/24/66 teeth, planets at angles [deg], the ring held by the casing; 90 N m and 1000 rpm on the sun."""
+    distance = 0.5 * 42 * 2.0 / math.cos(math.radians(helix))
     components = [
         part(1, "gear_unit", "A set"), part(2, "gear_casing"), part(9, "planetary_stage"), part(10, "planet_carrier"),
         shaft(3, 0.0, 0.0, rotational_speed=(1000.0, "1/min"), defines_speed="true"), shaft(4, 0.0, 0.0),
-        shaft(5, 0.0, 0.0), gear(11, 18, 0.0), part(7, "coupling", "held", is_engaged="true"),
-        {**gear(15, 66, 0.0), "type": "ring_gear"},
+        shaft(5, 0.0, 0.0), gear(11, 18, helix), part(7, "coupling", "held", is_engaged="true"),
+        {**gear(15, 66, -helix), "type": "ring_gear"},
         part(31, "external_load", torque_around_u_axis=(90.0, "N m"), u_coordinate_on_shaft=(0.0, "mm"),
              defines_torque="true"),
         part(32, "external_load", u_coordinate_on_shaft=(0.0, "mm"), transmits_torque="true"),
     ]  # fmt: skip
     pairs = [(9, 10), (3, 11), (4, 15), (3, 31), (5, 32), (10, 5)]
     stages = []
-    for n in range(3):
+    for n, angle in enumerate(map(math.radians, angles)):
+        place = distance * math.cos(angle), distance * math.sin(angle)
         components += [
-            gear(12 + n, 24, 0.0), shaft(41 + n, distance, 0.0), shaft(51 + n, distance, 0.0),
+            gear(120 + n, 24, -helix), shaft(41 + n, *place), shaft(51 + n, *place),
             part(61 + n, "concept_bearing", f"pin {n}"),
             part(21 + n, "cylindrical_stage", center_distance=(distance, "mm")),
             part(24 + n, "cylindrical_stage", center_distance=(distance, "mm")),
         ]  # fmt: skip
-        pairs += [(41 + n, 12 + n), (10, 51 + n), (9, 21 + n), (9, 24 + n)]
+        pairs += [(41 + n, 120 + n), (10, 51 + n), (9, 21 + n), (9, 24 + n)]
         stages += [
-            link(200 + n, "stage", stage=21 + n, gear_1=11, gear_2=12 + n),
-            link(210 + n, "stage", stage=24 + n, gear_1=12 + n, gear_2=15),
+            link(200 + n, "stage", stage=21 + n, gear_1=11, gear_2=120 + n),
+            link(210 + n, "stage", stage=24 + n, gear_1=120 + n, gear_2=15),
             link(220 + n, "side", assembly=61 + n, outer_part=41 + n, inner_part=51 + n),
         ]  # fmt: skip
     links = [link(300 + n, "assembly", assembly=one, part=other) for n, (one, other) in enumerate(pairs)]
     held = link(230, "side", assembly=7, inner_part=4, outer_part=2)
     return {"version": "1.4", "components": components, "relations": [*stages, *links, held]}
+
+
+def ring_stage():
+    """A pinion in a ring, 20/60 teeth of module 2 mm; 50 N m and 1000 rpm on the pinion, both on shafts in bearings."""
+    components = [
+        part(1, "gear_unit", "A ring"), part(2, "gear_casing"),
+        shaft(3, 0.0, 0.0, rotational_speed=(1000.0, "1/min"), defines_speed="true"), shaft(4, 40.0, 0.0),
+        gear(11, 20, 0.0), {**gear(12, 60, 0.0), "type": "ring_gear"},
+        part(21, "cylindrical_stage", center_distance=(-40.0, "mm")),
+        part(31, "external_load", torque_around_u_axis=(50.0, "N m"), u_coordinate_on_shaft=(0.0, "mm"),
+             transmits_torque="true", defines_torque="true"),
+        part(32, "external_load", u_coordinate_on_shaft=(100.0, "mm"), transmits_torque="true"),
+    ]  # fmt: skip
+    links = [link(101, "stage", stage=21, gear_1=11, gear_2=12)]
+    links += [link(110 + n, "assembly", assembly=s, part=g) for n, (s, g) in enumerate(
+        ((3, 11), (4, 12), (3, 31), (4, 32)))]  # fmt: skip
+    for n, (one, size) in enumerate(((3, 25.0), (4, 30.0))):
+        components.append(part(41 + n, "shaft_section", length=(100.0, "mm"), outer_diameter_begin=(size, "mm")))
+        links.append(link(130 + n, "ordered_assembly", assembly=one, part=41 + n))
+        for m, at in enumerate((10.0, 90.0)):
+            number = 51 + 2 * n + m
+            components.append(
+                part(number, "concept_bearing", f"bearing {number}", u_coordinate_on_shaft_inner_side=(at, "mm"),
+                     radial_stiffness=(4e5, "N/mm"), axial_stiffness=(1e5, "N/mm"))
+            )  # fmt: skip
+            links.append(link(140 + number, "side", assembly=number, inner_part=one, outer_part=2))
+    return {"version": "1.4", "applicationId": "test", "components": components, "relations": links}

@@ -11,6 +11,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import fegear.cli
@@ -322,3 +323,39 @@ def test_an_example_needs_a_folder_where_another_file_stands(say, tmp_path):
     assert code == 2
     assert re.search("cannot be looked at|can be no folder", complaint)
     assert (tmp_path / "data").read_text() == "mine"
+
+
+def test_bodies_of_a_drafted_train_suit_its_gears():
+    """A wrong exponent made a shaft of 38 m of a pair of 36 and 96 mm, and no test noticed."""
+    given = {"teeth": "24 64", "module": "3 mm", "face_width": "30 mm", "speed": "1500 rpm"}
+    train = tomllib.loads(draft(Answers("train", given), "case"))["train"]
+    radii = [0.5 * 3e-3 * 24, 0.5 * 3e-3 * 64]
+    sizes = [train["shaft"][name] for name in ("input", "output")]
+    assert [one["length"] for one in sizes] == ["290 mm", "290 mm"]  # eight radii of the pinion, two digits
+    # of equal shear stress: the torque grows as the radius, the diameter as its cube root
+    wanted = [1.2 * radii[0], 1.2 * radii[0] * (radii[1] / radii[0]) ** (1.0 / 3.0)]
+    assert [float(one["diameter"].split()[0]) * 1e-3 for one in sizes] == pytest.approx(wanted, rel=0.05)
+    discs = [10.0 * 0.5 * np.pi * 7850.0 * 30e-3 * radius**4 for radius in radii]
+    bodies = [train["body"][name]["inertia"] for name in ("motor", "load")]
+    assert [float(one.split()[0]) for one in bodies] == pytest.approx(discs, rel=5e-3)
+
+
+@pytest.mark.parametrize(("teeth", "planets"), [("18 24", 3), ("20 25", 3), ("16 23", 3), ("17 26", 2)])
+def test_bodies_of_a_drafted_set_suit_its_gears(teeth, planets):
+    given = {"teeth": teeth, "module": "2 mm", "face_width": "20 mm", "speed": "1000 rpm"}
+    one = tomllib.loads(draft(Answers("planetary", given), "case"))["planetary"]["P"]
+    sun, planet = map(int, teeth.split())
+    assert one.get("ring_teeth", sun + 2 * planet) == sun + 2 * planet
+    assert 2 * (sun + planet) % one["planets"] == 0
+    radius = 0.5 * (sun + planet) * 2e-3
+    mass = np.pi * 7850.0 * 20e-3 * radius**2
+    assert float(one["body"]["carrier"]["mass"].split()[0]) == pytest.approx(mass, rel=5e-3)
+    inertia = float(one["body"]["carrier"]["inertia"].split()[0])
+    assert inertia == pytest.approx(0.5 * mass * radius**2, rel=1e-2)
+
+
+@pytest.mark.parametrize("teeth", ["24, 64", "\uff12\uff14 64", "2_4 64", "", "24 x", "1" * 400 + " 2"])
+def test_teeth_that_are_no_plain_numbers_are_refused_in_a_sentence(teeth):
+    """A comma ended in a traceback, and full-width digits in a file that TOML refuses."""
+    with pytest.raises(InputError, match=r"--teeth = .* must be"):
+        Answers("train", {"teeth": teeth})

@@ -10,10 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from helical_gears import helical_gear
+from pydantic import ValidationError
 
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.built.shafts import mesh_places
 from fegear.case.reading import apply_override, build_scene
+from fegear.case.train import ShaftPart
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.geometry.gear import Gear, Material
@@ -172,3 +175,40 @@ def test_the_deepest_relief_is_just_taken():
     with pytest.raises(InputError, match="what the tooth can take"):
         refuse_deep_relief(gear, replace(at_most, amount=-1.001 * most), low, tip)
     assert np.isfinite(most)
+
+
+def on_a_shaft(**section: str):
+    """The pair's first gear on a shaft of one section."""
+    document = copy.deepcopy(CASE)
+    document["shaft"] = {
+        "s": {
+            "sections": [{"length": "80 mm", "outer": "40 mm", **section}],
+            "gears": [{"gear": "a", "at": "40 mm"}],
+            "bearings": [{"bearing": "b", "at": "5 mm"}, {"bearing": "b", "at": "75 mm"}],
+        }
+    }
+    document["bearing"] = {"b": {"fixed": True}}
+    return build_scene(document, "case", Path())
+
+
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ({"length": "35 m"}, "sections = 35 m: is beyond the shafts of gears, up to 30 m in length"),
+        ({"outer": "38 m"}, "sections = 38 m: is beyond the shafts of gears, up to 20 m in diameter"),
+        ({"outer_end": "14e27 m"}, "up to 20 m in diameter"),
+        ({"outer": "1.5 m"}, "is 16.7 times the diameter of the largest gear on the shaft"),
+    ],
+)
+def test_shafts_in_metres_that_were_meant_in_millimetres_are_refused(section, words):
+    on_a_shaft()
+    with pytest.raises(InputError, match=words):
+        mesh_places(on_a_shaft(**section))
+
+
+@pytest.mark.parametrize(("key", "value"), [("length", "800 m"), ("diameter", "38 m")])
+def test_shafts_of_trains_have_sizes_of_shafts(key, value):
+    sizes = {"length": "200 mm", "diameter": "40 mm"}
+    ShaftPart(a="a", b="b", **sizes)
+    with pytest.raises(ValidationError, match="is beyond the shafts of gears"):
+        ShaftPart(a="a", b="b", **(sizes | {key: value}))

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rexs_cases import imported, same, there_and_back
 from rexs_models import in_json, planetary_set, two_stages
 
 import fegear.cli
@@ -23,16 +24,6 @@ from fegear.exchange.rexs.written_gearbox import model_text
 
 CASES = Path(__file__).parents[2] / "cases"
 HERE = Path("model.rexs")
-
-
-def there_and_back(scene):
-    """A scene written and read again, and what was left out."""
-    text, remarks = model_text(scene, "2026-01-01T00:00:00")
-    return build_scene(tomllib.loads(case_of(model_of(text, HERE))), scene.name, Path()), remarks
-
-
-def imported(tree):
-    return build_scene(tomllib.loads(case_of(model_of(in_json(tree), HERE))), "case", Path())
 
 
 def with_all_of_a_flank():
@@ -94,23 +85,6 @@ def test_a_gearbox_comes_back_as_it_was(made):
         assert [same(a.at, b.at) and same(a.bearing, b.bearing) for a, b in zip(one.seats, other.seats, strict=True)]
     assert same(first.couplings, second.couplings)
     assert model_text(there_and_back(again)[0], "")[0] == model_text(again, "")[0]
-
-
-def same(one, other):
-    """Equal to rounding of what is written with 15 digits, down to what dataclasses and case tables hold."""
-    if hasattr(one, "model_dump"):
-        return same(one.model_dump(), other.model_dump())
-    if hasattr(one, "__dataclass_fields__"):
-        return type(one) is type(other) and all(
-            same(getattr(one, key), getattr(other, key)) for key in one.__dataclass_fields__
-        )
-    if isinstance(one, dict):
-        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
-    if isinstance(one, list | tuple):
-        return len(one) == len(other) and all(map(same, one, other))
-    if isinstance(one, float | np.ndarray):
-        return other is not None and np.allclose(one, other, rtol=1e-11, atol=1e-15, equal_nan=True)
-    return one == other
 
 
 def test_a_planetary_set_comes_back_as_it_was():

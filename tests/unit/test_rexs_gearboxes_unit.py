@@ -8,42 +8,14 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from rexs_cases import case, more, put, text_of
 from rexs_models import gear, in_json, link, part, planetary_set, shaft, two_stages
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.engine.plan import make_plan
 from fegear.exchange.rexs.gearbox import case_of
 from fegear.exchange.rexs.reading import model_of, read_model
 from fegear.exchange.rexs.written_gearbox import model_text
-from fegear.results.catalogue import STAGES
-
-
-def text_of(tree: dict) -> str:
-    return case_of(model_of(in_json(tree), Path("model.rexs")))
-
-
-def case(tree: dict) -> dict:
-    """The case, which can be planned."""
-    found = tomllib.loads(text_of(tree))
-    make_plan(build_scene(found, "case", Path()), STAGES)
-    return found
-
-
-def put(tree: dict, number: int, **attributes: object) -> dict:
-    """The model with attributes of a component set."""
-    made = part(0, "", **attributes)
-    parts = [
-        {**one, "attributes": [*(a for a in one["attributes"] if a["id"] not in attributes), *made["attributes"]]}
-        if one["id"] == number else one
-        for one in tree["components"]
-    ]  # fmt: skip
-    return {**tree, "components": parts}
-
-
-def more(tree: dict, *components: dict, relations: tuple[dict, ...] = (), drop: tuple[int, ...] = ()) -> dict:
-    links = [one for one in tree["relations"] if one["id"] not in drop]
-    return {**tree, "components": [*tree["components"], *components], "relations": [*links, *relations]}
 
 
 @pytest.mark.parametrize("name", ["model.rexsz", "model.rexs.zip"])
@@ -262,10 +234,7 @@ def test_a_pair_without_a_distance_has_that_of_its_axes() -> None:
 
 def test_a_helical_set_passes_torque_to_the_stages_beside_it() -> None:
     """A set whose carrier drives a pair: 90 N m on the sun are 90 (1 + 66/18) on the carrier."""
-    tree = planetary_set()
-    helices = {11: 10.0, 12: -10.0, 13: -10.0, 14: -10.0, 15: -10.0}
-    for number, helix in helices.items():
-        tree = put(tree, number, helix_angle_reference_diameter=(helix, "deg"))
+    tree = planetary_set(helix=10.0)
     parts = [one for one in tree["components"] if one["id"] != 32]
     links = [one for one in tree["relations"] if all(ref["id"] != 32 for ref in one["refs"])]
     tree = more(

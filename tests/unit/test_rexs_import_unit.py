@@ -153,7 +153,9 @@ def test_a_shaft_without_bearings_is_imported_as_a_pair_alone():
 
 def test_a_planetary_stage_becomes_a_set():
     found = case(in_json(planetary_set()))
-    assert "pair" not in found
+    assert {name: (one["driver"], one["driven"]) for name, one in found["pair"].items()} == {
+        "P_sun": ("gear_11", "gear_120"), "P_ring": ("gear_120", "gear_15"),
+    }  # fmt: skip
     one = found["planetary"]["P"]
     assert {key: one[key] for key in ("planets", "fixed", "input", "torque", "speed")} == {
         "planets": 3, "fixed": "ring", "input": "sun", "torque": "90 N*m", "speed": "1000 rpm",
@@ -161,7 +163,7 @@ def test_a_planetary_stage_becomes_a_set():
     assert [found["gear"][one[role]]["teeth"] for role in ("sun", "planet", "ring")] == [18, 24, 66]
     assert found["gear"][one["ring"]]["internal"] is True
     stages = {step.stage.name for step in make_plan(build_scene(found, "case", Path()), STAGES).steps}
-    assert {"planet-set", "planet-load-sharing"} <= stages
+    assert {"planet-set", "planet-load-sharing", "rating", "load-distribution"} <= stages
 
 
 def test_sets_that_nothing_holds_or_that_have_no_ring_are_refused():

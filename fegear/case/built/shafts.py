@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.part import at, nearest
 from fegear.case.reading import Scene
+from fegear.geometry.plausible import THICKEST_BELOW_GEARS
 
 if TYPE_CHECKING:
     from fegear.case.built.gears_on_shafts import StiffenedShaft
@@ -77,6 +78,7 @@ def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
                 )
             where[place.gear] = name, place.at
         _refuse_overlap(scene, name)
+        _refuse_thick(scene, name)
     found = []
     driven = {where[one.driven][0] for one in scene.case.pair.values() if one.driven in where and one.driver in where}
     senses = {name: -1 if part.clockwise else 1 for name, part in scene.case.shaft.items() if name not in driven}
@@ -106,6 +108,21 @@ def _refuse_overlap(scene: Scene, shaft: str) -> None:
                 f"shaft.{shaft}.gears", f"{one.gear} and {two.gear}", f"overlap by {-room * 1e3:.4g} mm",
                 "move one of them, or make its face narrower",
             )  # fmt: skip
+
+
+def _refuse_thick(scene: Scene, shaft: str) -> None:
+    """Refuse a shaft many times as thick as the largest gear on it: metres that were taken for millimetres."""
+    part = scene.case.shaft[shaft]
+    if not part.gears:
+        return
+    thickest = max(max(one.outer, one.outer_end or 0.0) for one in part.sections)
+    tips = 2.0 * max(max(scene.gears[one.gear].tip_radius, scene.gears[one.gear].root_radius) for one in part.gears)
+    if thickest > THICKEST_BELOW_GEARS * tips:
+        raise InputError(
+            f"shaft.{shaft}.sections", f"{thickest * 1e3:.6g} mm",
+            f"is {thickest / tips:.3g} times the diameter of the largest gear on the shaft (at most "
+            f"{THICKEST_BELOW_GEARS:g} times)", "check the unit of outer",
+        )  # fmt: skip
 
 
 def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, float]], sense: int) -> MeshPlace:

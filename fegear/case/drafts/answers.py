@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fegear.base.errors import InputError
+from fegear.base.unit_text import plain_number
 from fegear.base.units import to_si
 from fegear.case.part import nearest
 from fegear.geometry.rack import BasicRack
@@ -155,7 +156,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             found.append(Question(name, "Face width", face, "length"))
         elif name == "torque":
             width = _readable(given.get("face_width", face), "length")
-            radius = 0.5 * module * float((_split(given.get("teeth", "21")) or ["21"])[0])
+            radius = 0.5 * module * (plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0)
             found.append(
                 Question(name, "Torque on the pinion", f"{float(f'{_LINE_LOAD * width * radius:.2g}'):g} N*m", "torque")
             )
@@ -182,7 +183,7 @@ def check(question: Question, gears: int, text: str) -> None:
     """
     key = _option(question.name)
     if question.dimension == "teeth":
-        if not all(re.fullmatch(r"\d+", part) for part in _split(text)):
+        if not all(re.fullmatch(r"[0-9]{1,9}", part) for part in _split(text)):
             raise InputError(key, f'"{text}"', "must be whole numbers", "write for example 21 53")
         if len(_split(text)) != gears:
             raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, for so many gears")
@@ -204,7 +205,7 @@ def _split(text: str) -> list[str]:
 
 
 def _number(text: str) -> bool:
-    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", text) is not None
+    return re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)", text) is not None
 
 
 def _readable(text: str, dimension: str) -> float:

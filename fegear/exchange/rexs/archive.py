@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import lzma
+import struct
 import zipfile
 import zlib
 from typing import TYPE_CHECKING
@@ -14,6 +16,11 @@ if TYPE_CHECKING:
 
 #: Most entries of an archive, and the most bytes of the model in it.
 _MOST_ENTRIES, _LARGEST = 10_000, 100_000_000
+#: What the library says of damaged archives, by the way in which they are packed.
+_DAMAGED = (
+    zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error, NotImplementedError, EOFError, OSError, OverflowError,
+    RuntimeError, ValueError,
+)  # fmt: skip
 
 
 def archived_text(path: Path, refusal: Callable[[str, str], InputError]) -> str:
@@ -45,7 +52,7 @@ def archived_text(path: Path, refusal: Callable[[str, str], InputError]) -> str:
                 raise refusal("is an encrypted archive", "pack the model without a password")
             with archive.open(model) as file:
                 data = file.read(_LARGEST + 1)  # what the archive claims of its size is not believed
-    except (zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, OSError, RuntimeError, ValueError) as error:
+    except _DAMAGED as error:
         raise refusal(f"is a damaged archive ({error})", "pack it again") from None
     if len(data) > _LARGEST:
         raise refusal(f"holds a model of more than {_LARGEST // 1_000_000} MB", "export the gearbox alone")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
@@ -25,13 +26,21 @@ from fegear.exchange.rexs.places import (
     turn_to_axes,
 )
 from fegear.exchange.rexs.said import Said
-from fegear.exchange.rexs.sets import planetary_of, set_table
-from fegear.exchange.rexs.shafts import OnShaft, coupling_of, diameter_below, sections_of, shaft_table
+from fegear.exchange.rexs.sets import planetary_of, set_tables
+from fegear.exchange.rexs.shafts import (
+    OnShaft,
+    coupling_of,
+    diameter_below,
+    hole_below,
+    is_rigid,
+    sections_of,
+    shaft_table,
+)
 from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_shift, refuse_equal_hands, teeth_of
 from fegear.geometry.involute import inv
 
 if TYPE_CHECKING:
-    from fegear.exchange.rexs.loads import Flow
+    from fegear.exchange.rexs.loads import Bins, Flow
     from fegear.exchange.rexs.model import Component, Model
     from fegear.exchange.rexs.modifications import End
     from fegear.exchange.rexs.places import Place, Stage
@@ -52,7 +61,7 @@ _APART = 1e-9
 _OTHER_STAGES = (BEVEL, "worm_stage")
 
 
-def case_of(model: Model, load_case: int | None = None, source: str = "", *, spectrum: bool = False) -> str:
+def case_of(model: Model, load_case: int | None = None, source: str = "", *, spectrum: bool | None = None) -> str:
     """The text of a case file.
 
     Parameters
@@ -62,8 +71,9 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         Number of the load case whose torques and speeds are taken; the first by default.
     source : str
         Name of the file, for the first line.
-    spectrum : bool
-        Whether all load cases together are the load spectrum of every pair's rating.
+    spectrum : bool, optional
+        Whether all load cases together are the load spectrum of every pair's rating; by default where no load case is
+        asked for and all say how long they last.
 
     Raises
     ------
@@ -72,6 +82,9 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     """
     chosen = chosen_load_case(model, load_case)
     said = Said(model, chosen.attributes if chosen else {})
+    if chosen is not None and len(model.load_cases) > 1:
+        others = ", ".join(str(one.id) for one in model.load_cases if one is not chosen)
+        said.notes.append(f"Torques and speeds are those of load case {chosen.id}; the model also has {others}.")
     stages = stages_of(said)
     refuse_equal_hands(said, stages)
     turn_to_axes(said, stages)
@@ -87,13 +100,14 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     of_sets = {gear.id: gear for one in sets for gear in one.gears if gear.id not in gears}
     names = _names((*gears.values(), *of_sets.values()), "gear")
     on = {n: shaft_of(said, gear) for n, gear in (gears | of_sets).items()}
-    if lost := next((gear for n, gear in (gears | of_sets).items() if on[n] is None), None):
+    planets = {gear.id: gear for one in sets for gear in one.planets}
+    if lost := next((one for one in (gears | of_sets | planets).values() if shaft_of(said, one) is None), None):
         raise InputError(lost.said, "(on no shaft)", "is part of no shaft", "complete its relation of type assembly")
     middles = _middles(said, gears, on)
     every = [*stages, *bevels]
     on |= {gear.id: shaft_of(said, gear) for stage in bevels for gear in stage.gears}
     flow = flow_of(said, every, sets, on)
-    bins = spectrum_of(said, every, sets, on, flow) if spectrum else Spectrum(((),) * len(stages))
+    bins = _bins(said, every, sets, on, flow, spectrum=spectrum if load_case is None else bool(spectrum))
     loaded = _loaded(said, stages, flow, bins)
     gears = {n: gear for n, gear in gears.items() if any(gear in stages[one].gears for one in loaded)}
     names = {n: name for n, name in names.items() if n in gears or n in of_sets}
@@ -101,9 +115,9 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     places = places_of(said, stages, middles)
     bent = bool(shafts) and _held(said, shafts, {n: places[n] for n in shafts if n in places})
     rest = {n: _rest_of_shift(said, gear, everything) for n, gear in (gears | of_sets).items()}
-    tables = [_head(stages, sets, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
+    tables = [_head(sets, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
     for n, gear in (gears | of_sets).items():
-        bore = _bore(said, gear, on[n], middles) if n in gears else None
+        bore = _bore(said, gear, on[n], middles) if n in gears else _bore_in_set(said, gear, on[n], sets)
         keys = gear_keys(said, gear, rest[n], bore, _far_end(said, gear, stages, flow))
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
@@ -113,7 +127,9 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         for n, stage in enumerate(stages)
         if n in loaded
     ]
-    tables += [set_table(one, names, n, flow) for n, one in enumerate(sets)]
+    for n, planetary in enumerate(sets):
+        of_mesh = partial(_keys_in_set, said, bins=bins.sets[n] if bins.sets else (), life=bins.life)
+        tables += set_tables(said, planetary, names, n, flow, everything, of_mesh)
     tables += _shafts(said, shafts, places, stages, names, on, middles, flow) if bent else []
     tables.append(_effects(bent=bent, relieved=relieved))
     about = f"Imported from {source}" if source else "Imported"
@@ -123,6 +139,27 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         "Behind each key stands the attribute that it comes from, or what was assumed.",
     )  # fmt: skip
     return case_text(head, tables, (*(f"Note: {note}" for note in dict.fromkeys(said.notes)), *_unread(said)))
+
+
+def _bins(
+    said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int, Component | None], flow: Flow,
+    *, spectrum: bool | None,
+) -> Spectrum:  # fmt: skip
+    """All load cases as the load spectrum where that is asked for, or not refused and they say how long they last."""
+    none = Spectrum(((),) * len(stages))
+    cases = said.model.load_cases
+    if spectrum is False or (spectrum is None and len(cases) < 2):
+        return none
+    try:
+        found = spectrum_of(said, stages, sets, on, flow)
+    except InputError as error:
+        if spectrum:
+            raise
+        said.notes.append(f"The {len(cases)} load cases are not taken as a load spectrum: {error.value} {error.rule}.")
+        return none
+    if spectrum is None:
+        said.notes.append(f"The {len(cases)} load cases are the load spectrum of the ratings, by how long they last.")
+    return found
 
 
 def _loaded(said: Said, stages: list[Stage], flow: Flow, spectrum: Spectrum) -> list[int]:
@@ -197,17 +234,13 @@ def _rated(said: Said, stages: list[Stage], rest: dict[int, float | None]) -> bo
     return True
 
 
-def _head(stages: list[Stage], sets: list[Planetary], said: Said, *, bent: bool, rated: bool) -> Table:
-    internal = bool(sets) or any(stage.internal for stage in stages)
+def _head(sets: list[Planetary], said: Said, *, bent: bool, rated: bool) -> Table:
     left_out = [
         *(("rating",) * (not rated)),
-        *(("rating", "load-distribution") * internal),
         *(("misalignment", "shaft-deflection") * (not bent)),
     ]
     results = [one for one in _RESULTS if one not in left_out]
     results += ["planet-set", "planet-load-sharing", "root-stress-history"] if sets else []
-    if internal:
-        said.notes.append("load-distribution and rating are not asked for: a stage has a ring gear.")
     title = next((one.name for one in said.model.of("gear_unit") if one.name), "") or "An imported gearbox"
     return Table("", (Key("title", text(title)), Key("results", listed(map(text, results)))))
 
@@ -216,12 +249,13 @@ def _rest_of_shift(said: Said, gear: Component, stages: list[Stage]) -> float | 
     """Profile shift that the centre distance leaves to a gear which has none of its own."""
     if profile_shift(said, gear) is not None:
         return None
-    stage = next(one for one in stages if gear.id in (two.id for two in one.gears))
+    mine = [one for one in stages if gear.id in (two.id for two in one.gears)]
+    stage = next((one for one in mine if not one.internal), mine[0])  # a planet's mesh with the sun comes first
     distance = distance_of(said, stage)
     mate = next(one for one in stage.gears if one.id != gear.id)
-    if distance is None or stage.internal:
+    if distance is None:
         return 0.0
-    teeth = sum(abs(teeth_of(said, one)) for one in stage.gears)
+    teeth = abs(sum(teeth_of(said, one) for one in stage.gears))
     helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
     flank = flank_of(said, gear)
     normal = (said.number(flank, "angle", "normal_pressure_angle") if flank else None) or math.radians(20.0)
@@ -232,16 +266,18 @@ def _rest_of_shift(said: Said, gear: Component, stages: list[Stage]) -> float | 
             "center_distance", f"{distance * 1e3:.6g} mm", f"is too small for the teeth of {stage.component.said}",
             "correct it",
         )  # fmt: skip
-    both = float(inv(math.acos(cosine)) - inv(alpha)) * teeth / (2.0 * math.tan(normal))
+    both = float(inv(math.acos(cosine)) - inv(alpha)) * (-teeth if stage.internal else teeth) / (2.0 * math.tan(normal))
     other = profile_shift(said, mate)
-    return 0.5 * both if other is None else both - other
+    if other is None and stage.internal:  # the mate's shift is that of its mesh with the sun, or none
+        other = _rest_of_shift(said, mate, stages) if gear.type == "ring_gear" else 0.0
+    return 0.5 * both if other is None else both - (other or 0.0)
 
 
 def _bore(said: Said, gear: Component, shaft: Component | None, middles: dict[int, float]) -> float | None:
-    """Radius of the shaft below a gear [m]; None where the teeth are cut into the shaft, or nearly."""
+    """Radius of the shaft below a gear, or around a ring [m]; None where teeth are cut into the shaft, or nearly."""
     below = None if shaft is None else diameter_below(sections_of(said, shaft), middles[gear.id])
-    if below is None:
-        return None
+    if not below or gear.type == "ring_gear":
+        return 0.5 * below if below else None
     module, helix = module_of(said, gear), said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
     teeth = abs(teeth_of(said, gear))
     root = module * (0.5 * teeth / math.cos(helix) - 1.25 + (profile_shift(said, gear) or 0.0))
@@ -249,6 +285,21 @@ def _bore(said: Said, gear: Component, shaft: Component | None, middles: dict[in
         said.notes.append(f"{gear.said} is taken as cut into its shaft, whose radius is {0.5e3 * below:.4g} mm.")
         return None
     return 0.5 * below
+
+
+def _bore_in_set(said: Said, gear: Component, shaft: Component | None, sets: list[Planetary]) -> float | None:
+    """Bore of a sun, by its shaft, or of a planet: the hole of its sleeve, or its outside where the sleeve is rigid."""
+    if shaft is None:
+        return None
+    at = middle_on_shaft(said, gear, shaft)
+    if at is None:
+        return None
+    if any(gear.id == planet.id for one in sets for planet in one.planets):
+        sections, rigid = sections_of(said, shaft), is_rigid(said, shaft)
+        below = diameter_below(sections, at) if rigid else hole_below(sections, at)
+        if below:
+            return 0.5 * below
+    return _bore(said, gear, shaft, {gear.id: at})
 
 
 def _height(place: Place, middle: float) -> float:
@@ -269,7 +320,7 @@ def _pair(
     if distance is not None:
         given = "center_distance" in said.attributes_of(stage.component)
         where = "center_distance" if given else "from the support vectors of both shafts"
-        keys.append(Key("centre_distance", quantity(abs(distance), "mm"), where))
+        keys.append(Key("centre_distance", quantity(distance, "mm"), where))
     # End I is that from which the driver turns counter-clockwise: the end of +u where it turns about +u.
     higher = heights.get(wheel.id, 0.0) - heights.get(driver.id, 0.0)
     higher *= -1.0 if speed < 0.0 else 1.0
@@ -280,13 +331,21 @@ def _pair(
     keys.append(Key("torque", quantity(on_driver, "N*m", _SOLVED), where))
     where = assumed if n in flow.assumed_speed else "through the gearbox from rotational_speed"
     keys.append(Key("speed", quantity(abs(speed), "rpm", _SOLVED), where))
-    if not stage.internal:
+    if not stage.internal:  # slices are for external gears
         keys.append(Key("width", text("slices"), "cheaper than solid gears"))
-        keys += [
-            lubricant_key(said, stage.component),
-            operation_key(said, stage.component, spectrum.bins[n], spectrum.life),
-        ]
+    keys += _surface_keys(said, stage, bins=spectrum.bins[n], life=spectrum.life)
     return Table(f"pair.{_roman(n + 1)}", tuple(keys), f"{stage.component.said} {stage.component.name}".strip())
+
+
+def _surface_keys(said: Said, stage: Stage, *, bins: Bins, life: float | None) -> tuple[Key, ...]:
+    """Oil and operation of a pair."""
+    return lubricant_key(said, stage.component), operation_key(said, stage.component, bins, life)
+
+
+def _keys_in_set(said: Said, stage: Stage, driver: Component, *, bins: Bins, life: float | None) -> tuple[Key, ...]:
+    """Oil and operation of a set's pair; its driver turns relative to the carrier as its teeth say."""
+    own = tuple((factor, rate / abs(teeth_of(said, driver)), share) for factor, rate, share in bins)
+    return lubricant_key(said, stage.component), operation_key(said, stage.component, own, life, of_nominal=True)
 
 
 def _roman(n: int) -> str:

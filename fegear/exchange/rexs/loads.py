@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from fegear.exchange.rexs.said import Said
     from fegear.exchange.rexs.sets import Planetary
 
+#: Of every load case: torque [N m] or part of the nominal load, speed [rad/s] and share of the time.
+Bins = tuple[tuple[float, float, float], ...]
 #: What a mesh gets where the model says nothing: torque per mm of face and module squared [Pa], and speed [rad/s].
 _ASSUMED_LOAD, _ASSUMED_SPEED = 10e6, 1500.0 * 2.0 * math.pi / 60.0
 
@@ -92,14 +94,18 @@ class Spectrum:
 
     Parameters
     ----------
-    bins : tuple
-        Of each mesh, for every load case: torque on its driver [N m], its speed [rad/s], share of the time.
+    bins : tuple of Bins
+        Of each mesh: torque on its driver, its speed, share of the time.
     life : float or None
         All of the time [s], where load cases say how long they last and not as a share.
+    sets : tuple of Bins
+        Of each planetary set: load over that of the nominal load case, speed of the sun relative to the carrier times
+        its teeth, share.
     """
 
-    bins: tuple[tuple[tuple[float, float, float], ...], ...]
+    bins: tuple[Bins, ...]
     life: float | None = None
+    sets: tuple[Bins, ...] = ()
 
 
 def chosen_load_case(model: Model, asked: int | None) -> LoadCase | None:
@@ -169,7 +175,25 @@ def spectrum_of(
                 )
             bins.append((torque, abs(speed), (time or 0.0) / whole))
         found.append(tuple(bins))
-    return Spectrum(tuple(found), whole if in_hours[0] else None)
+    shares = [(time or 0.0) / whole for time in times]
+    of_sets = tuple(_of_set(said, one, n, nominal, flows, shares) for n, one in enumerate(sets))
+    return Spectrum(tuple(found), whole if in_hours[0] else None, of_sets)
+
+
+def _of_set(
+    said: Said, one: Planetary, n: int, nominal: Flow, flows: list[Flow], shares: list[float]
+) -> tuple[tuple[float, float, float], ...]:
+    """The bins of a set; none, and a note, where a load case gives it no torque or speed."""
+    bins = []
+    for flow, share in zip(flows, shares, strict=True):
+        whole = flow.sets[n]
+        factor = abs(flow.driven.set_torque[n] / (nominal.driven.set_torque[n] or math.nan))
+        speed = abs(flow.driven.speed[whole.sun] - flow.driven.speed[whole.carrier]) * whole.teeth[0]
+        if not (math.isfinite(factor) and math.isfinite(speed) and speed > 0.0):
+            said.notes.append(f"{one.component.said} has no load spectrum: a load case gives it no torque or speed.")
+            return ()
+        bins.append((factor, speed, share))
+    return tuple(bins)
 
 
 def _time(said: Said) -> tuple[float | None, bool]:

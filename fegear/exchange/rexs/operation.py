@@ -64,8 +64,9 @@ def _grade(name: str) -> float | None:
 
 
 def operation_key(
-    said: Said, stage: Component, bins: Sequence[tuple[float, float, float]] = (), life: float | None = None
-) -> Key:
+    said: Said, stage: Component, bins: Sequence[tuple[float, float, float]] = (), life: float | None = None,
+    *, of_nominal: bool = False,
+) -> Key:  # fmt: skip
     """Application factor, life and spectrum of a pair.
 
     Parameters
@@ -76,6 +77,8 @@ def operation_key(
         Torque of the driver [N m], its speed [rad/s] and share of the time; none without a spectrum.
     life : float, optional
         That of the spectrum [s]; without it that of the gear unit.
+    of_nominal : bool
+        Whether bins give a part of the nominal load in place of a torque.
     """
     factor = said.number(
         stage, "number", "application_factor_iso_6336_2019", "application_factor_iso_6336_2006", "application_factor"
@@ -83,8 +86,12 @@ def operation_key(
     for unit in said.model.of("gear_unit"):
         life = life or said.number(unit, "time", "operating_time", "load_duration")
     spectrum = listed(
-        inline(torque=quantity(torque, "N*m", 12), speed=quantity(speed, "rpm", 12), share=number(share))
-        for torque, speed, share in bins
+        inline(
+            **({"load_factor": number(load)} if of_nominal else {"torque": quantity(load, "N*m", 12)}),
+            speed=quantity(speed, "rpm", 12),
+            share=number(share),
+        )
+        for load, speed, share in bins
     )
     value = inline(
         application_factor=number(1.0 if bins else factor or 1.0), life=quantity(life or _LIFE, "h"),

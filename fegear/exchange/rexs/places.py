@@ -272,13 +272,28 @@ def places_of(said: Said, stages: Iterable[Stage], middles: dict[int, float]) ->
 
 
 def distance_of(said: Said, stage: Stage) -> float | None:
-    """Centre distance of a stage: its own, else that of the axes that both shafts say [m]; None without either."""
-    given = said.number(stage.component, "length", "center_distance")
+    """Centre distance of a stage [m], above zero: its own, else that of both shafts' axes; None without either."""
+    given = _own_distance(said, stage)
     shafts = [shaft_of(said, gear) for gear in stage.gears]
     at = [said.vector(shaft, "support_vector") for shaft in shafts if shaft is not None]
     if given is not None or len(at) < 2 or at[0] is None or at[1] is None:
         return given
     return math.hypot(at[0][1] - at[1][1], at[0][2] - at[1][2]) or None
+
+
+def _own_distance(said: Said, stage: Stage) -> float | None:
+    """The centre distance that a stage gives [m], above zero: that of a ring is written with either sign.
+
+    Raises
+    ------
+    InputError
+        If it is zero, or below zero without a ring.
+    """
+    given = said.number(stage.component, "length", "center_distance")
+    if given is None or given > 0.0 or (given < 0.0 and stage.internal):
+        return None if given is None else abs(given)
+    rule = f"of {stage.component.said} must be positive"
+    raise InputError("center_distance", f"{given * 1e3:.6g} mm", rule, "correct it")
 
 
 def _placed(said: Said, stage: Stage, found: dict[int, Place]) -> bool:
@@ -291,7 +306,7 @@ def _place_stage(said: Said, stage: Stage, found: dict[int, Place], middles: dic
     first, second = shafts
     if first is None or second is None:
         return
-    distance = said.number(stage.component, "length", "center_distance")
+    distance = _own_distance(said, stage)
     turn = said.number(stage.component, "angle", "rotating_angle_around_neg_u_axis")
     if first.id not in found and second.id not in found:
         found[first.id] = Place(0.0, 0.0, 0.0, direction(said, first))

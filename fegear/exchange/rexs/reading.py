@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import re
 import stat
 import struct
 from collections.abc import Mapping
@@ -21,8 +22,12 @@ from fegear.exchange.rexs.model import MOST_COMPONENTS, Attribute, Component, Lo
 KEY = "MODEL"
 #: Largest file [characters], and the deepest nesting of its elements.
 _LARGEST, _DEEPEST = 50_000_000, 40
+#: What escapes half of a character in JSON, alone or before its other half.
+_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 #: Versions whose attributes are known.
 _VERSIONS = tuple(f"1.{minor}" for minor in range(8))
+#: Whole numbers by which parts are known, with so many digits at most.
+_WHOLE = re.compile(r"[-+]?[0-9]{1,18}")
 #: How numbers are packed in coded arrays.
 _CODES = {"float32": "<{}f", "float64": "<{}d", "int32": "<{}i"}
 
@@ -166,6 +171,11 @@ def _json(text: str, path: Path) -> dict[str, Any]:
         raise _refusal(path, rule, "export it again") from None
     except (RecursionError, ValueError):
         raise _refusal(path, "nests its values too deep, or has numbers too long", "check the file") from None
+    if _HALF.search(text):
+        try:
+            json.dumps(tree, ensure_ascii=False).encode()
+        except UnicodeEncodeError:
+            raise _refusal(path, "holds half of a character, a surrogate alone", "export it again") from None
     model = tree.get("model") if isinstance(tree, dict) else None
     if not isinstance(model, dict):
         raise _refusal(path, "has no object model at its top", "give a REXS model")
@@ -211,14 +221,15 @@ def _dicts(value: object, key: str, path: Path) -> list[Mapping[str, Any]]:
 
 
 def _number(given: Mapping[str, Any], key: str, path: Path) -> int:
+    """A whole number by which a part is known; texts of XML and floats of JSON that are one count."""
     value = given.get(key)
-    try:
-        return int(value)  # type: ignore[arg-type]  # what is no number is refused
-    except (TypeError, ValueError):
-        what = f"the number {shown(value)}" if value is not None else "no number"
-        raise _refusal(
-            path, f"has a component, relation or load case with {what} as {key}", "export it again"
-        ) from None
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    said = str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+    if isinstance(said, str) and _WHOLE.fullmatch(said.strip()):
+        return int(said)
+    what = f"the number {shown(value)}" if value is not None else "no number"
+    raise _refusal(path, f"has a component, relation or load case with {what} as {key}", "export it again")
 
 
 def _component(given: Mapping[str, Any], path: Path, known: Mapping[int, Component] | None = None) -> Component:

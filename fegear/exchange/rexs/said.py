@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, shown
+from fegear.base.unit_text import plain_number
 from fegear.exchange.rexs.units import size_of, units_of
 
 if TYPE_CHECKING:
@@ -142,10 +143,17 @@ def _in_si(one: Attribute, value: object, component: Component, quantity: str) -
     if size is None:
         rule = f"has no unit of a {quantity} in {component.said}"
         raise InputError(one.name, f"{value} {one.unit}".rstrip(), rule, f"those of REXS are {units_of(quantity)}")
-    try:
-        number = math.nan if isinstance(value, tuple | bool) else float(value)  # type: ignore[arg-type]
-    except (ValueError, OverflowError):  # no number, or one of hundreds of digits
-        number = math.nan
-    if not math.isfinite(number):
+    number = _plain(value)
+    if number is None or not math.isfinite(number * size):
         raise InputError(one.name, shown(value), f"is no finite number in {component.said}", "correct the model")
     return number * size
+
+
+def _plain(value: object) -> float | None:
+    """A number of JSON, or one that XML writes in ASCII digits; None for anything else."""
+    if isinstance(value, str):
+        return plain_number(value)
+    try:
+        return None if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
+    except OverflowError:  # one of hundreds of digits
+        return None

@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, quantity, text
 from fegear.exchange.rexs.drive import PlanetSet
-from fegear.exchange.rexs.places import shaft_of
+from fegear.exchange.rexs.places import distance_of, shaft_of
+from fegear.exchange.rexs.set_bodies import body_keys, planet_keys, support_keys
 from fegear.exchange.rexs.teeth import teeth_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fegear.exchange.rexs.loads import Flow
     from fegear.exchange.rexs.model import Component
     from fegear.exchange.rexs.places import Stage
@@ -21,15 +24,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Planetary:
-    """A planetary stage: sun, one of its planets and how many there are, ring, and the shafts of its carrier."""
+    """A planetary stage: its stages, sun, planets and ring, and the shafts of its carrier."""
 
     component: Component
     stages: tuple[int, ...]
     sun: Component
-    planet: Component
-    planets: int
+    planets: tuple[Component, ...]
     ring: Component
     carriers: tuple[Component, ...]
+
+    @property
+    def planet(self) -> Component:
+        """The one that stands for all in a case."""
+        return self.planets[0]
 
     @property
     def gears(self) -> tuple[Component, Component, Component]:
@@ -53,7 +60,8 @@ def planetary_of(said: Said, stages: list[Stage]) -> list[Planetary]:
         rings = [gear for gear in in_ring.values() if gear.type == "ring_gear"]
         planets = [gear for gear in in_ring.values() if gear.type != "ring_gear"]
         suns = {gear.id: gear for stage in mine if not stage.internal for gear in stage.gears if gear.id not in in_ring}
-        if len(suns) != 1 or len(rings) != 1 or not planets:
+        in_sun = {gear.id for stage in mine if not stage.internal for gear in stage.gears}
+        if len(suns) != 1 or len(rings) != 1 or not planets or not {planet.id for planet in planets} <= in_sun:
             raise InputError(
                 one.said, f"{len(suns)} suns, {len(planets)} planets, {len(rings)} rings",
                 "is no set of one sun, planets and one ring", "import its meshes as single stages",
@@ -66,7 +74,7 @@ def planetary_of(said: Said, stages: list[Stage]) -> list[Planetary]:
             if shaft.id not in {pin.id for pin in _pins(said, planets)}
         ]
         # Pins are parts of the carrier, too; what turns with it is whatever of its shafts stands on the common axis.
-        found.append(Planetary(one, tuple(sorted(parts)), sun, planets[0], len(planets), rings[0], tuple(carriers)))
+        found.append(Planetary(one, tuple(sorted(parts)), sun, tuple(planets), rings[0], tuple(carriers)))
     return found
 
 
@@ -103,17 +111,30 @@ def flow_through(said: Said, one: Planetary, bodies: dict[int, int]) -> PlanetSe
     return PlanetSet(numbers["sun"], numbers["ring"], numbers["carrier"], teeth)
 
 
-def set_table(one: Planetary, names: dict[int, str], n: int, flow: Flow) -> Table:
-    """``[planetary.P]``: gears, number of planets, what is held and what drives.
+def set_name(n: int) -> str:
+    """Name of a set in the case, by its number."""
+    return "P" if n == 0 else f"P{n + 1}"
+
+
+def set_tables(
+    said: Said, one: Planetary, names: dict[int, str], n: int, flow: Flow, stages: list[Stage],
+    mesh_keys: Callable[[Stage, Component], tuple[Key, ...]],
+) -> list[Table]:  # fmt: skip
+    """``[planetary.P]``: gears, planets, what is held and what drives, what holds them; and the pairs of its meshes.
 
     Parameters
     ----------
+    said : Said
     one : Planetary
     names : dict
         Of its gears in the case.
     n : int
         Its number among the sets.
     flow : Flow
+    stages : list of Stage
+        All of the model.
+    mesh_keys : callable
+        Keys that the pair of a mesh has of its stage and driver.
 
     Raises
     ------
@@ -137,7 +158,7 @@ def set_table(one: Planetary, names: dict[int, str], n: int, flow: Flow) -> Tabl
     driving = next((name for name in free if torques[name] * speeds[name] < 0.0), free[0])
     keys = [
         *(Key(role, text(names[gear.id])) for role, gear in zip(("sun", "planet", "ring"), one.gears, strict=True)),
-        Key("planets", str(one.planets), "taken as evenly spaced"),
+        *planet_keys(said, one, stages),
         Key("fixed", text(fixed[0]), "its coupling to the casing"),
         Key("input", text(driving)),
     ]
@@ -147,6 +168,19 @@ def set_table(one: Planetary, names: dict[int, str], n: int, flow: Flow) -> Tabl
         else:
             assumed = {"N*m": 1.0, "rpm": 1500.0 * math.tau / 60.0}[unit]
             keys.append(Key(key, quantity(assumed, unit), "assumed: none reaches it"))
-    return Table(
-        f"planetary.{'P' if n == 0 else f'P{n + 1}'}", tuple(keys), f"{one.component.said} {one.component.name}"
-    )
+    backward = speeds[driving] if math.isfinite(speeds[driving]) and speeds[driving] else torques[driving]
+    if backward < 0.0:
+        keys.append(Key("clockwise", "true", "rotational_speed below zero"))
+    mine = [stage for stage in stages if stage.component.id in one.stages]
+    distance = distance_of(said, next(stage for stage in mine if not stage.internal))
+    keys += [*support_keys(said, one, flow, n, fixed[0]), *body_keys(said, one, distance)]
+    sun_drives = driving == "sun" or (driving == "carrier" and fixed[0] == "sun")
+    made = [Table(f"planetary.{set_name(n)}", tuple(keys), f"{one.component.said} {one.component.name}")]
+    for mesh, central in (("sun", one.sun), ("ring", one.ring)):
+        planet_drives = sun_drives == (mesh == "ring")
+        driver, wheel = (one.planet, central) if planet_drives else (central, one.planet)
+        stage = next(stage for stage in mine if {central.id, one.planet.id} == {gear.id for gear in stage.gears})
+        roles = (Key("driver", text(names[driver.id]), "as power rolls"), Key("driven", text(names[wheel.id])))
+        about = f"{stage.component.said}, for all its like"
+        made.append(Table(f"pair.{set_name(n)}_{mesh}", (*roles, *mesh_keys(stage, driver)), about))
+    return made

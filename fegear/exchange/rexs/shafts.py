@@ -6,10 +6,11 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from fegear.base.errors import InputError
+from fegear.base.errors import GeometryError, InputError
 from fegear.exchange.case_tables import Key, Table, inline, listed, quantity, text
 from fegear.exchange.rexs.places import joints_of, own_axes
 from fegear.exchange.rexs.teeth import elasticity
+from fegear.geometry.plausible import refuse_shaft
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -83,6 +84,7 @@ def sections_of(said: Said, shaft: Component) -> tuple[Section, ...]:
         at = begin + length
         ends = outer if outer_end is None else outer_end, inner if inner_end is None else inner_end
         found.append(Section(begin, length, (outer, ends[0]), (inner, ends[1])))
+    _refuse_sizes(shaft, found)
     found.sort(key=lambda one: one.begin)
     for n, (one, two) in enumerate(pairwise(found)):
         if _GAP < two.begin - one.end <= _CLOSED:
@@ -97,6 +99,39 @@ def sections_of(said: Said, shaft: Component) -> tuple[Section, ...]:
                 f"makes sections of {shaft.said} {what} at {one.end * 1e3:.6g} mm", "correct lengths or places",
             )  # fmt: skip
     return tuple(found)
+
+
+def _refuse_sizes(shaft: Component, sections: Sequence[Section]) -> None:
+    """Refuse a shaft of no length, of no thickness, or of a size that none has."""
+    names = {"length": "length", "diameter": "outer_diameter_begin"}
+    for one in sections:
+        sizes = {"length": one.length, "outer_diameter_begin": min(one.outer)}
+        for name, size in sizes.items():
+            if not size > 0.0:
+                rule = f"of a section of {shaft.said} must be positive"
+                raise InputError(name, f"{size * 1e3:.6g} mm", rule, "correct the model")
+        for outer, inner in zip(one.outer, one.inner, strict=True):
+            if not 0.0 <= inner < outer:
+                raise InputError(
+                    "inner_diameter_begin", f"{inner * 1e3:.6g} mm",
+                    f"of a section of {shaft.said} must lie below its outer diameter of {outer * 1e3:.6g} mm",
+                    "correct the model",
+                )  # fmt: skip
+    try:
+        for one in sections:
+            refuse_shaft(sum(part.length for part in sections), max(one.outer))
+    except GeometryError as error:
+        rule = f"of {shaft.said} {error.rule}"
+        raise InputError(names[error.key], error.value, rule, "check the unit of the attribute") from None
+
+
+def hole_below(sections: Sequence[Section], at: float) -> float | None:
+    """Diameter of a shaft's hole at a place [m], zero where it is solid; None off its ends."""
+    for one in sections:
+        if one.begin <= at <= one.end:
+            part = (at - one.begin) / one.length if one.length > 0.0 else 0.0
+            return one.inner[0] + part * (one.inner[1] - one.inner[0])
+    return None
 
 
 def diameter_below(sections: Sequence[Section], at: float) -> float | None:
@@ -169,6 +204,11 @@ def shaft_table(
     keys += [Key("loads", loads, "forces of external_load")] if loads else []
     keys += [Key("clockwise", "true", "rotational_speed below zero")] if clockwise else []
     return Table(f"shaft.{name}", tuple(keys), f"{shaft.said} {shaft.name}".strip())
+
+
+def is_rigid(said: Said, shaft: Component) -> bool:
+    """Whether a shaft's material is that of a rigid body."""
+    return any(_stiff(said, one) for one in said.linked(shaft, "origin", "reference", "referenced", "material")[:1])
 
 
 def _stiff(said: Said, material: Component) -> bool:

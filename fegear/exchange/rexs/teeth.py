@@ -46,6 +46,8 @@ _BY_NAME = (
 )
 #: Rim of a ring gear of which nothing is said [modules].
 _RIM = 3.5
+#: Root circle over the reference circle where rims are measured, and the thinnest rim [modules].
+_RING_DEDENDUM, _LEAST_RING_RIM = 1.25, 0.5
 #: Its addendum, likewise [modules].
 _RING_ADDENDUM = 0.85
 #: Helix angles of two gears in mesh are equal to so much [rad].
@@ -66,7 +68,7 @@ def gear_keys(
     shift : float or None
         Profile shift coefficient where the model leaves it to the centre distance.
     bore : float or None
-        Radius of the shaft below the gear [m].
+        Radius of the shaft below the gear, or outer radius of that which a ring sits in [m].
     far : {"I", "II"}, optional
         End of its face that is not the datum face; without it not known.
 
@@ -268,7 +270,9 @@ def _sizes(said: Said, gear: Component, flank: Component | None, bore: float | N
     if not ring and inner:
         keys.append(Key("bore_radius", quantity(0.5 * inner, "mm"), "half inner_diameter"))
     elif not ring and bore:
-        keys.append(Key("bore_radius", quantity(bore, "mm"), "assumed: radius of the shaft section below it"))
+        keys.append(
+            Key("bore_radius", quantity(bore, "mm"), "assumed: radius of its shaft there, or of the hole of a planet's")
+        )
     if ring and tip is None:
         # Teeth as high as the rack's would often reach into the planet's fillet.
         helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
@@ -277,10 +281,22 @@ def _sizes(said: Said, gear: Component, flank: Component | None, bore: float | N
         )
         keys.append(Key("tip_diameter", quantity(assumed, "mm"), f"assumed: addendum of {_RING_ADDENDUM:g} modules"))
     if ring:
-        rim = quantity(_RIM * module_of(said, gear), "mm")
-        keys.append(Key("rim_thickness", rim, f"assumed: {_RIM:g} modules, held outside"))
+        keys.append(_outside(said, gear, bore))
     keys.append(Key("face_width", quantity(said.needed(gear, "length", "face_width"), "mm"), "face_width"))
     return keys
+
+
+def _outside(said: Said, gear: Component, around: float | None) -> Key:
+    """Where a ring is held: its own outer diameter, else that of the shaft that it is one with, else an assumed rim."""
+    module, helix = module_of(said, gear), said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
+    root = 0.5 * module * abs(teeth_of(said, gear)) / math.cos(helix) + _RING_DEDENDUM * module
+    own = said.number(gear, "length", "outer_diameter")
+    radius, where = (0.5 * own, "half outer_diameter") if own else (around, "outside of its shaft section")
+    if radius is not None and radius > root + _LEAST_RING_RIM * module:
+        return Key("outer_radius", quantity(radius, "mm"), where)
+    if radius is not None:
+        said.notes.append(f"{gear.said}: an outer radius of {radius * 1e3:.4g} mm leaves no rim and is not used.")
+    return Key("rim_thickness", quantity(_RIM * module, "mm"), f"assumed: {_RIM:g} modules, held outside")
 
 
 def _quality(said: Said, gear: Component) -> list[Key]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from fegear.base.errors import InputError
 from fegear.case.pair import PairPart
-from fegear.case.planetary import PlanetaryPart, set_pair, set_teeth
+from fegear.case.planetary import MESHES, PlanetaryPart, angles_of, set_pair, set_teeth
 from fegear.case.reading import Scene
 from fegear.exchange.rexs.operation import OILS
 from fegear.exchange.rexs.written import Found, Part, Written
@@ -24,7 +25,21 @@ _PAIR = frozenset(
 _OIL = frozenset({"viscosity_40", "viscosity_100", "density_15", "temperature", "kind"})
 _OPERATION = frozenset({"application_factor", "life"})
 _SET = frozenset(
-    {"sun", "planet", "ring", "planets", "fixed", "input", "torque", "speed", "centre_distance", "clockwise"}
+    {
+        "sun",
+        "planet",
+        "ring",
+        "planets",
+        "angles",
+        "fixed",
+        "input",
+        "torque",
+        "speed",
+        "centre_distance",
+        "clockwise",
+        "stiffness",
+        "floating",
+    }
 )
 #: Attributes of a stage by the values of a pair; those of editions of ISO 6336 end with its year.
 _OF_STAGE = {
@@ -172,19 +187,7 @@ def _stage(
     year = part.iso_6336.edition or 2019
     if "application_factor" in part.operation.model_fields_set:
         stage.say("number", **{f"application_factor_iso_6336_{year}": part.operation.application_factor})
-    if (oil := part.lubricant) is not None:
-        left_out(written, f"Pair {name}, lubricant", oil, _OIL)
-        made = written.part("lubricant", f"{name}, lubricant").word(kind="oil")
-        made.word(lubricant_type_iso_6336_2019=next(rexs for rexs, case in OILS.items() if case == oil.kind))
-        made.say(
-            "viscosity", viscosity_at_40_degree_celsius=oil.viscosity_40,
-            viscosity_at_100_degree_celsius=oil.viscosity_100,
-        )  # fmt: skip
-        made.say(
-            "density", density_at_15_degree_celsius=oil.density_15 if "density_15" in oil.model_fields_set else None
-        )
-        written.relate("reference", origin=stage, referenced=made)
-        stage.say("temperature", temperature_lubricant=oil.temperature)
+    _oil(written, part, stage, name)
     found = results.values
     for key, attribute in _OF_STAGE.items():
         if (value := found.get(f"{name}.{key}")) is not None:
@@ -211,6 +214,22 @@ def _stage(
         stage.say("line load", load_distribution_along_face_width=[q for _, q in rows])
 
 
+def _oil(written: Written, part: PairPart, stage: Part, name: str) -> None:
+    """The lubricant of a pair and its temperature, with its stage."""
+    oil = part.lubricant
+    if oil is None:
+        return
+    left_out(written, f"Pair {name}, lubricant", oil, _OIL)
+    made = written.part("lubricant", f"{name}, lubricant").word(kind="oil")
+    made.word(lubricant_type_iso_6336_2019=next(rexs for rexs, case in OILS.items() if case == oil.kind))
+    made.say(
+        "viscosity", viscosity_at_40_degree_celsius=oil.viscosity_40, viscosity_at_100_degree_celsius=oil.viscosity_100
+    )
+    made.say("density", density_at_15_degree_celsius=oil.density_15 if "density_15" in oil.model_fields_set else None)
+    written.relate("reference", origin=stage, referenced=made)
+    stage.say("temperature", temperature_lubricant=oil.temperature)
+
+
 def _set(
     written: Written, scene: Scene, name: str, part: PlanetaryPart, gears: Mapping[str, Part], bodies: _Bodies,
     around: tuple[Part, Part],
@@ -221,27 +240,34 @@ def _set(
     sun, ring = gears[part.sun], gears[str(part.ring)]
     distance = scene.pairs[set_pair(name, "sun")].centre_distance
     whole, carrier = written.part("planetary_stage", name), written.part("planet_carrier")
-    turning = place(written.part("shaft", f"{name}, carrier"))
+    start, across, up = _axis(scene, part, bodies)
+    turning = place(written.part("shaft", f"{name}, carrier"), (start, across, up))
     written.relate("assembly", assembly=unit, part=whole)
     written.relate("assembly", assembly=whole, part=carrier)
     written.relate("assembly", assembly=carrier, part=turning)
-    if part.angles is not None:
-        written.remarks.append(f"Set {name}: angles not written to REXS.")
-    for n in range(part.count):
+    stiff = part.stiffness
+    left_out(written, f"Set {name}, stiffness", stiff, {"pin", "sun", "ring", "carrier", "turning"})
+    for n, angle in enumerate(angles_of(part)):
+        there = start, across + distance * math.cos(angle), up + distance * math.sin(angle)
         planet = gears[part.planet] if n == 0 else write_gear(written, scene, part.planet)
-        own, pin = (place(written.part("shaft", f"{name}, {what} {n + 1}"), (0.0, distance, 0.0))
-                    for what in ("planet", "pin"))  # fmt: skip
-        bearing = written.part("concept_bearing", f"{name}, pin {n + 1}")
+        own, pin = (place(written.part("shaft", f"{name}, {what} {n + 1}"), there) for what in ("planet", "pin"))
+        bearing = written.part("concept_bearing", f"{name}, pin {n + 1}").say("stiffness", radial_stiffness=stiff.pin)
         written.relate("assembly", assembly=own, part=planet)
         written.relate("assembly", assembly=carrier, part=pin)
         written.relate("side", assembly=bearing, outer_part=own, inner_part=pin)
-        for first, second in ((sun, planet), (planet, ring)):
+        for mesh, first, second in zip(MESHES, (sun, planet), (planet, ring), strict=True):
             stage = written.part("cylindrical_stage").say("length", center_distance=distance)
+            _oil(written, scene.case.pair[set_pair(name, mesh)], stage, f"{name}, {mesh} {n + 1}")
             written.relate("assembly", assembly=whole, part=stage)
             written.relate("stage", stage=stage, gear_1=first, gear_2=second)
     bodies.join(bodies.shaft[part.sun].id, bodies.shaft[str(part.ring)].id, turning.id)
     members = {"sun": bodies.shaft[part.sun], "ring": bodies.shaft[str(part.ring)], "carrier": turning}
-    held = written.part("coupling", f"{name}, {part.fixed} held")
+    _supports(written, name, part, members, casing)
+    held = written.part("coupling", f"{name}, {part.fixed} held").say(
+        "tilting stiffness", rotational_stiffness=stiff.turning
+    )
+    if part.fixed in part.floating:
+        held.say("stiffness", radial_stiffness=0.0)
     written.relate("side", assembly=held, inner_part=members[part.fixed], outer_part=casing)
     teeth = set_teeth(scene.case, part)
     share = {"sun": teeth.sun, "ring": teeth.ring, "carrier": -teeth.sun - teeth.ring}
@@ -253,6 +279,30 @@ def _set(
         if role != part.fixed:
             torque = sense * part.torque * share[role] / share[part.input]
             bodies.torques.setdefault(member.id, []).append(torque)
+
+
+def _axis(scene: Scene, part: PlanetaryPart, bodies: _Bodies) -> tuple[float, float, float]:
+    """Where the axis of a set begins [m], along u, v and w: as the shaft of its sun or ring stands, else at zero."""
+    members = [bodies.shaft[str(gear)] for gear in (part.sun, part.ring)]
+    placed = [scene.case.shaft[one.name] for one in members if one.name in scene.case.shaft]
+    at = (placed[0].start, placed[0].axis[0], placed[0].axis[1]) if placed else (0.0, 0.0, 0.0)
+    for one in members:
+        if one.name not in scene.case.shaft and not any(key == "support_vector" for key, _, _ in one.attributes):
+            place(one, at)
+    return at
+
+
+def _supports(written: Written, name: str, part: PlanetaryPart, members: Mapping[str, Part], casing: Part) -> None:
+    """Bearings of the members that do not float, where that is not the default of a case."""
+    given = {role: getattr(part.stiffness, role) for role in members}
+    if part.floating == ["sun"] and not any(given.values()):
+        return
+    for role, shaft in members.items():
+        if role in part.floating:
+            continue
+        bearing = written.part("concept_bearing", f"{name}, bearing of the {role}")
+        bearing.say("stiffness", radial_stiffness=given[role]).say("length", u_coordinate_on_shaft_inner_side=0.0)
+        written.relate("side", assembly=bearing, inner_part=shaft, outer_part=casing)
 
 
 def _lives(unit: Part, pairs: Mapping[str, PairPart]) -> None:

@@ -52,13 +52,16 @@ def write_gear(written: Written, scene: Scene, name: str) -> Part:
     """
     gear, part = scene.gears[name], scene.case.gear[name]
     rim = 0.0 if part.rim_thickness is None else part.rim_thickness / gear.module
-    usual = {"rim_thickness"} if part.internal and abs(rim - USUAL_RING_RIM) < _ROUNDED else set()
+    outer = part.outer_radius
+    if part.internal and outer is None and rim and abs(rim - USUAL_RING_RIM) > _ROUNDED:
+        outer = gear.root_radius + rim * gear.module
+    usual = {"rim_thickness", "outer_radius"} if part.internal else set()
     left_out(written, f"Gear {name}", part, _GEAR | usual)
     made = written.part("ring_gear" if part.internal else "cylindrical_gear", name)
     sign = -1.0 if part.hand == "left" else 1.0
     made.say(
         "length", normal_module=gear.module, face_width=gear.face_width, inner_diameter=_twice(part.bore_radius),
-        tip_diameter=_tip(gear, part),
+        outer_diameter=_twice(outer),        tip_diameter=_tip(gear, part),
     )  # fmt: skip
     made.say("number", number_of_teeth=float(part.teeth))
     made.say("angle", helix_angle_reference_diameter=sign * gear.tooth.helix_angle if part.has_helix else None)
