@@ -1,0 +1,172 @@
+"""The small net: what cheap runs give, all results among them, compared with what is kept in ``small_net.json``.
+
+    python tests/golden/small_net.py [RUN ...] [--accept]
+
+The golden net (net.py) computes every case at its own tolerance, digit by digit, and takes hours of a processor; this
+one is part of the ordinary tests and notices a wrong line of code: of every column, value and figure it keeps the
+number of numbers, the smallest, largest and mean, and a sum in which every number has a weight of its own, so that none
+changes place unnoticed. Words do not count, nor differences below a millionth of the largest number.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+KEPT = Path(__file__).with_suffix(".json")
+COARSE = {"accuracy.tolerance": 0.1}
+#: Cases of ``cases/`` with what makes them cheap.
+RUNS = {
+    "blankenship_singh": {"transmissibility.I.frequencies": 60},
+    "cornell_test_gear": COARSE,
+    "four_square_dynamics": {},
+    "four_square_minimum_excitation": {},
+    "high_contact_ratio": COARSE,
+    "lin_table1": COARSE,
+    "litvin_localised": {},
+    "litvin_profile_angle": {},
+    "mark_minimum_excitation": {},
+    "mark_tip_relief": {},
+    "measured_flanks": {"accuracy.tolerance": 0.2},
+    "pinion_and_wheel": COARSE,
+    "planet_and_ring": COARSE,
+    "planetary_set": {},
+    "planets_in_ring_gear": COARSE,
+    "rating_helical": {},
+    "rating_spur": {},
+    "ring_gear": COARSE,
+    "spur_misaligned": {"accuracy.tolerance": 0.2},
+    "surface_and_loss": COARSE,
+    "thin_rim": COARSE,
+    "two_stage_shafts": {},
+}
+#: Share of the largest number below which a difference is another processor's.
+NOISE = 1e-6
+
+
+def kept_of(values):
+    """What is kept of numbers: how many, smallest, largest, mean, weighted sum over the largest; [] of no numbers."""
+    flat = np.ravel(values)
+    if flat.dtype.kind == "c":
+        flat = np.concatenate([flat.real, flat.imag])
+    if flat.dtype.kind not in "fiub":
+        return []
+    flat = flat.astype(float)
+    finite = np.isfinite(flat)
+    numbers = np.where(finite, flat, 0.0)
+    weights = np.cos(1.0 + 2.399963 * np.arange(flat.size))  # turned by the golden angle: no two alike
+    told = (
+        [int(finite.sum()), numbers.min(), numbers.max(), numbers.mean(), (weights * numbers).mean()]
+        if flat.size
+        else []
+    )
+    return [one if isinstance(one, int) else float(f"{one:.9g}") for one in told]
+
+
+def _numbers(thing, into):
+    """All numbers of a description of a figure."""
+    import dataclasses
+
+    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+        thing = [getattr(thing, field.name) for field in dataclasses.fields(thing)]
+    if isinstance(thing, dict):
+        thing = list(thing.values())
+    if isinstance(thing, np.ndarray):
+        into.append(np.ravel(thing))
+    elif isinstance(thing, (int, float)):
+        into.append(np.array([float(thing)]))
+    elif isinstance(thing, (list, tuple)):
+        for one in thing:
+            _numbers(one, into)
+
+
+def of_figure(figure):
+    """What is kept of the numbers of a figure."""
+    parts = []
+    _numbers(figure.made(), parts)
+    parts = [part.astype(float) for part in parts if part.dtype.kind in "fiub"]
+    return kept_of(np.concatenate(parts)) if parts else []
+
+
+def of_run(found):
+    """What is kept of a run, by name."""
+    kept = {}
+    for table in found.tables:
+        for column in table.columns:
+            if table.name.startswith("grindable") and column.name.endswith("_error"):
+                continue  # of a flat optimum: another processor finds another one
+            kept[f"{table.name} / {column.name} [{column.unit}]"] = kept_of(column.values)
+    for value in found.values:
+        error = [] if value.error is None else [float(f"{value.error:.9g}")]
+        kept[f"value {value.name} [{value.unit}]"] = [float(f"{value.value:.9g}"), *error]
+    for figure in found.figures:
+        kept[f"figure {figure.name}"] = of_figure(figure)
+    return kept
+
+
+def computed(name, cache=None):
+    """Run a case in this process."""
+    import fegear
+    from fegear.base.solution_cache import SolutionCache
+
+    return fegear.run(ROOT / "cases" / f"{name}.toml", RUNS[name], progress=False, cache=cache or SolutionCache())
+
+
+def kept():
+    """All that is kept, by run."""
+    return json.loads(KEPT.read_text("utf-8")) if KEPT.exists() else {}
+
+
+def differences(old, new):
+    """What differs, in words."""
+    said = [f"{name} is lost" for name in old if name not in new] + [
+        f"{name} is new" for name in new if name not in old
+    ]
+    for name in old:
+        if name in new and not _same(name, old[name], new[name]):
+            said.append(f"{name}: {old[name]} was kept, {new[name]} is found")
+    return said
+
+
+def _same(name, old, new):
+    """Whether two summaries say the same numbers; errors, which are estimates, to a hundredth."""
+    if len(old) != len(new):
+        return False
+    of_value = name.startswith("value ")
+    size = 0.0 if of_value else max((abs(one) for one in (*old[1:], *new[1:])), default=0.0)
+    for place, (one, other) in enumerate(zip(old, new, strict=True)):
+        error = "_error" in name or (of_value and place == 1)
+        loose, least = (1e-2, 1e-4) if error else (NOISE, 1e-6)
+        if one != other and not abs(one - other) <= loose * max(size, abs(one), least):
+            return False
+    return True
+
+
+def main():
+    """Compare, or keep."""
+    wishes = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    wishes.add_argument("runs", nargs="*", metavar="RUN")
+    wishes.add_argument("--accept", action="store_true", help="keep what is found")
+    asked = wishes.parse_args()
+    known, changed = kept(), 0
+    for name in asked.runs or RUNS:
+        new = of_run(computed(name))
+        said = differences(known.get(name, {}), new)
+        changed += len(said)
+        print(f"{name}: {len(said)} differences", *said[:20], sep="\n  ")
+        known[name] = new if asked.accept else known.get(name, {})
+    if asked.accept:
+        runs = []
+        for name in sorted(RUNS):
+            lines = [f"  {json.dumps(key)}: {json.dumps(one)}" for key, one in known[name].items()]
+            runs.append(f" {json.dumps(name)}: {{\n" + ",\n".join(lines) + "\n }")
+        KEPT.write_text("{\n" + ",\n".join(runs) + "\n}\n", encoding="utf-8")
+    elif changed:
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,378 @@
+"""Which wrong lines would the ordinary tests notice? A long run, by hand; nothing of it is part of the ordinary tests.
+
+    python tests/mutation/run.py record               once, some 20 minutes: which test executes which line of fegear
+    python tests/mutation/run.py record tests/unit    again those of a folder or file, after tests were added
+    python tests/mutation/run.py draw 200 --seed 1    200 wrong lines, each in turn, against the tests that execute it
+
+Every mutant is put into a copy of the repository. The tests that execute its line run nearest and cheapest first until
+one fails. A test that takes 15 times as long as usual has failed: it may never end. A line that no test executes
+survives at once. Tests of `tests/architecture`, which read the source, do not count.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import contextlib
+import difflib
+import functools
+import importlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+WORK = ROOT / ".mutation"
+RECORDED = WORK / "tree"
+sys.path.insert(0, str(HERE))
+from mutants import Mutant, draw  # noqa: E402
+
+#: Tests of the first rounds: most mutants end there, and few files are collected for them.
+ROUNDS = (15, 120, 10**6)
+#: Seconds of a processor for the tests of one mutant; what is left of them is said.
+BUDGET = 150.0
+#: Functions that numba compiles leave no trace: those who call them do.
+COMPILED, CALLERS = "fegear/dynamics/motion/kernel/", "fegear/dynamics/motion/motion.py"
+HEAVY = [
+    *("numpy", "scipy.optimize", "scipy.interpolate", "scipy.sparse.linalg", "scipy.integrate", "scipy.stats"),
+    *("pytest", "hypothesis.strategies", "pint", "pydantic", "skfem", "gmsh", "meshio", "typer", "numba"),
+]
+
+
+def copied(to: Path) -> Path:
+    """A fresh copy of the repository's files, those that git does not know yet, too."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    names = subprocess.run(command, cwd=ROOT, capture_output=True, check=True).stdout.decode().split("\0")
+    shutil.rmtree(to, ignore_errors=True)
+    for name in filter(None, names):
+        if (ROOT / name).is_file():
+            (to / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, to / name)
+    return to
+
+
+def environment(tree: Path, **more: str) -> dict[str, str]:
+    """What programs see: this tree, one thread, and caches of nobody else."""
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    return os.environ | threads | {"PYTHONPATH": str(tree)} | more
+
+
+def record(tests: list[str]) -> None:
+    """Run the ordinary tests under `coverage`, the named ones only if there are any."""
+    tree, lines = copied(RECORDED), WORK / "lines"
+    if not tests:
+        shutil.rmtree(lines, ignore_errors=True)
+    lines.mkdir(exist_ok=True)
+    settings = WORK / "coveragerc"
+    settings.write_text(
+        f"[run]\nsource = {tree / 'fegear'}\ndata_file = {lines / 'coverage'}\nparallel = true\n"
+        "patch = subprocess\nsigterm = true\ncontext = ${MUTATION_TEST-}\n"
+    )
+    found = WORK / f"found-{time.time_ns()}.json"
+    asked = environment(tree, MUTATION_FOUND=str(found), FEGEAR_CACHE=str(WORK / "cache"))
+    asked["PYTHONPATH"] += os.pathsep + str(HERE)
+    command = ["coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-n", "0", "-p", "no:cacheprovider"]
+    given = tests or ["--ignore=tests/architecture", "tests"]
+    subprocess.run([sys.executable, "-m", *command, "-p", "recording", *given], cwd=tree, env=asked, check=False)
+    subprocess.run(
+        [sys.executable, "-m", "coverage", "combine", "--append", f"--rcfile={settings}"], cwd=tree, check=False
+    )
+    known = WORK / "found.json"
+    before = json.loads(known.read_text()) if tests and known.exists() else {}
+    new = json.loads(found.read_text())
+    known.write_text(json.dumps({key: before.get(key, {}) | new[key] for key in ("seconds", "heirs", "failed")}))
+    found.unlink()
+
+
+class Record:
+    """Which tests execute a line, nearest and cheapest first."""
+
+    def __init__(self) -> None:
+        from coverage import CoverageData
+
+        self.lines = CoverageData(str(WORK / "lines" / "coverage"))
+        self.lines.read()
+        found = json.loads((WORK / "found.json").read_text())
+        self.seconds = {name: taken for name, taken in found["seconds"].items() if name not in found["failed"]}
+        self.heirs = found["heirs"]
+        self.of_file = defaultdict(list)
+        for name in self.seconds:
+            self.of_file[name.split("::")[0]].append(name)
+
+    @functools.cached_property
+    def texts(self) -> dict[str, str]:
+        """What the test files say."""
+        return {name: (ROOT / name).read_text() for name in self.of_file if (ROOT / name).exists()}
+
+    @functools.cached_property
+    def importers(self) -> dict[tuple[str, str], set[str]]:
+        """Modules that import a name of a module."""
+        found = defaultdict(set)
+        for path in (ROOT / "fegear").rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_bytes())):
+                if isinstance(node, ast.ImportFrom):
+                    for one in node.names:
+                        found[f"{node.module}", one.name].add(path.relative_to(ROOT).as_posix())
+        return found
+
+    @functools.lru_cache(maxsize=8)  # noqa: B019
+    def contexts(self, path: str) -> tuple[dict[int, set[str]], dict[int, int]]:
+        """Tests by line of a recorded file, and the recorded line of each line of today."""
+        recorded = RECORDED / path
+        if not recorded.exists():
+            return {}, {}
+        by_line = {
+            line: {part for name in names for part in ({name} if name in self.seconds else name.split("|"))}
+            for line, names in self.lines.contexts_by_lineno(str(recorded)).items()
+        }
+        old, new = recorded.read_text().splitlines(), (ROOT / path).read_text().splitlines()
+        blocks = difflib.SequenceMatcher(None, old, new, autojunk=False).get_matching_blocks()
+        return by_line, {b.b + k + 1: b.a + k + 1 for b in blocks for k in range(b.size)}
+
+    def executed(self, path: str, lines: set[int]) -> set[str]:
+        """Contexts that execute one of these lines."""
+        by_line, recorded = self.contexts(path)
+        return {name for line in lines for name in by_line.get(recorded.get(line, 0), ())}
+
+    def tests(self, mutant: Mutant) -> list[str]:
+        """Those that execute its line, or use what it made; for what is made at import, those that run what uses it."""
+        path, tree = mutant.path, ast.parse((ROOT / mutant.path).read_bytes())
+        inner, outer = _statements(tree, mutant.line)
+        if path.startswith(COMPILED):
+            found = self.executed(CALLERS, _function_lines(CALLERS))
+        elif isinstance(outer[-1], ast.FunctionDef):
+            found = self.executed(path, inner)
+        else:
+            names = {one.id for one in ast.walk(outer[0]) if isinstance(one, ast.Name)} | {
+                getattr(outer[0], "name", "")
+            }
+            module = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+            users = {path}.union(*(self.importers[module, name] for name in names))
+            found = set().union(*(self.executed(user, _function_lines(user)) for user in users))
+        more = {heir for name in found for heir in self.heirs.get(name, ())}
+        files = {name.split("::")[0] for name in found if "::" in name}
+        remembering = [
+            one for one in files if "scope=" in self.texts.get(one, "") or "cache" in self.texts.get(one, "")
+        ]
+        more |= {name for one in remembering for name in self.of_file[one]}
+        more |= {name for one in found if one.endswith("::*") for name in self.of_file[one[:-3]]}
+        near = module_imports(path)
+        far = {name: not any(said in self.texts.get(name.split("::")[0], "") for said in near) for name in self.seconds}
+        first = sorted(found & set(self.seconds), key=lambda name: (far[name], self.seconds[name]))
+        return first + sorted((more - found) & set(self.seconds), key=self.seconds.__getitem__)
+
+
+def module_imports(path: str) -> tuple[str, str]:
+    """How a test that is about a module imports it."""
+    parts = path.removesuffix(".py").removesuffix("/__init__").split("/")
+    return f"from {'.'.join(parts)} import", f"from {'.'.join(parts[:-1])} import {parts[-1]}"
+
+
+def _statements(tree: ast.Module, line: int) -> tuple[set[int], list[ast.stmt]]:
+    """Lines of the innermost statement at a line, and the definitions around it (the statement if there are none)."""
+    around = [
+        node for node in ast.walk(tree) if isinstance(node, ast.stmt) and node.lineno <= line <= node.end_lineno
+    ]  # outermost first  # fmt: skip
+    inner = around[-1]
+    body = getattr(inner, "body", None)
+    last = inner.end_lineno if not body or isinstance(inner, ast.FunctionDef) else body[0].lineno - 1
+    outer = [node for node in around if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    return set(range(inner.lineno, last + 1)), outer or [inner]
+
+
+@functools.cache
+def _function_lines(path: str) -> set[int]:
+    tree = ast.parse((ROOT / path).read_bytes())
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    return {line for node in functions for line in range(node.body[0].lineno, node.end_lineno + 1)}
+
+
+@dataclass
+class Outcome:
+    """What became of a mutant: the test that noticed it, or how many did not."""
+
+    mutant: Mutant
+    killer: str = ""
+    tests: int = 0
+    left: int = 0
+    seconds: float = 0.0
+
+
+class _Chosen:
+    """Plugin of pytest: only these tests, in this order; a test that takes far too long ends the process."""
+
+    def __init__(self, names: list[str], limits: dict[str, float], told: Path) -> None:
+        self.names, self.limits, self.told = names, limits, told
+
+    def pytest_collection_modifyitems(self, items):
+        by_name = {item.nodeid: item for item in items}
+        items[:] = [by_name[name] for name in self.names if name in by_name]
+
+    def pytest_runtest_logstart(self, nodeid):
+        self.told.write_text(nodeid)
+        signal.setitimer(signal.ITIMER_VIRTUAL, 20.0 + 15.0 * self.limits.get(nodeid, 1.0))
+
+    def pytest_runtest_logreport(self, report):
+        if report.failed:
+            self.told.write_text(report.nodeid)
+            os._exit(1)
+
+    def pytest_collectreport(self, report):
+        if report.failed:
+            self.told.write_text(f"collecting {report.nodeid}")
+            os._exit(1)
+
+
+def passed(tree: Path, names: list[str], seconds: dict[str, float]) -> str:
+    """Run tests in a process of their own; the one that failed, or nothing."""
+    for heavy in HEAVY:
+        importlib.import_module(heavy)
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = Path(folder)
+        if not (child := os.fork()):
+            _run_tests(tree, names, seconds, scratch)
+        limit, code = time.monotonic() + 300.0 + 10.0 * sum(seconds[name] for name in names), None
+        while code is None:
+            done, status = os.waitpid(child, os.WNOHANG)
+            code = os.waitstatus_to_exitcode(status) if done else None
+            if code is None:
+                time.sleep(0.05)
+            if time.monotonic() > limit:
+                os.kill(child, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # programs that its tests left behind
+            os.killpg(child, signal.SIGKILL)
+        told = scratch / "told"
+        if code and not told.exists():
+            raise RuntimeError(f"no test could run:\n{(scratch / 'out').read_text()}")
+        return "" if not code else told.read_text() + ("" if code == 1 else f" (ended by signal {-code})")
+
+
+def _run_tests(tree: Path, names: list[str], seconds: dict[str, float], scratch: Path) -> None:
+    """In the child: pytest on a copy of the repository, and the end of the process."""
+    import pytest
+
+    os.setsid()
+    os.chdir(tree)
+    os.environ.update(environment(tree, FEGEAR_CACHE=str(scratch / "cache"), FEGEAR_STATE=str(scratch / "state")))
+    sys.path[:] = [str(tree), *(one for one in sys.path if Path(one or ".").resolve() not in (HERE, ROOT))]
+    out = os.open(scratch / "out", os.O_CREAT | os.O_WRONLY)
+    os.dup2(out, 1)
+    os.dup2(out, 2)
+    files = list(dict.fromkeys(name.split("::")[0] for name in names))
+    options = ["-n", "0", "-p", "no:cacheprovider", "--basetemp", str(scratch / "tmp")]
+    os._exit(pytest.main([*options, *files], plugins=[_Chosen(names, seconds, scratch / "told")]))
+
+
+def tried(asked: tuple[Mutant, list[str], dict[str, float]]) -> Outcome:
+    """Put a mutant into this process's copy of the repository and run its tests."""
+    mutant, names, taken = asked
+    tree = _own_tree()
+    outcome, started, spent = Outcome(mutant), time.monotonic(), 0.0
+    path = tree / mutant.path
+    source = path.read_bytes()
+    os.environ["NUMBA_CACHE_DIR"] = str(tree / (f"numba-{mutant.start}" if "motion" in mutant.path else "numba"))
+    try:
+        _written(path, mutant.applied(source))
+        for first, last in zip((0, *ROUNDS), ROUNDS, strict=False):
+            part = []
+            for name in names[first:last]:
+                spent += taken[name]
+                part += [name] if spent < BUDGET or not first else []
+            if part and not outcome.killer:
+                outcome.killer = passed(tree, part, taken)
+                outcome.tests += len(part)
+    finally:
+        _written(path, source)
+    outcome.left = 0 if outcome.killer else len(names) - outcome.tests
+    outcome.seconds = time.monotonic() - started
+    return outcome
+
+
+def _own_tree() -> Path:
+    """The copy of the repository that this process changes."""
+    tree = WORK / f"run-{os.getpid()}"
+    return tree if tree.exists() else copied(tree)
+
+
+def _written(path: Path, source: bytes) -> None:
+    """Write a module and forget its bytecode: Python compares whole seconds and sizes."""
+    path.write_bytes(source)
+    for kept in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
+        kept.unlink()
+
+
+def main() -> None:
+    """See the module's docstring."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    doing = parser.add_subparsers(dest="doing", required=True)
+    doing.add_parser("record").add_argument("tests", nargs="*")
+    drawing = doing.add_parser("draw")
+    drawing.add_argument("count", type=int)
+    drawing.add_argument("--seed", type=int, required=True)
+    drawing.add_argument("--rooms", default="", help="only these, with commas between them")
+    drawing.add_argument("--workers", type=int, default=1)
+    asked = parser.parse_args()
+    WORK.mkdir(exist_ok=True)
+    if asked.doing == "record":
+        record(asked.tests)
+        return
+    known, rooms = Record(), tuple(filter(None, asked.rooms.split(",")))
+    report(list(draw(ROOT, asked.count, asked.seed, rooms)), known, asked.workers, WORK / f"drawn-{asked.seed}.json")
+
+
+def report(mutants: list[Mutant], known: Record, workers: int, kept: Path) -> None:
+    """Try all, say each survivor at once and what each room kept in the end."""
+    tests = {mutant: known.tests(mutant) for mutant in mutants}
+    taken = known.seconds
+    outcomes: list[Outcome] = []
+    with ProcessPoolExecutor(workers, mp_context=get_context("fork")) as pool:
+        for outcome in pool.map(tried, [(mutant, tests[mutant], taken) for mutant in mutants]):
+            outcomes.append(outcome)
+            said(outcome)
+            print(f"{len(outcomes)} of {len(mutants)}", end="\r", file=sys.stderr, flush=True)
+        # A test that fails without any mutant has noticed nothing.
+        names = sorted({outcome.killer.split(" (ended")[0] for outcome in outcomes} & set(taken))
+        failing = {name for name, fails in zip(names, pool.map(_alone, names), strict=True) if fails}
+        again = [outcome for outcome in outcomes if outcome.killer.split(" (ended")[0] in failing]
+        left = [(one.mutant, [name for name in tests[one.mutant] if name not in failing], taken) for one in again]
+        outcomes = [outcome for outcome in outcomes if outcome not in again]
+        for outcome in pool.map(tried, left):
+            outcomes.append(outcome)
+            said(outcome)
+    for tree in WORK.glob("run-*"):
+        shutil.rmtree(tree)
+    kept.write_text(json.dumps([asdict(outcome) for outcome in outcomes], indent=1))
+    rooms = defaultdict(list)
+    for outcome in outcomes:
+        rooms[outcome.mutant.room].append(bool(outcome.killer))
+        rooms["all"].append(bool(outcome.killer))
+    for room, noticed in sorted(rooms.items(), key=lambda item: (item[0] == "all", item[0])):
+        print(f"{room:12} {sum(noticed):4} of {len(noticed):4}  {100 * sum(noticed) / len(noticed):5.1f} %")
+    print(f"{sum(one.seconds for one in outcomes):.0f} s; fail without a mutant:", *sorted(failing))
+
+
+def said(outcome: Outcome) -> None:
+    """A survivor as it is found."""
+    if not outcome.killer:
+        shown = outcome.mutant.shown((ROOT / outcome.mutant.path).read_bytes())
+        more = f", {outcome.left} not run" if outcome.left else ""
+        print(f"survived {outcome.tests} tests{more}: {shown}", flush=True)
+
+
+def _alone(name: str) -> str:
+    return passed(_own_tree(), [name], {name: 30.0})
+
+
+if __name__ == "__main__":
+    main()
