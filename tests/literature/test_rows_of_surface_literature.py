@@ -74,12 +74,16 @@ def test_mean_friction_of_four_laws_by_hand():
         assert found == pytest.approx(factor * base, rel=1e-12), law
         assert friction.mean_friction(law, SURFACE, 0.0, v, rho * 1e-3) == 0.0
         assert friction.mean_friction(law, SURFACE, 300e3, 1e-12, rho * 1e-3) == friction.LARGEST == 0.5
-    # part 21 counts 150 N/mm at least
-    light, least = (friction.mean_friction("iso-6336-21", SURFACE, load, v, 12e-3) for load in (20e3, 150e3))
-    assert light == least == pytest.approx(0.045 * (150 / 96) ** 0.2 * eta**-0.05 * 2.2 * (0.5 / 12) ** 0.25, rel=1e-12)
-    assert friction.mean_friction("schlenk", SURFACE, 20e3, v, 12e-3) < friction.mean_friction(
-        "schlenk", SURFACE, 150e3, v, 12e-3
-    )
+    # part 21 counts 150 N/mm at least, and F_t as part 20 does
+    pair = micro.fzg_type_a()
+    inclined = math.cos(pair.driver.transverse_pressure_angle)
+    for load in (20e3, 300e3):
+        laws = {law: float(friction.law_load(law, pair, load)) for law in friction.MEAN_LAWS}
+        assert laws == pytest.approx({
+            "schlenk": load, "iso-6336-20": load * inclined, "iso-6336-21": max(load * inclined, 150e3),
+            "iso-6336-22": load,
+        }, rel=1e-12)  # fmt: skip
+    assert friction.law_load("iso-6336-21", pair, 0.0) == 0.0
     # Schlenk's X_L of polyglycols: .75 (6/v)^.2
     for kind in ("polyglycol", "water-soluble-polyglycol"):
         glycol = friction.Surface(lubricant.Oil(220e-6, 19e-6, kind=kind), 60.0, 0.5e-6)
