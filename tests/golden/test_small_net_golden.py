@@ -92,8 +92,7 @@ def check_modes(data, _name, _found):
     assert (np.diff(data["frequency"]) >= 0.0).all()
     energies = [data[key] for key in data if key.startswith("energy_")]
     if energies:
-        moving = data["frequency"] > 1e-6 * data["frequency"].max()
-        close(np.sum(energies, axis=0), moving.astype(float), 1e-6)
+        assert (np.sum(energies, axis=0) <= 1.0 + 1e-9).all()  # the rest is in the shafts
 
 
 def check_spectrum(data, name, found):
@@ -178,14 +177,14 @@ def check_planets(data, _name, _found):
     assert ((data["apart_sun"] >= 0.0) & (data["apart_sun"] <= 1.0)).all()
 
 
-def check_over_face(data, _name, found):
+def check_over_face(data, name, found):
     assert (data["least_line_load"] <= data["mean_line_load"]).all()
     assert (data["mean_line_load"] <= data["largest_line_load"] * (1 + 1e-12)).all()
     close(
         data["factor"] / data["mean_line_load"], np.full(data["z"].size, data["factor"][0] / data["mean_line_load"][0])
     )
     assert (np.diff(data["z"]) > 0.0).all()
-    assert data["factor"].max() <= number_of(found, "I.K_Hbeta") * (1.0 + 1e-6)
+    assert data["factor"].max() <= number_of(found, f"{name.removeprefix('load_over_face_')}.K_Hbeta") * (1.0 + 1e-6)
 
 
 def check_over_roll(data, _name, _found):
