@@ -17,6 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 
+#: Ratio of neighbouring distances above which round-off in the nearer value would decide the vertex of a parabola.
+_UNEVEN = 8.0
+
 
 @dataclass(frozen=True, slots=True)
 class Panels:
@@ -27,7 +30,7 @@ class Panels:
     x : ndarray, shape (Q,)
         Points [m], ascending.
     weights : ndarray, shape (Q,)
-        [m]; they add up to the period.
+        [m]; they add up to the period. Zero at points beside break points that are there for extremes only.
     period : float
         [m].
     breaks : ndarray
@@ -39,8 +42,34 @@ class Panels:
     period: float
     breaks: Array
 
+    def highest(self, values: Array) -> float:
+        """Largest value of a function known at the points, shape (Q,), and between them where it turns smoothly.
 
-def panels(start: float, period: float, breaks: ArrayLike = (), waves: int = 12, order: int = 16) -> Panels:
+        Between three points of one piece, the highest in the middle, it is the vertex of the parabola through them;
+        not where they stand too unevenly for that, beside break points, where they are close together anyway.
+        """
+        i = int(np.argmax(values))
+        top = float(values[i])
+        piece = np.searchsorted(self.breaks, self.x[max(i - 1, 0) : i + 2], side="right")
+        if piece.size < 3 or piece[0] != piece[2]:
+            return top
+        before, after = self.x[i] - self.x[i - 1], self.x[i + 1] - self.x[i]
+        falls, rises = (top - values[i + 1]) / after, (top - values[i - 1]) / before
+        bend = (falls + rises) / (before + after)
+        if not bend > 0.0 or max(before, after) > _UNEVEN * min(before, after):
+            return top
+        slope = (rises * after - falls * before) / (before + after)
+        return top + float(slope * slope / (4.0 * bend))
+
+
+#: Distance from break points at which both sides of them are looked at [periods]: beyond the slack that a pair at the
+#: end of the path is given.
+SIDE = 1e-9
+
+
+def panels(
+    start: float, period: float, breaks: ArrayLike = (), waves: int = 12, order: int = 16, *, ends: bool = False
+) -> Panels:
     """Lay composite Gauss quadrature over one period, between break points.
 
     Each piece is mapped by 3 s^2 - 2 s^3, which crowds the points at its ends: where a pair comes into contact the load
@@ -56,6 +85,8 @@ def panels(start: float, period: float, breaks: ArrayLike = (), waves: int = 12,
         Highest harmonic that will be asked for; about two waves go to each subdivision.
     order : int
         Points per subdivision.
+    ends : bool
+        Whether points without weight stand beside the break points, where functions have their one-sided extremes.
     """
     inside = np.mod(np.asarray(breaks, dtype=float) - start, period)
     edges = np.unique(np.concatenate([[0.0], inside, [period]]))
@@ -68,8 +99,12 @@ def panels(start: float, period: float, breaks: ArrayLike = (), waves: int = 12,
     for a, b in pairwise(edges):
         parts = max(1, math.ceil(1.5 * waves * (b - a) / period / (0.16 * order)))
         s = (np.arange(parts)[:, None] + t).ravel() / parts
-        xs.append(a + (b - a) * s * s * (3.0 - 2.0 * s))
-        ws.append((b - a) * np.tile(w, parts) / parts * 6.0 * s * (1.0 - s))
+        at, weights = s * s * (3.0 - 2.0 * s), np.tile(w, parts) / parts * 6.0 * s * (1.0 - s)
+        aside = SIDE * period / (b - a)
+        if ends and aside < 0.25:
+            at, weights = np.concatenate([[aside], at, [1.0 - aside]]), np.concatenate([[0.0], weights, [0.0]])
+        xs.append(a + (b - a) * at)
+        ws.append((b - a) * weights)
     return Panels(start + np.concatenate(xs), np.concatenate(ws), period, start + edges)
 
 

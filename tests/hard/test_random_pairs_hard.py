@@ -155,3 +155,24 @@ def test_the_series_of_a_transmission_error_is_that_of_its_curve(e, log_line_loa
     harmonics = 0.5 * float((te.series.amplitude**2).sum())
     assert harmonics <= variance * (1.0 + 1e-6) + 1e-30
     assert te.peak_to_peak == pytest.approx(np.ptp(curve), rel=0.2, abs=1e-12)
+
+
+@pytest.mark.examples(25, 1000)
+@given(engagements(), st.floats(-1.0, 3.0))
+def test_extremes_and_mean_of_the_transmission_error_are_those_of_many_positions(e, log_line_load):
+    load = 10.0**log_line_load * 1e3 * FACE
+    found = transmission_error(e, load)
+    x = e.pair.x_start + e.pair.base_pitch * (np.arange(6000) + 0.5) / 6000
+    got = e.solve(e.grid(x, again=False), [load])
+    te = got.transmission_error[:, 0]
+    size, steps = np.ptp(te), np.abs(np.diff(te))
+    between = steps[steps < 0.05 * size].max(initial=0.0)  # two positions apart but for jumps
+    assert size * (1.0 - 4e-6) - 1e-9 * te.max() <= found.peak_to_peak <= size + 2.0 * between + 1e-9 * te.max()
+    assert found.mean == pytest.approx(te.mean(), abs=2e-4 * size + 1e-9 * te.max())
+    # Every change of contact among the many positions is one of its break points.
+    loaded = got.loads[:, :, 0] > 0.0
+    changes = np.flatnonzero((loaded[:, 1:] != loaded[:, :-1]).any(axis=0))
+    breaks = np.concatenate([found.points.breaks, e.breaks])
+    step = e.pair.base_pitch / 6000
+    for low, high in zip(x[changes], x[changes + 1], strict=True):
+        assert ((breaks > low - 1e-3 * step) & (breaks < high + 1e-3 * step)).any()

@@ -52,3 +52,12 @@ def test_two_pairs_of_teeth_that_close_in_together_do_not_stop_time(coupling, rp
     chart = speed_chart(model, [rpm * math.pi / 30.0], direction="static", tolerance=2e-3)
     assert 1.0 < chart.dynamic_factor[0] < 5.0
     assert 0.0 <= chart.apart[0] < 0.7
+
+
+@pytest.mark.parametrize("bottom", [0.3, 0.05, 0.031, 0.01])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_dips_below_zero_between_two_looks_is_seen_even_before_the_first(bottom, sign):
+    """A parabola that is below zero for a hundredth of the step, which is looked at in sixteen places."""
+    half = 0.004
+    row = sign * np.array([bottom**2 - half**2, -2.0 * bottom, 1.0, 0.0])
+    assert first_crossing(row, 1.0, sign, 1e-6) == pytest.approx(bottom - half, rel=1e-9)

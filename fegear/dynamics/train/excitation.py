@@ -16,7 +16,11 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
+from fegear.contact.changes import sign_changes
 from fegear.dynamics.train.periodic import Periodic, combine
+
+#: Divisions of a cell in which a spring comes to bear or lets go: to the last digit.
+_PASSES = 12
 
 
 @dataclass(frozen=True)
@@ -247,24 +251,16 @@ class MeshExcitation:
         cuts = cuts[np.append(True, np.diff(cuts) > 1e-12)]
         share = np.linspace(0.0, 1.0, 34)[1:-1]
         share = np.concatenate([[1e-9], share, [1.0 - 1e-9]])
-        brackets: list[tuple[float, float, int, bool]] = []
-        for a, b in pairwise(cuts):
-            s = a + (b - a) * share
+        samples = np.concatenate([a + (b - a) * share for a, b in pairwise(cuts)])
+        piece = np.repeat(np.arange(cuts.size - 1), share.size)
+
+        def nearness(s: Array) -> Array:
+            """How far the gears have approached beyond each separation [m]; nothing to say of springs without any."""
             approach = self.approach(load, s)
-            for slot, (k, m) in enumerate(zip(self.stiffness, self.separation, strict=True)):
-                if np.any(k(s) > 0.0):
-                    above = approach > m(s)
-                    changes = np.flatnonzero(above[1:] != above[:-1])
-                    brackets += [(s[n], s[n + 1], slot, bool(above[n])) for n in changes]
-        if not brackets:
-            return []
-        low, high, slots, before = (np.array(column) for column in zip(*brackets, strict=True))
-        own = slots.astype(int), np.arange(slots.size)
-        for _ in range(60):  # all of them together: each look costs the same for one as for many
-            middle = 0.5 * (low + high)
-            same = (self.approach(load, middle) > np.array([m(middle) for m in self.separation])[own]) == before
-            low, high = np.where(same, middle, low), np.where(same, high, middle)
-        return [float(place) for place in 0.5 * (low + high)]
+            slots = zip(self.stiffness, self.separation, strict=True)
+            return np.array([np.where(k(s) > 0.0, approach - m(s), -np.inf) for k, m in slots])
+
+        return sign_changes(nearness, samples, piece, _PASSES).tolist()
 
     def linearised(self, load: float, *, one_sided: bool = True) -> tuple[float, Periodic]:
         """Mean compliance [m/N] and fluctuating static transmission error [m]: the train of Mark's (2.9b)."""

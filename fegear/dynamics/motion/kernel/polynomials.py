@@ -15,6 +15,14 @@ def value_at(row: Any, t: float) -> float:
     return value
 
 
+def slope_at(row: Any, t: float) -> float:
+    """Its derivative."""
+    value = 0.0
+    for k in range(row.shape[0] - 1, 0, -1):
+        value = value * t + k * row[k]
+    return value
+
+
 def shift_in_time(row: Any, v: float, scale: float, out: Any) -> None:
     """Coefficients in time from here on, of a polynomial in v whose v advances by `scale` per unit time."""
     n = row.shape[0]
@@ -53,6 +61,20 @@ def _root(row: Any, low: float, high: float, sign: float) -> float:
     return high if sign * value_at(row, x) > 0.0 else x
 
 
+def _first_dip(row: Any, low: float, at_low: float, high: float, at_high: float, sign: float) -> float:
+    """Where sign * polynomial, positive at both ends of the first interval, is not so between them, or -1.
+
+    It is the bottom of the parabola through both values with the slope at the lower end.
+    """
+    fall = -sign * slope_at(row, low)
+    bend = (at_high - at_low) / (high - low) + fall
+    if fall > 0.0 and bend > 0.0:
+        bottom = low + 0.5 * fall * (high - low) / bend
+        if bottom < high and sign * value_at(row, bottom) <= 0.0:
+            return bottom
+    return -1.0
+
+
 def first_crossing(row: Any, h: float, sign: float, moment: float) -> float:
     """First time in (0, h] at which sign * polynomial is no longer positive, or -1.
 
@@ -81,6 +103,9 @@ def first_crossing(row: Any, h: float, sign: float, moment: float) -> float:
         value = sign * value_at(row, t)
         if value <= 0.0:
             return _root(row, before, t, sign)
+        bottom = _first_dip(row, before, last, t, value, sign) if j == 1 else -1.0
+        if bottom >= 0.0:
+            return _root(row, before, bottom, sign)
         if j > 1 and last < older and last <= value:
             # a dip between samples: look at the bottom of the parabola through them
             d1, d2 = (last - older) / (before - older_t), (value - last) / (t - before)
@@ -140,11 +165,3 @@ def largest_force(
             b = low + golden * (high - low)
             fb = sign * _load(force, slide, n_springs, mesh_of, m, pick, b, sign)
     return max(best, fa, fb)
-
-
-def slope_at(row: Any, t: float) -> float:
-    """Its derivative."""
-    value = 0.0
-    for k in range(row.shape[0] - 1, 0, -1):
-        value = value * t + k * row[k]
-    return value
