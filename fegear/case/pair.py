@@ -52,7 +52,7 @@ class CompliancePart(Part):
         default=None, description="Whether the table is of one tooth or of a pair of teeth."
     )
     fit: Literal["linear", "cubic"] | None = Field(
-        default=None, description="How the table is made continuous: straight lines, or a cubic spline."
+        default=None, description="How the table is made continuous: straight lines, or one cubic fitted to all of it."
     )
 
     @model_validator(mode="after")

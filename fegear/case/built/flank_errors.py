@@ -146,6 +146,12 @@ def _line_gap(scene: Scene, name: str) -> tuple[Array, Array]:
             raise InputError(
                 key, f'"{part.file}"', f"must cover the face, from {-half * 1e3:.6g} to {half * 1e3:.6g} mm"
             )
+        module, spread = scene.pairs[name].driver.module, float(np.ptp(columns["gap"]))
+        if spread > module:
+            raise InputError(
+                key, f"gap {spread * 1e6:.6g} um", f"exceeds the module of {module * 1e3:.6g} mm",
+                "check the unit in the head of the column",
+            )  # fmt: skip
         z, old = distinct(z, columns["z"]), z
         gap = np.interp(z, old, gap) + np.interp(z, columns["z"], columns["gap"])
     return z, gap

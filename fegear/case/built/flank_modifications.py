@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import build_relief
-from fegear.case.built.pair_inputs import gear_flanks, gear_name
+from fegear.case.built.pair_inputs import gear_flanks, gear_name, one_column
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.case.relief import BiasPart, LeadPart, TopographyPart
@@ -31,6 +31,9 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible import DEEPEST_RELIEF
 from fegear.geometry.relief import Relief, roll_of_radius
+
+#: Part of the face that a table over it may leave out at either end.
+_LEFT_OUT = 0.2
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,14 @@ class FaceModifications:
             if not end > start:
                 raise InputError(key, "start_radius and end_radius", "must ascend")
             found = (*found, Bias(self.bias.amount, start, end, gear.face_width))
+        for part in found:
+            if isinstance(part, Topography) and (part.roll[0] >= high or part.roll[-1] <= low):
+                raise InputError(
+                    f"gear.{self.gear}.topography",
+                    f"from roll angle {math.degrees(part.roll[0]):.5g} to {math.degrees(part.roll[-1]):.5g} deg",
+                    f"lies elsewhere than the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
+                    "check the units of its radii and angles",
+                )  # fmt: skip
         half = 0.5 * gear.face_width
         kinks = [k for part in found for k in part.face_kinks]
         z = np.union1d(np.linspace(-half, half, 65), np.clip(kinks, -half, half))
@@ -141,8 +152,21 @@ def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankMo
         columns = read_columns(scene.file(part.file, key), key, {"z": "length", "removal": "length"})
         if not {"z", "removal"} <= columns.keys() or not (np.diff(columns["z"]) > 0.0).all():
             raise InputError(key, f'"{part.file}"', "needs the columns z [mm], ascending, and removal [um]")
+        _refuse_uncovered(columns["z"], width, key)
         found.append(LeadTable(columns["z"], columns["removal"]))
     return found
+
+
+def _refuse_uncovered(z: Array, width: float, key: str) -> None:
+    """Refuse a table over the face that leaves much of it out: it is held at its ends there."""
+    half = 0.5 * width
+    missing = max(float(z.min()) + half, half - float(z.max()), 0.0) / width
+    if missing > _LEFT_OUT:
+        raise InputError(
+            key, f"z from {z.min() * 1e3:.6g} to {z.max() * 1e3:.6g} mm",
+            f"must cover the face, {-half * 1e3:.6g} to {half * 1e3:.6g} mm, but for a fifth of it at either end",
+            "give the whole face; check the unit of z and that it counts from mid-face",
+        )  # fmt: skip
 
 
 def _topography(scene: Scene, name: str, part: TopographyPart) -> Topography:
@@ -155,7 +179,8 @@ def _topography(scene: Scene, name: str, part: TopographyPart) -> Topography:
         raise InputError(
             key, f'"{part.file}"', "needs the columns roll_angle [deg] or radius [mm], z [mm] and removal [um]"
         )
-    at = columns["roll_angle"] if "roll_angle" in columns else columns["radius"]
+    at = columns[one_column(columns, ("roll_angle", "radius"), key, part.file)]
+    _refuse_uncovered(columns["z"], scene.gears[name].face_width, key)
     rows, i = np.unique(at, return_inverse=True)
     heights, k = np.unique(columns["z"], return_inverse=True)
     values = np.full((rows.size, heights.size), np.nan)

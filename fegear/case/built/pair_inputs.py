@@ -139,6 +139,11 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     assumed = effect_remarks(scene, name)
     if effects.relief:
         assumed += table_remarks(pair, (first, second))
+    if table is not None:
+        from fegear.contact.plane.table_compliance import table_note
+
+        if sentence := table_note(pair, table.x, part.compliance.of or "tooth"):
+            assumed += (f"Pair {name}: {sentence}",)
     return PairInputs(
         pair, part.compliance, table, own, (first, second), part.all_loads(pair), nominal, assumed, name
     )  # fmt: skip
@@ -247,7 +252,15 @@ def table_remarks(pair: GearPair, flanks: tuple[Flanks, Flanks]) -> tuple[str, .
 
 
 def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:
-    """Positions [m] and compliances [m/N] of the file that a pair names."""
+    """Positions [m] and compliances [m/N] of the file that a pair names.
+
+    Raises
+    ------
+    InputError
+        If it has not the columns, both kinds of positions or of compliances, or is none of this pair's teeth.
+    """
+    from fegear.contact.plane.table_compliance import refuse_table
+
     part, pair = scene.case.pair[name].compliance, scene.pairs[name]
     key = f"pair.{name}.compliance.file"
     dimensions = {
@@ -255,6 +268,10 @@ def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:
     }  # fmt: skip
     columns = read_columns(scene.file(part.file or "", key), key, dimensions)
     if "compliance" in columns:
+        if "deflection" in columns:
+            raise InputError(
+                key, f'"{part.file}"', "has both compliance and deflection", "remove the column that is not meant"
+            )
         c = columns["compliance"]
     elif "load" in columns and "deflection" in columns:
         if not (columns["load"] > 0.0).all():
@@ -262,12 +279,34 @@ def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:
         c = columns["deflection"] / columns["load"]
     else:
         raise InputError(key, f'"{part.file}"', "has neither a column compliance nor load and deflection")
-    if "roll_angle" in columns:
+    place = one_column(columns, ("x", "roll_angle"), key, part.file)
+    x = columns[place]
+    if place == "roll_angle":
         rb = pair.driver.base_radius
-        return ComplianceTable(columns["roll_angle"] * rb - rb * math.tan(pair.working_pressure_angle), c)
-    if "x" not in columns:
-        raise InputError(key, f'"{part.file}"', "has neither a column x nor roll_angle")
-    return ComplianceTable(columns["x"], c)
+        x = x * rb - rb * math.tan(pair.working_pressure_angle)
+    try:
+        refuse_table(pair, x, c, part.of or "tooth", part.fit or "cubic")
+    except InputError as error:
+        raise at(f"pair.{name}", error) from None
+    return ComplianceTable(x, c)
+
+
+def one_column(columns: Mapping[str, Array], names: tuple[str, ...], key: str, file: str | None) -> str:
+    """The one name of several of which a file has a column.
+
+    Raises
+    ------
+    InputError
+        If it has none of them, or two that may contradict each other.
+    """
+    found = [name for name in names if name in columns]
+    if not found:
+        raise InputError(key, f'"{file}"', f"requires a column {' or '.join(names)}")
+    if len(found) > 1:
+        raise InputError(
+            key, f'"{file}"', f"must have only one of the columns {' and '.join(found)}", f"remove column {found[1]}"
+        )
+    return found[0]
 
 
 def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> TabulatedRelief:
@@ -278,6 +317,7 @@ def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> 
         )  # fmt: skip
         if "relief" not in columns or not ("roll_angle" in columns or "radius" in columns):
             raise InputError(f"{key}.file", f'"{part.file}"', "needs the columns relief and roll_angle or radius")
+        one_column(columns, ("roll_angle", "radius"), f"{key}.file", part.file)
         values = columns["relief"]
         roll = columns["roll_angle"] if "roll_angle" in columns else _rolls(gear, columns["radius"], key)
     else:

@@ -13,9 +13,20 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.contact.plane.compliance import GearCompliance, OneTooth, Rigid
-from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 Fit = Literal["linear", "cubic"]
+Of = Literal["tooth", "pair"]
+
+#: Part of the path of contact that a table may leave out at either end; its fit is continued there, and a note says so.
+_LEFT_OUT = 0.15
+#: Parts of the path that are too little to be said.
+_NOTHING = 1e-3
+#: Compliance of a tooth or of a pair of teeth per unit face width, times Young's modulus. Teeth have some 3 to 30; the
+#: limits let thin rims and stiff models pass, not a prefix of a unit.
+_TEETH = (0.05, 1000.0)
+#: Places of the path at which a fit is looked at.
+_LOOKED_AT = 201
 
 
 @dataclass(frozen=True)
@@ -142,11 +153,79 @@ class TableCompliance(OneTooth):
         return "compliance from a table, contact included and independent of load, no neighbour coupling"
 
 
+def _needed(pair: GearPair, of: Of) -> tuple[float, float]:
+    """Positions between which a table is read on the path of contact [m]."""
+    ends = np.array([pair.x_start, pair.x_end])
+    if of == "pair":
+        return pair.x_start, pair.x_end
+    own = [pair.flank_curvature_radius(ends, m) - pair.flank_curvature_radius(0.0, m) for m in MEMBERS]
+    return float(np.min(own)), float(np.max(own))
+
+
+def _left_out(pair: GearPair, x: ArrayLike, of: Of) -> float:
+    """Largest part of the path, at either end, that a table does not cover."""
+    (low, high), at = _needed(pair, of), np.asarray(x, dtype=float)
+    return max(float(at.min()) - low, high - float(at.max()), 0.0) / pair.path_length
+
+
+def _ends(at: ArrayLike) -> str:
+    return f"{float(np.min(at)) * 1e3:.6g} to {float(np.max(at)) * 1e3:.6g} mm"
+
+
+def refuse_table(pair: GearPair, x: ArrayLike, compliance: ArrayLike, of: Of = "tooth", fit: Fit = "cubic") -> None:
+    """Refuse a table that is none of this pair's teeth; parameters as of `table_sources`.
+
+    Raises
+    ------
+    InputError
+        If it does not cover the path of contact, its compliances are in another unit, or its fit is not positive on
+        the path or leaves the range of its entries far behind.
+    """
+    table = fit_compliance(x, compliance, fit)
+    at, c = np.asarray(x, dtype=float), np.asarray(compliance, dtype=float)
+    needed = _needed(pair, of)
+    if (part := _left_out(pair, at, of)) > _LEFT_OUT:
+        raise InputError(
+            "compliance.file", f"x from {_ends(at)}",
+            f"must cover the path of contact, {_ends(needed)}, but for 15 % of it at either end; {100.0 * part:.3g} % of "
+            "its length is missing",
+            "give the whole path; check the unit of the positions and that they count from the pitch point",
+        )  # fmt: skip
+    soft = sum(1.0 / pair.gear(member).material.young_modulus for member in MEMBERS)
+    relative = c * pair.face_width / soft
+    if not (_TEETH[0] <= relative.min() and relative.max() <= _TEETH[1]):
+        worst = c[int(np.argmax(np.abs(np.log(relative / math.sqrt(_TEETH[0] * _TEETH[1])))))]
+        low, high = (limit * soft / pair.face_width * 1e6 for limit in _TEETH)
+        raise InputError(
+            "compliance.file", f"compliance {worst * 1e6:.6g} um/N",
+            f"is outside {low:.3g} to {high:.3g} um/N, beyond any tooth of this material and face width",
+            "check the unit in the head of the column",
+        )  # fmt: skip
+    fitted = table(np.linspace(*needed, _LOOKED_AT))
+    if fitted.min() < 0.2 * c.min() or fitted.max() > 5.0 * c.max():
+        raise InputError(
+            "compliance.fit", f'"{fit}"',
+            f"gives {fitted.min() * 1e6:.4g} to {fitted.max() * 1e6:.4g} um/N on the path of contact, and the table "
+            f"has {c.min() * 1e6:.4g} to {c.max() * 1e6:.4g} um/N",
+            'set fit = "linear" or give more positions' if fit == "cubic" else "give positions up to the path's ends",
+        )  # fmt: skip
+
+
+def table_note(pair: GearPair, x: ArrayLike, of: Of = "tooth") -> str:
+    """Sentence about the ends of the path that a table leaves out; empty where it covers them."""
+    if _left_out(pair, x, of) <= _NOTHING:
+        return ""
+    return (
+        f"The compliance table covers {_ends(x)}, the path of contact is {_ends(_needed(pair, of))}; the fit is "
+        "extrapolated to its ends."
+    )
+
+
 def table_sources(
     pair: GearPair,
     x: ArrayLike,
     compliance: ArrayLike,
-    of: Literal["tooth", "pair"] = "tooth",
+    of: Of = "tooth",
     fit: Fit = "cubic",
 ) -> tuple[GearCompliance, GearCompliance]:
     """Turn a table into the sources of driver and driven.
@@ -164,6 +243,7 @@ def table_sources(
     """
     if of not in ("tooth", "pair"):
         raise InputError("compliance.of", f'"{of}"', 'must be "tooth" or "pair"')
+    refuse_table(pair, x, compliance, of, fit)
     table = fit_compliance(x, compliance, fit)
     face = pair.face_width
     knots = tuple(float(k) for k in table.knots)
