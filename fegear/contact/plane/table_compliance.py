@@ -187,8 +187,8 @@ def refuse_table(pair: GearPair, x: ArrayLike, compliance: ArrayLike, of: Of = "
     if (part := _left_out(pair, at, of)) > _LEFT_OUT:
         raise InputError(
             "compliance.file", f"x from {_ends(at)}",
-            f"must cover the path of contact, {_ends(needed)}, but for 15 % of it at either end; {100.0 * part:.3g} % of "
-            "its length is missing",
+            f"must cover the path of contact, {_ends(needed)}, but for 15 % of it at either end; {100.0 * part:.3g} % "
+            "of its length is missing",
             "give the whole path; check the unit of the positions and that they count from the pitch point",
         )  # fmt: skip
     soft = sum(1.0 / pair.gear(member).material.young_modulus for member in MEMBERS)
