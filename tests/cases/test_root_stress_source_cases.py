@@ -1,5 +1,7 @@
 """Cases that choose where their root stress comes from: a formula's chain by hand, beside finite elements, refusals."""
 
+import math
+import re
 from functools import cache
 from pathlib import Path
 from typing import get_args
@@ -8,7 +10,7 @@ import numpy as np
 import pytest
 from solved_once import CACHE
 
-from fegear.base.errors import InputError, RangeError
+from fegear.base.errors import InputError
 from fegear.case.pair import RootStressName
 from fegear.case.reading import read_scene
 from fegear.contact.plane.closed_form_compliance import formula_root_stress
@@ -58,14 +60,78 @@ def test_table_over_the_flank_is_the_formula(name):
     assert np.isnan(table.root_stress_error(radius)).all()
 
 
-def test_formula_without_tension_is_refused():
+def test_a_formula_is_blank_where_it_does_not_hold_and_exact_up_to_there():
     """Wide roots of many shifted teeth under a low load: the Lewis section sees more compression than bending."""
     tooth = Tooth(100, profile_shift=0.5)
     gear = Gear(tooth, 1e-3, 0.5e-3 * tooth.root_radius)
-    low, middle = ((tooth.form_radius + t * (tooth.tip_radius - tooth.form_radius)) * 1e-3 for t in (0.1, 0.6))
-    with pytest.raises(RangeError, match="compression outweighs its bending"):
-        formula_root_stress(gear, "agma-908", low, gear.tip_radius)
-    assert formula_root_stress(gear, "agma-908", middle, gear.tip_radius).root_stress(0, middle, "tension") > 0.0
+    low = (tooth.form_radius + 0.1 * (tooth.tip_radius - tooth.form_radius)) * 1e-3
+    found = formula_root_stress(gear, "agma-908", low, gear.tip_radius)
+    (part,), (why,) = found.over_length, found.missing
+    assert re.match(r"no value for loads at radii 49\.6466 to 49\.\d+ mm \(.*compression outweighs its bending", why)
+    assert found.remarks[-1].endswith("blank there, and extremes are those of the other loads")
+
+    def direct(length: float) -> float:
+        return ROOT_STRESS_SOURCES["agma-908"].formula(tooth, math.hypot(gear.base_radius, length) / gear.module).stress
+
+    assert direct(part.x[0]) > 0.0 >= direct(part.x[0] * (1.0 - 1e-6))  # it begins to hold there
+    first = math.sqrt(low**2 - gear.base_radius**2)
+    radii = np.hypot(gear.base_radius, np.linspace(first * (1.0 + 1e-9), part.x[-1] * (1.0 - 1e-9), 41))
+    table = found.root_stress(0, radii, "tension")[0]
+    exact = np.array([direct(math.sqrt(r**2 - gear.base_radius**2)) / gear.module for r in radii])
+    assert part.x[0] > first
+    assert (np.isnan(table) == (radii < np.hypot(gear.base_radius, part.x[0]))).all()
+    np.testing.assert_allclose(table, np.where(np.isnan(table), np.nan, exact), rtol=1e-5, atol=5e-5 * exact.max())
+
+
+MANY_TEETH = (
+    "gear.a.teeth=45", "gear.b={teeth=137, module='2.5 mm', face_width='56 mm', bore_radius='60 mm'}",
+    "gear.a.module=2.5 mm", "gear.a.face_width=56 mm", "gear.a.bore_radius=30 mm", "pair.I.driven=b",
+    "effects={}", "pair.I.load=8 kN", "pair.I.loads=['3 kN', '5 kN']", "pair.I.compliance={source='weber-banaschek'}",
+)  # fmt: skip
+
+
+def test_a_formula_that_fails_at_some_positions_is_planned():
+    """The low loads on a gear of 137 teeth have no section of ISO 6336-3; the whole run was refused."""
+    for names in (("fe", "iso-6336-3"), ("iso-6336-3",)):
+        make_plan(read_scene(CASES / "calculix_pair.toml", (HISTORY, *MANY_TEETH, source(*names))), STAGES)
+
+
+@pytest.mark.dear
+def test_a_formula_that_fails_at_some_positions_takes_nothing_with_it():
+    _, tables, values, results = run("calculix_pair", HISTORY, *MANY_TEETH, source("heywood", "iso-6336-3"))
+    _, alone, other, _ = run("calculix_pair", HISTORY, *MANY_TEETH, source("heywood"))
+    for gear in "ab":
+        table = tables[f"root_stress_history_I_{gear}"]
+        blank = np.isnan(table["stress_iso_6336_3 [MPa]"])
+        assert blank.any() == (gear == "b")
+        assert np.count_nonzero(blank) < 0.1 * blank.size
+        # where it is blank the pair carries; under each load alike, and all else is there
+        for column in ("stress_iso_6336_3 at 3000 N [MPa]", "stress_iso_6336_3 at 5000 N [MPa]"):
+            assert (np.isnan(table[column]) == blank).all()
+        assert np.isfinite(table["stress [MPa]"]).all()
+        wanted = alone[f"root_stress_history_I_{gear}"]
+        np.testing.assert_allclose(np.interp(wanted["x [mm]"], table["x [mm]"], table["stress [MPa]"]),
+                                   wanted["stress [MPa]"], rtol=1e-6, atol=1e-3)  # fmt: skip
+    for name, value in other.items():
+        assert values[name].si == pytest.approx(value.si, rel=1e-9)
+    assert values["I.driven.largest_root_tension_iso_6336_3"].si > 100e6
+    said = [note for outcome in results.outcomes.values() for note in outcome.remarks if "no value for loads" in note]
+    assert len(said) == 1
+    assert said[0].startswith("Pair I, gear b, root stress by iso-6336-3: no value for loads at radi")
+
+
+def test_a_formula_that_holds_nowhere_leaves_its_columns_blank_beside_others():
+    formula = "pair.I.compliance={source='weber-banaschek'}"
+    changes = ("effects={}", "gear.a.teeth=80", "gear.a.bore_radius='60 mm'", formula)
+    _, tables, values, results = run("calculix_pair", HISTORY, *changes, source("heywood", "cornell"))
+    table = tables["root_stress_history_I_a"]
+    assert np.isnan(table["stress_cornell [MPa]"]).all()
+    assert np.isfinite(table["stress [MPa]"]).all()
+    assert not any("cornell" in name for name in values)
+    notes = [note for outcome in results.outcomes.values() for note in outcome.remarks]
+    assert any("root stress by cornell: no value for loads at radii" in note for note in notes)
+    with pytest.raises(InputError, match="does not hold on the flank: no value for loads"):
+        run("calculix_pair", HISTORY, *changes, source("cornell"))
 
 
 @pytest.mark.parametrize("name", ["cornell", "iso-6336-3"])

@@ -372,6 +372,7 @@ def root_stress_source(
     solved: Mapping[str, GearInfluence],
     *,
     tips: bool,
+    whole: bool = False,
 ) -> RootStressInfluence:
     """One gear's root stress from finite elements or from a formula.
 
@@ -387,17 +388,22 @@ def root_stress_source(
         Gears solved by finite elements, by name; needed for ``"fe"``.
     tips : bool
         Whether tip corners may touch the flank beyond the path of contact.
+    whole : bool
+        Whether a formula must hold on all of the flank where loads act.
 
     Raises
     ------
     RangeError
-        If the formula does not hold on the part of the flank where loads act, under its key in the case.
+        If a formula that must does not, under its key in the case.
     """
     from fegear.contact.plane.fe_compliance import finite_element_compliance
 
     if source == FINITE_ELEMENTS:
         return finite_element_compliance(solved[gear])
-    return _formula(source, name, gear, pair, member, tips)
+    found = _formula(source, pair, member, tips)
+    if whole and found.missing:
+        raise _does_not_hold(found, source, name, gear)
+    return found
 
 
 def refuse_formulas(scene: Scene, name: str) -> None:
@@ -416,26 +422,37 @@ def refuse_formulas(scene: Scene, name: str) -> None:
 
 
 def check_formulas(scene: Scene, name: str, *, tips: bool) -> None:
-    """Refuse a pair's root-stress formulas where they do not hold, from a few loads over each flank."""
+    """Refuse a pair of which no source knows a root stress: from a few loads over each flank, then from all.
+
+    A formula that does not hold somewhere, or anywhere, leaves blanks where another one gives values.
+    """
     refuse_formulas(scene, name)
-    part, pair = scene.case.pair[name], scene.pairs[name]
-    for source in part.root_stress.source:
-        if source != FINITE_ELEMENTS:
-            for member in MEMBERS:
-                _formula(source, name, gear_name(scene, name, member), pair, member, tips, _TRIED)
+    sources, pair = scene.case.pair[name].root_stress.source, scene.pairs[name]
+    if FINITE_ELEMENTS in sources:
+        return
+    for member in MEMBERS:
+        if any(
+            _formula(source, pair, member, tips, *tried).over_length for tried in ((_TRIED,), ()) for source in sources
+        ):
+            continue
+        raise _does_not_hold(_formula(sources[0], pair, member, tips), sources[0], name, gear_name(scene, name, member))
 
 
-def _formula(
-    source: str, name: str, gear: str, pair: GearPair, member: Member, tips: bool, *points: int
-) -> FormulaRootStress:
+def _formula(source: str, pair: GearPair, member: Member, tips: bool, *points: int) -> FormulaRootStress:
     from fegear.contact.plane.closed_form_compliance import formula_root_stress
 
     own = pair.gear(member)
     low, high = sorted(float(pair.radius(x, member)) for x in (pair.x_start, pair.x_end))
     if tips:
         low, high = own.form_radius, own.involute_tip_radius
-    try:
-        return formula_root_stress(own, source, low, high, *points)
-    except RangeError as error:
-        told = RangeError(error.key, error.value, f"{error.rule} (gear {gear})", error.remedy)
-        raise at(f"pair.{name}.root_stress", told) from None
+    return formula_root_stress(own, source, low, high, *points)
+
+
+def _does_not_hold(found: FormulaRootStress, source: str, name: str, gear: str) -> RangeError:
+    """What a formula lacks, as a refusal of its key."""
+    from fegear.formulas.sources import ROOT_STRESS_SOURCES
+
+    others = ", ".join(f'"{other}"' for other in ROOT_STRESS_SOURCES if other != source)
+    rule = f"does not hold on the flank: {found.missing[0]} (gear {gear})"
+    remedy = f'choose "fe" or another formula ({others})'
+    return RangeError(f"pair.{name}.root_stress.source", f'"{source}"', rule, remedy)

@@ -48,7 +48,8 @@ class RootStressHistory:
     def largest(self) -> Array:
         """Over the whole engagement, shape (L,) [Pa]."""
         flat = self.stress.reshape(-1, self.stress.shape[-1])
-        return np.asarray(flat.max(axis=0) if self.side == "tension" else flat.min(axis=0))
+        extreme = np.fmax if self.side == "tension" else np.fmin  # over the positions at which there is a stress
+        return np.asarray(extreme.reduce(flat, axis=0))
 
 
 def root_stress_history(
@@ -143,7 +144,9 @@ def superposed_stress(
         for other, at, of_other in carrying:
             k = towards_load * (tooth - other)
             if k in rows:
-                total[at] += line_load[other, at, :, None] * rows[k][of_other, None, :]
+                load, row = line_load[other, at, :, None], rows[k][of_other, None, :]
+                # a formula may give nothing for a load at this place, which is no matter where there is none
+                total[at] += load * row if np.isfinite(row).all() else np.where(load > 0.0, load * row, 0.0)
         yield total
 
 

@@ -31,7 +31,7 @@ class ToothStress:
     x : ndarray, shape (P,)
         Position of the tooth's contact [m].
     tension : ndarray
-        Largest below the loaded flank [Pa].
+        Largest below the loaded flank [Pa]; NaN where a formula gives none, over which extremes are not taken.
     compression : ndarray or None
         Most negative of the other fillet [Pa]; None where the source knows none, as the formulas.
     tension_error : ndarray
@@ -58,7 +58,7 @@ class ToothStress:
 
     def worst(self, i: int) -> int:
         """Position of the largest tension under load number i."""
-        return int(first_of_largest(self.tension[:, i]))
+        return int(first_of_largest(_or_least(self.tension[:, i])))
 
     def error(self, i: int) -> float | None:
         """Estimated error of the largest tension under load number i [Pa]; None where the source does not know it."""
@@ -75,14 +75,14 @@ class ToothStress:
 
     def range_off(self, i: int) -> float | None:
         """Estimated error of the range of stress under load number i [Pa]: those of both its ends together."""
-        least = int(np.argmin(self.tension[:, i]))
+        least = int(np.argmin(np.where(np.isnan(self.tension[:, i]), np.inf, self.tension[:, i])))
         return _known(self.tension_error[self.worst(i), i] + self.tension_error[least, i])
 
     @property
     @shows("MPa", "of the mesh cycle", name="largest_root_tension")
     def largest_tension(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
-        return np.asarray(self.tension.max(axis=0))
+        return np.asarray(np.fmax.reduce(self.tension, axis=0))
 
     @property
     @shows("MPa", "of the mesh cycle", name="largest_root_compression")
@@ -94,7 +94,12 @@ class ToothStress:
     @shows("MPa", "peak to peak of the stress below the loaded flank over the mesh", name="root_stress_range")
     def tension_range(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
-        return np.asarray(np.ptp(self.tension, axis=0))
+        return np.asarray(np.fmax.reduce(self.tension, axis=0) - np.fmin.reduce(self.tension, axis=0))
+
+
+def _or_least(stress: Array) -> Array:
+    """The same with nothing lower than what is not known."""
+    return np.where(np.isnan(stress), -np.inf, stress)
 
 
 def _known(error: float) -> float | None:
@@ -174,7 +179,7 @@ def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Se
                 root_stress_history(e, state, member, side, 1, source).stress for state in (rows[:1] if alike else rows)
             ]
             teeth = stress[0] if alike else np.stack([one[row] for row, one in enumerate(stress)])
-            found.append((sign * teeth[:, :, 0]).max(axis=0))
+            found.append(np.fmax.reduce(sign * teeth[:, :, 0], axis=0))
         return np.array(found)
 
     return np.sort(np.concatenate([x, refined_peaks(curves, x)[0]]))
@@ -226,6 +231,8 @@ def tooth_stress(
     low, high = _within(e)
     order = order[(x[order] > low) & (x[order] < high)]
     tension, error, *other = (one[order] for one in stresses)
+    if getattr(source, "silent", False):  # a formula that holds nowhere: nothing is known of an unloaded tooth either
+        tension = np.full_like(tension, np.nan)
     compression, pressed_error = other or (None, None)
     return ToothStress(x[order], tension, compression, error, pressed_error)
 

@@ -276,6 +276,8 @@ def _stress_values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[V
         found = value_of(s, key, of, error, load=i, meaning=where)
         return replace(found, name=f"{found.name}{end}")
 
+    if np.isnan(s.tension[:, i]).all():
+        return []
     pressed = [] if s.compression is None else [
         value("largest_compression", s.compression_off(i), s.largest_pressed(i))
     ]  # fmt: skip
@@ -346,7 +348,8 @@ def _stress_figure(name: str, data: RootStressData, i: int, gears: Mapping[Membe
                 pressed = curve_of(s, "x", "compression", f"{label}, compression", f"{member} compression", load=i)
                 curves.append(replace(pressed, width=1.2))
             most = float(s.largest_tension[i]) * 1e-6
-            largest.append(f"{most:.4g} MPa ({member}{f', {told(source)}' if several else ''})")
+            if np.isfinite(most):
+                largest.append(f"{most:.4g} MPa ({member}{f', {told(source)}' if several else ''})")
     of, marks = type(next(iter(stress["driver"].values()))), (*path_marks(pair), Mark("y", 0.0))
     return Figure(
         f"root_stress_history_{name}",

@@ -79,7 +79,7 @@ class RatingInputs:
     said : tuple of str
         What AGMA 2101 assumes, or why there is nothing of it.
     alone : bool
-        Whether no other pair of the case is rated.
+        Whether nothing else is asked for, of this pair or another.
     """
 
     asked: PairToRate
@@ -129,7 +129,8 @@ def _inputs(scene: Scene, name: str) -> RatingInputs:
     asked = pair_to_rate(scene, name)
     beside = scene.case.rating.beside
     agma, said = agma_inputs(scene, asked) if "agma-2101" in beside else (None, ())
-    return RatingInputs(asked, agma, "computed" in beside, said, len(rated_pairs(scene)) == 1)
+    alone = len(rated_pairs(scene)) == 1 and set(scene.case.results) <= {"rating"}
+    return RatingInputs(asked, agma, "computed" in beside, said, alone)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -193,8 +194,13 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     conditions = rated(asked)
     formula = rate_pair(conditions, own)
     levels = [(_duty(conditions, level.tangential, level.speed), level.cycles) for level in asked.levels]
-    spectrum = rate_spectrum(conditions, levels, own) if levels else None
-    found = by_found = spectrum_found = bent = None
+    spectrum = found = by_found = spectrum_found = bent = None
+    reasons = []
+    try:
+        spectrum = rate_spectrum(conditions, levels, own) if levels else None
+    except RangeError as error:  # a level outside of a formula's range leaves the rating at the nominal load
+        reasons.append(f"no rating under the load spectrum: {error}")
+        asked, levels = replace(asked, levels=()), []
     single = asked.width != "plane" or asked.pair.contact_ratio < _SINGLE
     if inputs.computed and single:
         found, of_levels = _computed(asked, formula, spectrum, upstream)
@@ -204,7 +210,7 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
         stands = [None if one is None else _standing(one, own) for one in of_levels]
         spectrum_found = rate_spectrum(of_found, levels, stands) if levels else None
     agma, why_not = _agma(inputs)
-    reasons = [f"no rating by AGMA 2101: {why_not}"] if why_not else []
+    reasons += [f"no rating by AGMA 2101: {why_not}"] if why_not else []
     if inputs.computed and not single:
         reasons.append(_NO_SINGLE)
     return RatingData(

@@ -182,7 +182,7 @@ def _plane_bench(asked: DrawInputs, upstream: Upstream) -> Bench:
     solved = {gear: solution_of(upstream, gear) for gear in dict.fromkeys(asked.gears)} if fe else {}
     driver, driven = (
         root_stress_source(
-            asked.source, asked.name, gear, engagement.pair, member, solved, tips=engagement.corner_contact
+            asked.source, asked.name, gear, engagement.pair, member, solved, tips=engagement.corner_contact, whole=True
         )
         for gear, member in zip(asked.gears, MEMBERS, strict=True)
     )

@@ -138,10 +138,10 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
                     ("_own_mesh", s.own, "without the other meshes, "),
                 ]
             values += [
-                Value(f"{name}.{member}.largest_dynamic_root_tension{which}{end}", float(of.max()), "MPa",
+                Value(f"{name}.{member}.largest_dynamic_root_tension{which}{end}", float(np.fmax.reduce(of)), "MPa",
                       float(s.error[at] * of[at] / s.own[at]) if known else None,
                       f"gear {gear}, {by}, {meaning}contact at x = {force.x[at] * 1e3:.5g} mm")
-                for which, of, meaning in largest for at in (int(np.argmax(of)),)
+                for which, of, meaning in largest for at in (int(np.argmax(np.where(np.isnan(of), -np.inf, of))),)
             ]  # fmt: skip
         title = f"Dynamic root stress of gear {gear} as {member}, mesh {name}"
         tables.append(Table(f"root_stress_history_{name}_{asked.labels[member]}", tuple(columns), title))
