@@ -33,12 +33,12 @@ def export(
     from fegear.base.errors import InputError
     from fegear.case.reading import build_scene, read_scene
     from fegear.case.text_file import leads_to
-    from fegear.output.comparison import read_side
     from fegear.output.export import export_gears
     from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.output.run_folder import read_side
 
     voice = Voice(quiet, as_json)
-    results = read_side(case) if leads_to(case, stat.S_ISDIR) else None
+    results = read_side(case, "CASE") if leads_to(case, stat.S_ISDIR) else None
     if results is not None and formats != "rexs":
         rule = "is the folder of a run, which is written to REXS alone"
         raise InputError("CASE", str(case), rule, "write --format rexs, or give the case file")

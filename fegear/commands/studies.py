@@ -63,12 +63,7 @@ def cost(
 
     voice = Voice(quiet, as_json)
     try:
-        scene = read_scene(case, overrides or ())
-        if not scene.gears:
-            voice.say("Cost study: the case describes no gears, so there is no mesh, formula or tolerance to choose.")
-            voice.tell({"configurations": 0, "quantities": []})
-            return
-        studied = asked(scene)
+        studied = asked(read_scene(case, overrides or ()))
         target = out or default_folder(case.stem, "_cost")
         ladder = ladder_of(studied, quick=quick)
         quantities = ", ".join(q.name for q in studied.quantities)
@@ -324,11 +319,11 @@ def _refuse_to_replace(target: Path, *compared: Path) -> None:
 def _side(path: Path, asked: list[str], voice: Voice) -> Side:
     """Read a folder, or run a case."""
     from fegear.case.text_file import leads_to
-    from fegear.output.comparison import read_side
+    from fegear.output.run_folder import read_side
     from fegear.studies.comparison.compare import side_of
 
     if leads_to(path, stat.S_ISDIR):
-        return read_side(path)
+        return read_side(path, "compare")
     from fegear.case.reading import read_scene
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan

@@ -1,81 +1,18 @@
-"""What ``fegear compare`` reads and writes: folders of runs, joined tables, pictures, a page, a summary."""
+"""What ``fegear compare`` writes: joined tables, pictures, a page, a summary."""
 
 from __future__ import annotations
 
-import csv
-import json
-import re
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 import fegear
-from fegear.base.errors import InputError
-from fegear.base.units import PER_SI
-from fegear.engine.outcome import Value
-from fegear.engine.table import Column, Table
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.tables import write_json, write_table
-from fegear.studies.comparison.compare import Comparison, Side
+from fegear.studies.comparison.compare import Comparison
 from fegear.studies.comparison.joined import comparison_figures
-
-_HEAD = re.compile(r"(.*?)(?: \[(.*)\])?")
-
-
-def read_side(folder: Path) -> Side:
-    """Read the folder of a run as one side of a comparison.
-
-    Parameters
-    ----------
-    folder : Path
-
-    Raises
-    ------
-    InputError
-        If it is no such folder.
-    """
-    try:
-        summary = json.loads((folder / SUMMARY).read_text("utf-8"))
-        found, document = summary["results"], summary.get("inputs", {})
-        values = {name: _value(name, one["value"], one["unit"], one["error"]) for name, one in found.items()
-                  if "now" not in one}  # fmt: skip
-        tables = [_read_table(path) for path in sorted((folder / "tables").glob("*.csv"))]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise InputError(
-            "compare", f'"{folder}"', f"is no folder of a run ({type(error).__name__}: {error})",
-            "give folders that fegear run wrote, or case files",
-        ) from None  # fmt: skip
-    return Side(str(folder), document, values, {table.name: table for table in tables})
-
-
-def _value(name: str, value: float | None, unit: str, error: float | None) -> Value:
-    size = PER_SI[unit] if unit else 1.0
-    return Value(name, np.nan if value is None else value / size, unit, None if error is None else error / size)
-
-
-def _read_table(path: Path) -> Table:
-    with path.open(encoding="utf-8", newline="") as stream:
-        heads, *rows = csv.reader(stream)
-    columns = []
-    for head, cells in zip(heads, zip(*rows, strict=True) if rows else [()] * len(heads), strict=True):
-        found = _HEAD.fullmatch(head)
-        name, unit = (found[1], found[2] or "") if found and (found[2] or "") in (*PER_SI, "") else (head, "")
-        values = _cells(cells)
-        if unit and values.dtype.kind == "f":
-            values = np.asarray(values, dtype=float) / PER_SI[unit]
-        columns.append(Column(name, values, unit))
-    return Table(path.stem, tuple(columns))
-
-
-def _cells(cells: tuple[str, ...]) -> NDArray[np.generic]:
-    """Numbers where all are, texts otherwise; whole numbers are numbers like others."""
-    try:
-        return np.array([float(cell) if cell else np.nan for cell in cells])
-    except ValueError:
-        return np.array(cells)
 
 
 def comparison_page(comparison: Comparison) -> Page:

@@ -24,6 +24,8 @@ from pathlib import Path, PurePosixPath
 from typing import TextIO
 
 import fegear
+from fegear.base.errors import InputError
+from fegear.case.json_file import read_json
 
 #: What fegear wrote into a folder, with a digest of each file: what differs from it is somebody else's.
 RECORD = ".fegear-files.json"
@@ -168,10 +170,9 @@ def _write_record(folder: Path, written: Mapping[str, str]) -> None:
 
 def _read_json(path: Path) -> dict[str, object]:
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        return read_json(path, path.name)
+    except InputError:
         return {}
-    return found if isinstance(found, dict) else {}
 
 
 def _names(found: object) -> dict[str, str]:

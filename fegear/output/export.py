@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.exchange.rexs.written import Found
     from fegear.studies.comparison.compare import Side
 
 
@@ -124,14 +125,10 @@ def export_gears(
         written += files
         remarks += said
     if "rexs" in wanted:
-        from fegear.exchange.rexs.written import Found
         from fegear.exchange.rexs.written_gearbox import model_text
 
-        found = Found()
-        if results is not None:
-            tables = {name: {one.name: one.si for one in table.columns} for name, table in results.tables.items()}
-            found = Found({name: value.si for name, value in results.values.items()}, tables)
-        text, left = model_text(scene, datetime.now(UTC).isoformat(timespec="seconds"), found)
+        date = datetime.now(UTC).isoformat(timespec="seconds")
+        text, left = model_text(scene, date, *(() if results is None else (_found(results),)))
         written.append(folder / f"{file_name(scene.name)}.rexs")
         written[-1].write_text(text, "utf-8")
         remarks += left
@@ -141,6 +138,17 @@ def export_gears(
             'give one: relief = { tip = { amount = "10 um", length = "2 mm" } }',
         )  # fmt: skip
     return Exported(tuple(path.name for path in written), tuple(remarks))
+
+
+def _found(results: Side) -> Found:
+    """What a run found, for a REXS model: numbers that are known, and of tables the columns of numbers."""
+    from fegear.exchange.rexs.written import Found
+
+    tables = {
+        name: {one.name: one.si for one in table.columns if one.si.dtype.kind == "f" and np.isfinite(one.si).all()}
+        for name, table in results.tables.items()
+    }
+    return Found({name: value.si for name, value in results.values.items() if np.isfinite(value.si)}, tables)
 
 
 def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tuple[list[Path], list[str]]:

@@ -13,7 +13,7 @@ import pytest
 import fegear.cli
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
-from fegear.output.comparison import read_side
+from fegear.output.run_folder import read_side
 from fegear.studies.comparison.compare import Side, compare, different_inputs, paired
 from fegear.studies.comparison.joined import comparison_figures, join
 
@@ -101,7 +101,7 @@ def test_curves_over_other_places_are_compared_where_both_are(say, runs):
     table = told["tables"]["load_sharing_I"]
     assert table["rows_only_in_a"] > 100
     assert 0.0 < abs(table["largest"]["deflection [um]"]) < 10.0
-    sides = [read_side(runs / name) for name in ("one", "shifted")]
+    sides = [read_side(runs / name, "compare") for name in ("one", "shifted")]
     x, deflection = (
         [np.asarray(side.tables["load_sharing_I"][name]) for side in sides] for name in ("x", "deflection")
     )

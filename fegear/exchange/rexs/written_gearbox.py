@@ -207,11 +207,18 @@ def _stage(
         lead = scene.case.gear[gear.removesuffix(_LIKE)].lead
         if lead is not None and (lead.slope or lead.end_relief):
             gears[gear].word(datum_face_orientation="positive" if along < 0.0 else "negative")
-    if (over := results.tables.get(f"load_over_face_{name}")) is not None:
+    _load_over_face(written, stage, name, along, min(pair.driver.face_width, pair.driven.face_width), results)
+
+
+def _load_over_face(written: Written, stage: Part, name: str, along: float, width: float, results: Found) -> None:
+    """The line load over the face, from end I, where a run has its table."""
+    over = results.tables.get(f"load_over_face_{name}", {})
+    if {"z", "mean_line_load"} <= over.keys():
         rows = sorted((along * float(z), float(q)) for z, q in zip(over["z"], over["mean_line_load"], strict=True))
-        width = min(pair.driver.face_width, pair.driven.face_width)
         stage.say("length", load_distribution_node_positions=[z + 0.5 * width for z, _ in rows])
         stage.say("line load", load_distribution_along_face_width=[q for _, q in rows])
+    elif over:
+        written.remarks.append(f"Pair {name}: load distribution not written, for its table lacks z or mean_line_load.")
 
 
 def _oil(written: Written, part: PairPart, stage: Part, name: str) -> None:

@@ -108,9 +108,10 @@ def join(first: Table, second: Table, labels: tuple[str, str] = ("a", "b")) -> J
             continue
         one, other = first.column(name), second.column(name)
         a, b = _at(one, at[0]), _at(other, at[1]) * (1.0 if one.unit == other.unit else np.nan)
-        for label, values in zip((*labels, "change"), (a, b, b - a), strict=True):
+        for label, values in zip((*labels, "change"), (a, b, _change(a, b)), strict=True):
             columns.append(Column(f"{name}_{label}", values, one.unit, one.meaning))
-        if not np.isfinite(a + b).any() and len(keys) == 1 and follows(first, keys[0]) and follows(second, keys[0]):
+        meet = (np.isfinite(a) & np.isfinite(b)).any()
+        if not meet and len(keys) == 1 and follows(first, keys[0]) and follows(second, keys[0]):
             places = first.column(keys[0])
             a = _numbers(one)
             b = np.interp(_numbers(places), _numbers(second.column(keys[0])), _numbers(other), np.nan, np.nan)
@@ -172,15 +173,22 @@ def _cells(column: Column, rows: np.ndarray) -> np.ndarray:
     return np.array([str(column.si[row]) if row >= 0 else "" for row in rows], dtype=str)
 
 
+def _change(a: Array, b: Array) -> Array:
+    """Second less first; no number where both are endless."""
+    return np.asarray(np.subtract(b, a, out=np.full(a.shape, np.nan), where=np.isfinite(a) | np.isfinite(b)))
+
+
 def _difference(column: Column, a: Array, b: Array, places: Column, lost: Mask | None = None) -> Difference:
     """The largest change of a column; `lost` are the rows in which only one of the two is a number, if that counts."""
-    change, factor = b - a, from_si(column.unit) if column.unit else 1.0
-    gone = lost is not None and bool(lost.any())
+    factor = from_si(column.unit) if column.unit else 1.0
+    endless = (np.isinf(a) | np.isinf(b)) & (a != b) & ~np.isnan(a) & ~np.isnan(b)
+    change = np.where(np.isfinite(a) & np.isfinite(b), _change(a, b), np.nan)
+    gone = bool(endless.any()) or (lost is not None and bool(lost.any()))
     if gone or not np.isfinite(change).any():
         alone = gone or bool((np.isnan(a) != np.isnan(b)).any())
         return Difference(column, np.nan, np.inf if alone else 0.0, "")
     worst = int(np.nanargmax(np.abs(change)))
-    size = max(np.nanmax(np.abs(a)), np.nanmax(np.abs(b)))
+    size = max(float(np.abs(one[np.isfinite(one)]).max()) for one in (a, b))
     share = abs(change[worst]) / size if size > 0.0 else 0.0
     return Difference(column, float(change[worst] * factor), float(share), places.values[worst])
 
