@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from fegear.base.errors import InputError
 from fegear.workbench.run import run
 
 GEAR = {
@@ -42,14 +41,3 @@ def test_a_level_that_a_formula_does_not_know_leaves_the_rating_at_the_nominal_l
     for one in ("driver.S_H", "driven.S_F", "K_v_rated"):
         assert numbers(found)[one] == pytest.approx(numbers(plain)[one], rel=1e-12)
     assert not any("spectrum" in value.name for value in found.values)
-
-
-def test_a_pair_that_cannot_be_rated_leaves_the_other_results():
-    fast = case("geometry", "rating", method="C")
-    fast["pair"]["I"]["speed"] = "9000 rpm"
-    found = run(fast, progress=False)
-    assert numbers(found)["contact_ratio"] > 1.0
-    assert any("Pair I is not rated: pair.I.v z_1/100" in note for note in notes(found))
-    fast["results"] = ["rating"]
-    with pytest.raises(InputError, match=r"must be at most 5\.8 for K_v by method C"):
-        run(fast, progress=False)

@@ -65,7 +65,7 @@ class FlankFractureInputs:
         K_material.
     said : tuple of str
     alone : bool
-        Whether nothing else is asked for, of this pair or another: then a formula's range ends the run, not a remark.
+        Whether no other pair of the case can be evaluated: then a formula's range ends the run, not a remark.
     """
 
     asked: PairToRate
@@ -137,7 +137,7 @@ def _inputs(scene: Scene, name: str) -> FlankFractureInputs | NotRated:
     alone = not any(isinstance(other, FlankFractureInputs) for other in others)
     found = _described(scene, name)
     if isinstance(found, FlankFractureInputs):
-        return replace(found, alone=alone and set(scene.case.results) <= {"flank-fracture"})
+        return replace(found, alone=alone)
     if alone:
         raise found
     return _not_rated(name, found)

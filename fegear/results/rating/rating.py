@@ -79,7 +79,7 @@ class RatingInputs:
     said : tuple of str
         What AGMA 2101 assumes, or why there is nothing of it.
     alone : bool
-        Whether nothing else is asked for, of this pair or another.
+        Whether no other pair of the case is rated.
     """
 
     asked: PairToRate
@@ -129,8 +129,7 @@ def _inputs(scene: Scene, name: str) -> RatingInputs:
     asked = pair_to_rate(scene, name)
     beside = scene.case.rating.beside
     agma, said = agma_inputs(scene, asked) if "agma-2101" in beside else (None, ())
-    alone = len(rated_pairs(scene)) == 1 and set(scene.case.results) <= {"rating"}
-    return RatingInputs(asked, agma, "computed" in beside, said, alone)
+    return RatingInputs(asked, agma, "computed" in beside, said, len(rated_pairs(scene)) == 1)
 
 
 def _check(scene: Scene, name: str) -> None:
