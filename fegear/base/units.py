@@ -269,6 +269,8 @@ PER_SI: dict[str, float] = {
     "N/(mm.um)": 1e-9,
     "1/mm": 1e-3,
     "kg/mm": 1e-3,
+    "kg": 1.0,
+    "kg.m^2": 1.0,
     "MPa^(1/2)": 1e-3,
     "degC": 1.0,  # inside, too
     "K": 1.0,

@@ -231,6 +231,13 @@ class GearPart(Part):
         return root_radius - self.bore_radius
 
     @property
+    def gives_rim(self) -> bool:
+        """Whether the case says how thick the body under the teeth is, so that it is not fegear's assumption."""
+        if self.internal:
+            return self.outer_radius is not None or self.rim_thickness is not None
+        return self.bore_radius is not None
+
+    @property
     def web(self) -> float | None:
         """b_s [m], of the body or for the ratings alone; None of a disc."""
         return self.web_thickness if self.body is None else self.body.web_thickness

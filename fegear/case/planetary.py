@@ -94,12 +94,14 @@ class SetBodyPart(Part):
 
 
 class SetBodiesPart(Part):
-    """``body = { carrier = { mass, inertia }, ... }``: what moves; sun and planets are discs where it is not given."""
+    """``body = { carrier = { mass, inertia }, ... }``: what moves; gears have their own where it is not given."""
 
-    sun: SetBodyPart | None = Field(default=None, description="The sun; without it a disc with the gear's bore.")
-    ring: SetBodyPart | None = Field(default=None, description="The ring, with what turns with it.")
+    sun: SetBodyPart | None = Field(default=None, description="The sun. Default: that of the gear.")
+    ring: SetBodyPart | None = Field(
+        default=None, description="The ring, with what turns with it. Default: that of the gear."
+    )
     carrier: SetBodyPart | None = Field(default=None, description="The carrier with its pins, without planets.")
-    planet: SetBodyPart | None = Field(default=None, description="One planet; without it a disc with the gear's bore.")
+    planet: SetBodyPart | None = Field(default=None, description="One planet. Default: that of the gear.")
 
 
 class PinErrorsPart(Part):

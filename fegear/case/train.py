@@ -31,14 +31,15 @@ Backlash = LengthOrZero | Literal["unlimited"]
 
 
 class BodyPart(Part):
-    """A body that turns: its inertia, or the gears that it is made of (discs with their bores, density by material)."""
+    """A body that turns: its inertia, or the gears that it is made of, with their teeth and bodies."""
 
     inertia: PositiveInertia | None = Field(
-        default=None, description="Moment of inertia, which adds to that of `gears`."
+        default=None,
+        description="Moment of inertia, which adds to that of `gears`; without `gears` it is all.",
     )
     gears: Annotated[list[str], Field(min_length=1)] | None = Field(
         default=None,
-        description="Gears that the body is made of: discs of pitch radius with their bores, density by material.",
+        description="Gears that the body is made of: inertia of teeth, rim, web, hub and bore, density by material.",
     )
 
     @model_validator(mode="after")

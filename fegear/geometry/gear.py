@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.shown import shown, shows
-from fegear.geometry.gear_body import GearBody, moments
+from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.mass import MassProperties, mass_properties
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 from fegear.geometry.rim_support import RimSupport
 from fegear.geometry.tooth import Tooth
@@ -303,17 +305,12 @@ class Gear:
         arc = 2.0 * radius * float(self.tooth.half_thickness_angle(radius / self.module))
         return arc * math.cos(math.atan(self.twist * radius))
 
-    @property
-    def moments(self) -> tuple[float, float, float]:
-        """Mass [kg], inertia about the axis and across it through the middle of the face [kg m^2].
-
-        The teeth are a ring up to the pitch circle; without a body the gear is a disc between that and its bore.
-        """
-        inner, outer = sorted((self.pitch_radius, self.bore_radius))
-        if self.body is None:
-            half = 0.5 * self.face_width
-            return moments([(outer, inner, -half, half, 0.0)], self.material.density)
-        return moments(self.body.cylinders(outer, inner, self.face_width), self.material.density, self.body)
+    @cached_property
+    def mass_properties(self) -> MassProperties:
+        """Mass, inertia and centre of gravity: the exact section of the teeth, down to the bore, with the body."""
+        return mass_properties(
+            self.tooth, self.module, self.face_width, self.bore_radius, self.material.density, self.body
+        )
 
     @property
     def body_in_modules(self) -> GearBody | None:

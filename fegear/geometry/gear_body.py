@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fegear.base.errors import GeometryError, shown
 from fegear.geometry.body_along import BodyAlong, body_along
 
-#: Outer and inner radius, the two ends along the axis at the outer one, and by how much both move toward greater places
-#: from there inward, over the way along the radius.
-Cylinder = tuple[float, float, float, float, float]
 #: Thinnest web, hub and ring between two circles [modules]; thinner ones are shells, which want other elements.
 _THINNEST = 0.2
 #: Steepest web that was compared with other programs [rad].
@@ -180,14 +176,6 @@ class GearBody:
             self.lean, None if self.holes is None else self.holes.scaled(factor),
         )  # fmt: skip
 
-    def cylinders(self, outer_radius: float, bore_radius: float, width: float) -> tuple[Cylinder, ...]:
-        """The hollow cylinders that the gear consists of, its teeth as a ring up to some radius."""
-        face = (-0.5 * width, 0.5 * width)
-        return (
-            (outer_radius, self.rim_radius, *face, 0.0), (self.rim_radius, self.hub_radius, *self.web, self.lean),
-            (self.hub_radius, bore_radius, *self.hub, 0.0),
-        )  # fmt: skip
-
     def section(self, outer_radius: float, bore_radius: float, width: float) -> tuple[tuple[float, float], ...]:
         """Half of the gear's section along its axis: corners by place along the face and radius.
 
@@ -274,30 +262,3 @@ class GearBody:
                     f"must by at least {_LEAST_RIM * hub * 1e3:.6g} mm",
                     "move the web, or let the hub begin where the web meets it (hub_width, hub_offset)",
                 )  # fmt: skip
-
-
-def moments(cylinders: Sequence[Cylinder], density: float, body: GearBody | None = None) -> tuple[float, float, float]:
-    """Mass [kg], inertia about the axis and about a line across it at z = 0 [kg m^2] of hollow cylinders [m].
-
-    Less those of the holes that a body has; across the axis on average over all directions, which three holes and more
-    are alike to.
-    """
-    mass = spin = tilt = 0.0
-    for outer, inner, low, high, lean in cylinders:
-        length, squares = high - low, outer**2 + inner**2
-        own = math.pi * density * length * (outer**2 - inner**2)
-        mass += own
-        spin += own * squares / 2.0
-        far = (0.5 * (low + high)) ** 2
-        if lean:  # the middle of the length lies at c - lean r; this is the mean of its square over the area
-            c, cubes = 0.5 * (low + high) + lean * outer, (outer**3 - inner**3) / (outer**2 - inner**2)
-            far = c**2 - 4.0 / 3.0 * c * lean * cubes + 0.5 * lean**2 * squares
-        tilt += own * ((3.0 * squares + length**2) / 12.0 + far)
-    if body is not None and body.holes is not None:
-        (low, high), holes = body.web, body.holes
-        own = math.pi * density * (high - low) * holes.radius**2 * holes.count
-        mass -= own
-        spin -= own * (0.5 * holes.radius**2 + holes.circle_radius**2)
-        tilt -= own * ((3.0 * holes.radius**2 + (high - low) ** 2) / 12.0 + (0.5 * (low + high)) ** 2)
-        tilt -= 0.5 * own * holes.circle_radius**2
-    return mass, spin, tilt

@@ -348,7 +348,8 @@ def dynamic_factor(
         Of the mesh. The default, which a remark reports, is that of NASA TM-89901; measure or compare before you
         promise anything.
     train : mapping, optional
-        ``[train]`` of a case file. By default the two gears turn as discs between steady torques, without shafts.
+        ``[train]`` of a case file. By default the two gears turn, with the inertia of their
+        teeth and bodies, between steady torques, without shafts.
     dynamics : mapping, optional
         More keys of ``[dynamics]``: ``direction``, ``tolerance``, ...
     effects, tolerance, neglected, progress, cache
@@ -372,7 +373,10 @@ def dynamic_factor(
     found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache, neglected=neglected)
     if train is not None:
         return found
-    said = "No train was given; assumed default: the gears turn as discs between steady torques, without shafts."
+    said = (
+        "No train was given; assumed default: the gears turn, with their own inertia, between steady torques, without "
+        "shafts."
+    )
     if damping_ratio is None:
         said += f" No damping_ratio was given; assumed default: {ratio:g} in the mesh."
     return replace(found, plan=replace(found.plan, remarks=(*found.plan.remarks, said)))

@@ -11,7 +11,9 @@ import pytest
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.built.solid_influence import solid_support_remarks
 from fegear.case.reading import build_scene
-from fegear.geometry.gear_body import GearBody, WebHoles, moments
+from fegear.geometry.gear_body import GearBody, WebHoles
+from fegear.geometry.mass import mass_properties
+from fegear.geometry.tooth import Tooth
 from fegear.output.mesh_export import write_solid
 from fegear.results.gear import body_modes
 from fegear.results.gear.teeth_over_holes import teeth_over_holes
@@ -78,8 +80,8 @@ def test_what_knows_no_holes_refuses_them(tmp_path):
 def test_inertia_lacks_what_is_drilled_out():
     body = GearBody(5.0, 2.0, (-0.5, 1.0), (-2.0, 2.0))
     holes = WebHoles(6, 3.5, 0.8)
-    cylinders = body.cylinders(6.0, 1.0, 4.0)
-    plain, drilled = moments(cylinders, 3.0), moments(cylinders, 3.0, replace(body, holes=holes))
+    made = (mass_properties(Tooth(14), 1.0, 4.0, 1.0, 3.0, one) for one in (body, replace(body, holes=holes)))
+    plain, drilled = ((one.mass, one.inertia, one.inertia_at_mid_face) for one in made)
     one = 3.0 * math.pi * 0.8**2 * 1.5
     assert plain[0] - drilled[0] == pytest.approx(6 * one)
     assert plain[1] - drilled[1] == pytest.approx(6 * one * (0.8**2 / 2 + 3.5**2))

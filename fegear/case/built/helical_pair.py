@@ -79,10 +79,11 @@ def helical_pair_inputs(scene: Scene, name: str) -> HelicalPairInputs:
 def _body(pair: GearPair, member: Member) -> dict[str, float]:
     """Mass, inertia and size of a gear."""
     gear = pair.gear(member)
-    mass, spin, tilt = gear.moments
+    body = gear.mass_properties
+    tilt = body.inertia_at_mid_face  # the model's mesh and bearings stand there
     return {
-        "mass": mass, "inertia_x": tilt, "inertia_y": tilt, "inertia_z": spin, "base_radius": gear.base_radius,
-        "half_face_width": 0.5 * pair.face_width,
+        "mass": body.mass, "inertia_x": tilt, "inertia_y": tilt, "inertia_z": body.inertia,
+        "base_radius": gear.base_radius, "half_face_width": 0.5 * pair.face_width,
     }  # fmt: skip
 
 

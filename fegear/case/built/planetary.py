@@ -118,7 +118,19 @@ def _mass(body: SetBodyPart | None, gear: Gear | None) -> tuple[float, float]:
         return body.mass, body.inertia
     if gear is None:
         return math.nan, math.nan
-    return gear.moments[:2]
+    return gear.mass_properties.mass, gear.mass_properties.inertia
+
+
+def body_masses(scene: Scene, name: str) -> tuple[tuple[str, float, float, str], ...]:
+    """Member, mass, inertia [kg, kg m^2] and where they come from, of the bodies of a set that are known."""
+    part, found = planetary_part(scene, name), []
+    for member in ("sun", "planet", "ring", "carrier"):
+        given, gear = getattr(part.body, member), getattr(part, member, None)
+        if given is None and gear is None:
+            continue
+        source = f"as given by body.{member}" if given is not None else f"of the teeth and the body of gear {gear}"
+        found.append((member, *_mass(given, None if gear is None else scene.gears[gear]), source))
+    return tuple(found)
 
 
 def ring_checks(scene: Scene, name: str) -> tuple[InternalCheck, ...]:

@@ -79,7 +79,7 @@ class TrainInputs:
     ----------
     part : TrainPart
     inertias : mapping of str to float
-        Of each body, the discs of its gears included [kg m^2].
+        Of each body, that of its gears included [kg m^2].
     pairs : mapping of str to GearPair
         Of each mesh.
     speed_of : str
@@ -108,7 +108,7 @@ def train_inputs(scene: Scene) -> TrainInputs:
 def _inertia(scene: Scene, part: BodyPart) -> float:
     inertia = part.inertia or 0.0
     for gear_name in part.gears or ():
-        inertia += scene.gears[gear_name].moments[1]
+        inertia += scene.gears[gear_name].mass_properties.inertia
     return inertia
 
 

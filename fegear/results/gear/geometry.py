@@ -57,6 +57,7 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
         "Gears",
         printed=True,
     )
+    bodies = mass_table(gears)
     values = tuple(value for name, pair in pairs.items() for value in pair_values(name, pair))
     remarks = tuple(
         f"Pair {name}: the contact ratio of {pair.total_contact_ratio:.4f} is below 1: no teeth are on the path at "
@@ -77,9 +78,9 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
         if one.margin < 0.0
     )
     lone = lone_table(drawing)
-    tables = (table, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))
+    tables = (table, bodies, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))
     figures = (*(pair_figure(name, drawing) for name in pairs), *body_figures(gears))
-    return Outcome(drawing, tables, values, {}, (*remarks, *unmeasured_remarks(drawing)), figures)
+    return Outcome(drawing, tables, values, {}, (*remarks, *drawing.assumed, *unmeasured_remarks(drawing)), figures)
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,8 @@ class Drawing:
         Diameters of the measuring balls or pins that the case names, by gear [m].
     ground : mapping of str to mapping of str to float
         What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
+    assumed : tuple of str
+        Sentences on bores and face widths that mass and inertia take for granted.
     """
 
     gears: Mapping[str, Gear]
@@ -103,6 +106,7 @@ class Drawing:
     members: Mapping[str, tuple[str, str]]
     balls: Mapping[str, float]
     ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    assumed: tuple[str, ...] = ()
 
 
 def drawing_of(scene: Scene) -> Drawing:
@@ -111,7 +115,31 @@ def drawing_of(scene: Scene) -> Drawing:
     members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
     balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
     ground = {name: amounts for name in scene.gears if (amounts := ground_off(scene.case.gear[name]))}
-    return Drawing(scene.gears, scene.pairs, members, balls, ground)
+    return Drawing(scene.gears, scene.pairs, members, balls, ground, assumed_bodies(scene))
+
+
+def assumed_bodies(scene: Scene) -> tuple[str, ...]:
+    """Sentences on gears whose mass is that of an assumed bore or face width."""
+    found = []
+    for name, part in scene.case.gear.items():
+        gear, lacking = scene.gears[name], []
+        if not part.gives_rim:
+            key = "outer_radius" if part.internal else "bore_radius"
+            lacking.append(f"{key} = {gear.bore_radius * 1e3:.6g} mm")
+        if part.face_width is None:
+            lacking.append(f"face_width = {gear.face_width * 1e3:.6g} mm")
+        if lacking:
+            found.append(f"Gear {name}: mass and inertia are those of the default {' and '.join(lacking)}.")
+    return tuple(found)
+
+
+def mass_table(gears: Mapping[str, Gear]) -> Table:
+    """Mass, moments of inertia and centre of gravity of all gears, teeth integrated."""
+    bodies = tuple(gear.mass_properties for gear in gears.values())
+    names = Column("gear", np.array(list(gears)), "", "name of the gear")
+    attributes = ("mass", "inertia", "transverse_inertia", "centre_of_gravity")
+    columns = (column_over(bodies, attribute) for attribute in attributes)
+    return Table("mass_and_inertia", (names, *columns), "Mass and inertia of gears", printed=True)
 
 
 def measured(gear: Gear, ball_diameter: float | None = None) -> OverBalls | None:

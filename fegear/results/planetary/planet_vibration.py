@@ -11,7 +11,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.shown import declared
-from fegear.case.built.planetary import check_masses, planetary_part, set_inputs
+from fegear.case.built.planetary import body_masses, check_masses, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, set_pair
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
@@ -54,6 +54,8 @@ class VibrationInputs:
     damping_ratio : float
     harmonics : int
     driving, name : str
+    bodies : tuple of (str, float, float, str)
+        Member, mass [kg], inertia [kg m^2] and where they come from.
     """
 
     speeds: Array
@@ -62,13 +64,15 @@ class VibrationInputs:
     harmonics: int
     driving: str
     name: str
+    bodies: tuple[tuple[str, float, float, str], ...] = ()
 
 
 def _inputs(scene: Scene, name: str) -> VibrationInputs:
     part, run = planetary_part(scene, name), set_inputs(scene, name).run
     speeds = np.zeros(0) if part.speeds is None else part.speeds.array
     per_turn = run.mesh_frequency * 2.0 * math.pi / abs(run.speed[run.input])
-    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.harmonics, part.input, name)
+    bodies = body_masses(scene, name)
+    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.harmonics, part.input, name, bodies)
 
 
 def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearSet:
@@ -128,6 +132,12 @@ def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
         Value(f"{name}.natural_frequency_{k}", float(data.frequency[k]), "Hz", float(linear.frequency_error[k]),
               f"undamped, {data.kind[k]}")
         for k in number if data.frequency[k] > 0.0
+    ) + tuple(
+        Value(f"{name}.{member}.{what}", number, unit, None, f"{meaning}, {source}")
+        for member, mass, inertia, source in inputs.bodies
+        for what, number, unit, meaning in (
+            ("mass", mass, "kg", "mass"), ("inertia", inertia, "kg.m^2", "moment of inertia about its axis"),
+        )
     )  # fmt: skip
     counted = ", ".join(f"{count} of kind {kind}" for kind, count in Counter(data.kind).items())
     table = Table(f"planet_modes_{name}", columns, f"Natural modes of set {name}", printed=True)

@@ -164,6 +164,10 @@ def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
             Value(f"{name}.mean_stiffness", mesh.stiffness, "N/um", stiffness, "1 over the mean compliance"),
             Value(f"{name}.static_te_peak_to_peak", float(np.ptp(one.error(s))), "um", swing, "under the mean force"),
         ]
+    for name, body in asked.part.body.items():
+        sources = [*(f"gear {gear}" for gear in body.gears or ()), *(["inertia"] if body.inertia else [])]
+        meaning = f"moment of inertia of body {name}: {' + '.join(sources)}"
+        values.append(Value(f"{name}.inertia", asked.inertias[name], "kg.m^2", None, meaning))
     settings: dict[str, object] = {body.name: body.inertia for body in data.train.bodies}
     return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
 
