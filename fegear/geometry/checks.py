@@ -13,6 +13,7 @@ import numpy as np
 
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.tooth import Tooth
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +109,8 @@ LEAST_TIP_THICKNESS = 0.2
 LEAST_TIP_CLEARANCE = 0.1
 #: Least contact ratio, overlap included, that is usual for a quiet drive.
 LEAST_CONTACT_RATIO = 1.2
+#: Both profile shifts of a pair are printed with four digits at least: what that takes off their sum, in modules.
+ROUNDED_SHIFTS = 1e-4
 #: Least rim below the root circle, in depths of a tooth: thinner rims bend with their teeth (Y_B of ISO 6336-3 is 1).
 LEAST_RIM = 1.2
 
@@ -126,6 +129,10 @@ class Check(NamedTuple):
         In which both are read; empty for ratios.
     remedy : str
         What a designer would change.
+    slack : float
+        By how much the value may lie below its limit, as rounded input makes it.
+    finding : str
+        What the value is where the rule is broken, said in place of value and limit.
     """
 
     of: str
@@ -134,11 +141,13 @@ class Check(NamedTuple):
     limit: float
     unit: str
     remedy: str
+    slack: float = 0.0
+    finding: str = ""
 
     @property
     def holds(self) -> bool:
         """Whether the rule is kept."""
-        return self.value >= self.limit
+        return self.value >= self.limit - self.slack
 
 
 def tip_thickness(gear: Gear) -> float:
@@ -146,23 +155,46 @@ def tip_thickness(gear: Gear) -> float:
     return gear.normal_thickness(gear.involute_tip_radius)
 
 
-def gear_checks(name: str, gear: Gear) -> tuple[Check, ...]:
+def backup_ratio(gear: Gear) -> float:
+    """Rim between the root circle and bore, web or outer circle over the depth of a tooth (m_B of AGMA 2101)."""
+    inside = gear.bore_radius if gear.body is None else gear.body.rim_radius
+    return (gear.root_radius - inside) / (gear.tip_radius - gear.root_radius)
+
+
+def gear_checks(name: str, gear: Gear, *, assumed_rim: bool = False) -> tuple[Check, ...]:
     """Rules for one gear.
 
     Parameters
     ----------
     name : str
     gear : Gear
+    assumed_rim : bool
+        Whether nobody gave its bore or outer circle, so that its rim is not compared with anything.
     """
     tooth, m = gear.tooth, gear.module
     depth = tooth.side * (tooth.tip_radius - tooth.root_radius) * m
-    rim = tooth.side * (gear.root_radius - gear.bore_radius)
     hole = "take a larger outer radius" if tooth.internal else "take a smaller bore"
-    return (
+    checks = [
         Check(name, "tooth thickness at the tip", tip_thickness(gear), LEAST_TIP_THICKNESS * m, "mm",
               "take less profile shift or a smaller tip diameter"),
-        Check(name, "rim below the teeth", rim, LEAST_RIM * depth, "mm", hole),
-        Check(name, "undercut", -float(tooth.undercut), 0.0, "", "take more profile shift or more teeth"),
+    ]  # fmt: skip
+    if not assumed_rim:
+        checks.append(Check(name, "rim below the teeth", backup_ratio(gear) * depth, LEAST_RIM * depth, "mm", hole))
+    if isinstance(tooth, Tooth):
+        checks.append(_undercut(name, tooth, m))
+    return tuple(checks)
+
+
+def _undercut(name: str, tooth: Tooth, module: float) -> Check:
+    """How much of the involute the rack's tip cuts away, and the profile shift from which on it cuts nothing."""
+    least, lost = tooth.least_profile_shift, 0.0
+    if tooth.profile_shift < least - ROUNDED_SHIFTS:
+        lost = (tooth.form_radius - tooth.base_radius) * module
+    enough = math.ceil(least * 1e4) * 1e-4
+    return Check(
+        name, "undercut", 0.0 - lost, 0.0, "mm",
+        f"increase profile_shift to at least {enough:.4f}, or the number of teeth",
+        finding=f"{lost * 1e3:.4g} mm of the involute above the base circle at profile_shift = {tooth.profile_shift:g}",
     )  # fmt: skip
 
 
@@ -178,7 +210,8 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
         Check(name, "transverse contact ratio" if pair.overlap_ratio == 0.0 else "total contact ratio",
               pair.total_contact_ratio, LEAST_CONTACT_RATIO, "", "lengthen the teeth or raise their number"),
         Check(name, "backlash along the line of action", pair.normal_backlash, 0.0, "mm",
-              "widen the centre distance or thin the teeth"),
+              "widen the centre distance or thin the teeth",
+              2.0 * ROUNDED_SHIFTS * pair.driver.module * math.sin(pair.driver.normal_pressure_angle)),
     ]  # fmt: skip
     module = pair.driver.module
     for member in MEMBERS:

@@ -182,6 +182,14 @@ class Tooth(InvoluteTooth):
         )
 
     @property
+    def least_profile_shift(self) -> float:
+        """x_min, profile shift from which on the rack's tip cuts nothing off the involute (ISO 21771, 5.2)."""
+        rack, alpha = self.rack, self.pressure_angle
+        room = self.base_radius * math.sin(alpha) * math.tan(alpha)
+        reach = rack.tip_centre_depth + rack.tip_radius * math.sin(rack.pressure_angle)
+        return reach - room + self.profile_shift - self.generating_shift
+
+    @property
     def undercut(self) -> bool:
         """Whether the rack's tip, or its protuberance, cuts away part of the involute."""
         return self.rack.residual_undercut > 0.0 or self._flank_line.tangent_roll(self.rack) < 0.0

@@ -67,3 +67,59 @@ def test_the_tip_thickness_is_that_of_the_involute():
     tip = np.arccos(gear.base_radius / gear.tip_radius)
     expected = 2.0 * gear.tip_radius * (np.pi / 56 + involute(np.radians(20.0)) - involute(tip))
     assert tip_thickness(gear) == pytest.approx(expected, rel=1e-12)
+
+
+HANDBOOK = {
+    "teeth": 12, "normal_module": "3 mm", "helix_angle": "30 deg", "hand": "left", "profile_shift": 0.09809,
+    "face_width": "20 mm", "bore_radius": "6 mm",
+}  # fmt: skip
+MATE = {"teeth": 60, "normal_module": "3 mm", "helix_angle": "30 deg", "hand": "right", "face_width": "20 mm",
+        "bore_radius": "40 mm"}  # fmt: skip
+
+
+def test_a_profile_shift_printed_with_five_digits_breaks_no_rule_of_backlash():
+    """-0.8 nm of backlash at a = 125 mm; a shift that is really too large is still found."""
+    broken, table, _ = checked(HANDBOOK, MATE, centre_distance="125 mm")
+    of_backlash = table["rule"] == "backlash along the line of action"
+    assert -1e-6 < table["value"][of_backlash][0] < 0.0
+    assert ("I", "backlash along the line of action") not in broken
+    for shift, jams in ((0.0981, False), (0.09815, False), (0.0985, True)):
+        broken, *_ = checked(HANDBOOK | {"profile_shift": shift}, MATE, centre_distance="125 mm")
+        assert (("I", "backlash along the line of action") in broken) == jams
+
+
+@pytest.mark.parametrize("gear", [
+    {"teeth": 12, "module": "5 mm", "face_width": "10 mm"},
+    {"internal": True, "teeth": 60, "module": "5 mm", "face_width": "10 mm", "cutter": {"teeth": 20},
+     "tip_diameter": "292 mm"},
+])  # fmt: skip
+def test_no_rule_judges_what_fegear_assumed(gear):
+    scene = build_scene({"results": ["tooth-geometry-check"], "gear": {"a": gear}}, "case", Path())
+    found = run_plan(scene, make_plan(scene, STAGES))
+    (table,) = found.tables
+    assert "rim below the teeth" not in table["rule"]
+    key = "outer_radius" if "internal" in gear else "bore_radius"
+    assert any(key in remark and "not checked" in remark for remark in found.remarks)
+
+
+def test_undercut_is_an_amount_with_the_profile_shift_that_avoids_it():
+    """x_min = h_fP - rho_fP (1 - sin(alpha)) - z sin^2(alpha) / 2 (ISO 21771)."""
+    sine = np.sin(np.radians(20.0))
+    _, table, results = checked({**SOUND, "teeth": 10, "bore_radius": "4 mm"}, {**SOUND, "teeth": 40})
+    gear = Gear(Tooth(10), 3e-3, 4e-3)
+    lost = (gear.form_radius - gear.base_radius) * 1e3
+    amount = table["value"][(table["of"] == "a") & (table["rule"] == "undercut")][0]
+    assert amount == pytest.approx(-lost, rel=1e-3)
+    (remark,) = (one for one in results.remarks if one.startswith("a: undercut is "))
+    assert f"{-amount:.4g} mm of the involute" in remark
+    assert f"at least {1.0 + 0.25 * sine - 5.0 * sine**2 + 5e-5:.4f}" in remark
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.4])
+@pytest.mark.parametrize("teeth", [10, 12, 17, 24])
+def test_from_the_minimum_profile_shift_on_nothing_is_undercut(teeth, helix):
+    for allowance in (0.0, 0.05):
+        least = Tooth(teeth, profile_shift=0.45, thickness_allowance=allowance, helix_angle=helix).least_profile_shift
+        for off in (-1e-6, 1e-6):
+            tooth = Tooth(teeth, profile_shift=least + off, thickness_allowance=allowance, helix_angle=helix)
+            assert tooth.undercut == (off < 0.0)

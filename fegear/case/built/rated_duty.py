@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
-from fegear.geometry.gear import USUAL_RING_RIM
+from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 
 if TYPE_CHECKING:
@@ -208,11 +208,27 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
         held = f"held outside of a rim of {USUAL_RING_RIM:g} modules, at {bore:.6g} mm"
         return (f"Gear {gear}: no outer_radius or rim_thickness was given; assumed default: the body is {held}.",)
     if part.body is not None and part.face_width is not None:
-        return (f"Gear {gear}: plane results take its body for a disc; rim, web and hub count where it is solid.",)
+        plane = f"Gear {gear}: plane results take its body for a disc; rim, web and hub count where it is solid."
+        return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
     if part.bore_radius is not None:
-        return ()
+        return thin_rim_remarks(gear, scene.gears[gear])
     held = f"held at half the root radius, {bore:.6g} mm"
     return (f"Gear {gear}: no bore_radius was given; assumed default: the body is {held}.",)
+
+
+def thin_rim_remarks(gear: str, made: Gear) -> tuple[str, ...]:
+    """What a thin rim on a bore that is fixed all round leaves out, and what to do."""
+    from fegear.geometry.checks import LEAST_RIM
+
+    backup = (made.root_radius - made.bore_radius) / (made.tip_radius - made.root_radius)
+    if made.tooth.internal or backup >= LEAST_RIM:
+        return ()
+    said = (
+        f"Gear {gear}: its rim of {backup:.2g} tooth depths (below {LEAST_RIM:g}) is fixed all round its bore, so root "
+        "stress and deflection are underestimated. Describe rim and web by body (rim_thickness, web_thickness) and set "
+        'width = "solid" for its pairs.'
+    )
+    return (said,)
 
 
 def width_remarks(scene: Scene, gear: str) -> tuple[str, ...]:

@@ -400,6 +400,26 @@ def _tip_relief(scene: Scene, gear: str, part: GearPart, said: list[str]) -> flo
 
 #: Young's modulus above which a material is no iron: nodular iron has about 175 GPa (ISO 6336-2, table of Z_E) [Pa].
 _STIFFEST_IRON = 190e9
+#: Young's moduli below which a material is no steel, and neither steel nor iron (grey iron has 66 GPa and more) [Pa].
+_SOFTEST_STEEL, _SOFTEST_METAL = 170e9, 60e9
+
+
+def _refuse_soft(scene: Scene, gear: str, material: str, said: list[str]) -> None:
+    """Refuse plastics under the name of a steel, whatever their own stress limits; a soft steel is `said`."""
+    modulus = scene.gears[gear].material.young_modulus
+    if modulus < _SOFTEST_METAL:
+        raise InputError(
+            f"gear.{gear}.strength.material", material,
+            f"contradicts the Young's modulus of {modulus * 1e-9:.4g} GPa: life, notch and film factors of ISO 6336 "
+            f"are valid for steel and iron (above {_SOFTEST_METAL * 1e-9:g} GPa), with own stress limits as well",
+            "remove strength from gears of plastics, whose strength is that of VDI 2736; root-stress-history and "
+            "load-sharing are valid for any material",
+        )  # fmt: skip
+    if MATERIALS[material] not in TOUGH_IRON | SOFT_IRON and modulus < _SOFTEST_STEEL:
+        said.append(
+            f"Gear {gear}: strength names {material}, but its Young's modulus of {modulus * 1e-9:.4g} GPa is below "
+            "that of any steel (material)."
+        )
 
 
 def gear_strength(scene: Scene, gear: str, said: list[str]) -> Strength:
@@ -407,6 +427,7 @@ def gear_strength(scene: Scene, gear: str, said: list[str]) -> Strength:
     part = scene.case.gear[gear].strength
     if part is None:
         raise InputError(f"gear.{gear}.strength", "(not given)", "is missing")
+    _refuse_soft(scene, gear, part.material, said)
     found: dict[str, float] = {}
     own = part.bending if part.bending_allowable is None else 0.5 * part.bending_allowable
     try:

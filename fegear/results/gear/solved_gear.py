@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, cast
 
+from fegear.case.built.rated_duty import thin_rim_remarks
 from fegear.case.built.solid_influence import (
     SolidGearToSolve,
     check_solid_gear,
@@ -95,6 +96,8 @@ def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcom
     body = asked.gear.body
     tooth = None if body is None or body.holes is None else body.holes.tooth
     remarks = solid_support_remarks(asked.name, influence, tooth)
+    if body is None:
+        remarks += thin_rim_remarks(asked.name, asked.gear)
     return Outcome(influence, settings=solid_solution_settings(influence), remarks=remarks)
 
 

@@ -26,23 +26,29 @@ class Drawing:
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, GearPair]
+    assumed_rims: tuple[str, ...] = ()
 
 
 def _inputs(scene: Scene, _subject: str) -> Drawing:
-    return Drawing(scene.gears, scene.pairs)
+    assumed = tuple(name for name, part in scene.case.gear.items() if not part.gives_rim)
+    return Drawing(scene.gears, scene.pairs, assumed)
 
 
 def _compute(drawing: Drawing, _upstream: Upstream, _work: Work) -> tuple[Check, ...]:
-    found = [check for name, gear in drawing.gears.items() for check in gear_checks(name, gear)]
+    found = [
+        check
+        for name, gear in drawing.gears.items()
+        for check in gear_checks(name, gear, assumed_rim=name in drawing.assumed_rims)
+    ]
     found += [check for name, pair in drawing.pairs.items() for check in pair_checks(name, pair)]
     return tuple(found)
 
 
-def _present(checks: tuple[Check, ...], _drawing: Drawing) -> Outcome:
+def _present(checks: tuple[Check, ...], drawing: Drawing) -> Outcome:
     verdicts = np.array(["holds" if check.holds else "broken" for check in checks])
     broken = [check for check in checks if not check.holds]
     # Lengths and ratios share a column, so each is given over its limit as well; a limit of zero has no such ratio.
-    share = np.array([check.value / check.limit if check.limit else np.nan for check in checks])
+    share = np.array([check.value / check.limit if check.limit > 0.0 else np.nan for check in checks])
     scale = np.array([1e3 if check.unit == "mm" else 1.0 for check in checks])
     table = Table(
         "tooth_geometry_check",
@@ -62,11 +68,18 @@ def _present(checks: tuple[Check, ...], _drawing: Drawing) -> Outcome:
         Value("rules_broken", float(len(broken)), "", 0.0, "of them"),
     )
     remarks = tuple(
-        f"{check.of}: {check.rule} is {_amount(check, check.value)}, below {_amount(check, check.limit)}; "
-        f"{check.remedy}."
-        for check in broken
+        f"{check.of}: {check.rule} is {check.finding or _below(check)}; {check.remedy}." for check in broken
+    )
+    remarks += tuple(
+        f"Gear {name}: its rim is not checked; specify {'outer_radius' if gear.tooth.internal else 'bore_radius'}."
+        for name, gear in drawing.gears.items()
+        if name in drawing.assumed_rims
     )
     return Outcome(checks, (table,), values, {}, remarks, _figures(checks, share))
+
+
+def _below(check: Check) -> str:
+    return f"{_amount(check, check.value)}, below {_amount(check, check.limit)}"
 
 
 def _amount(check: Check, value: float) -> str:
