@@ -184,10 +184,15 @@ def test_uneven_sets_on_springs_go_there_and_back():
     tree = held(planetary_set(angles=UNEVEN), (81, 5, 4e8), (82, 3, 7e7))
     for n in range(3):
         tree = put(tree, 61 + n, radial_stiffness=(3e8, "N/m"))
-    scene = imported(put(put(tree, 7, rotational_stiffness=(2e9, "N mm/rad")), 15, outer_diameter=(180.0, "mm")))
+    tree = put(put(tree, 7, rotational_stiffness=(2e9, "N mm/rad")), 15, outer_diameter=(180.0, "mm"))
+    for stage in (21, 22, 23):
+        tree = put(tree, stage, application_factor=(1.4, "none"), temperature_lubricant=(63.0, "C"))
+    scene = imported(put(tree, 1, operating_time=(8000.0, "h")))
     again, remarks = there_and_back(scene)
     assert remarks == ()
     assert same(again.case.planetary["P"], scene.case.planetary["P"])
+    assert scene.case.pair["P_sun"].operation.life == 8000.0 * 3600.0
+    assert all(same(again.case.pair[name], pair) for name, pair in scene.case.pair.items())
     assert all(same(again.gears[name], gear) for name, gear in scene.gears.items())
 
 

@@ -130,7 +130,7 @@ def model_text(scene: Scene, date: str, results: Found = _NOTHING) -> tuple[str,
         _stage(written, scene, name, part, gears, bodies, unit, results)
     for name, one in sets.items():
         _set(written, scene, name, one, gears, bodies, (unit, casing))
-    _lives(unit, pairs)
+    _lives(unit, scene.case.pair)
     _drives(written, scene, bodies)
     shafts = {one.name: one for one in written.parts if one.type == "shaft"}
     write_shaft_results(written, shafts, results.tables)
@@ -184,9 +184,7 @@ def _stage(
     stage = written.part("cylindrical_stage", name).say("length", center_distance=pair.centre_distance)
     written.relate("assembly", assembly=unit, part=stage)
     written.relate("stage", stage=stage, gear_1=gears[part.driver], gear_2=gears[_mate(part)])
-    year = part.iso_6336.edition or 2019
-    if "application_factor" in part.operation.model_fields_set:
-        stage.say("number", **{f"application_factor_iso_6336_{year}": part.operation.application_factor})
+    year = _application_factor(part, stage)
     _oil(written, part, stage, name)
     found = results.values
     for key, attribute in _OF_STAGE.items():
@@ -219,6 +217,14 @@ def _load_over_face(written: Written, stage: Part, name: str, along: float, widt
         stage.say("line load", load_distribution_along_face_width=[q for _, q in rows])
     elif over:
         written.remarks.append(f"Pair {name}: load distribution not written, for its table lacks z or mean_line_load.")
+
+
+def _application_factor(part: PairPart, stage: Part) -> int:
+    """K_A of a pair with its stage, where it is given; the year of the edition of ISO 6336 that is followed."""
+    year = part.iso_6336.edition or 2019
+    if "application_factor" in part.operation.model_fields_set:
+        stage.say("number", **{f"application_factor_iso_6336_{year}": part.operation.application_factor})
+    return year
 
 
 def _oil(written: Written, part: PairPart, stage: Part, name: str) -> None:
@@ -264,7 +270,11 @@ def _set(
         written.relate("side", assembly=bearing, outer_part=own, inner_part=pin)
         for mesh, first, second in zip(MESHES, (sun, planet), (planet, ring), strict=True):
             stage = written.part("cylindrical_stage").say("length", center_distance=distance)
-            _oil(written, scene.case.pair[set_pair(name, mesh)], stage, f"{name}, {mesh} {n + 1}")
+            pair = scene.case.pair[set_pair(name, mesh)]
+            _oil(written, pair, stage, f"{name}, {mesh} {n + 1}")
+            _application_factor(pair, stage)
+            if pair.operation.spectrum:
+                written.remarks.append(f"Pair {set_pair(name, mesh)}, operation: spectrum not written to REXS.")
             written.relate("assembly", assembly=whole, part=stage)
             written.relate("stage", stage=stage, gear_1=first, gear_2=second)
     bodies.join(bodies.shaft[part.sun].id, bodies.shaft[str(part.ring)].id, turning.id)
