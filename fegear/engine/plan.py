@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any, NamedTuple, overload
 
-from fegear.base.errors import InputError
+from fegear.base.errors import GeometryError, InputError
 from fegear.case.part import nearest
 from fegear.case.reading import Scene
 from fegear.case.trade_words import of_result
@@ -217,6 +217,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         _require_effects(scene, stage, wanted)
         _refuse_twice(stage, wanted)
         _refuse_internal(scene, stage, task.subject, result)
+        _refuse_fouling(scene, stage, task.subject)
         stage.check(scene, task.subject)
         reasons[task], needs = [reason], stage.needs(scene, task.subject)
         for need in needs:
@@ -296,6 +297,22 @@ def _refuse_twice(stage: Stage, results: Sequence[str]) -> None:
                 "results", f'"{other}"', f"and {stage.name} would write the same tables",
                 f"ask for {stage.name} alone: it holds what {other} has",
             )  # fmt: skip
+
+
+#: Stages that draw and measure gears, which need not run.
+_DRAWN = ("geometry", "tooth-geometry-check", "measured-flanks")
+
+
+def _refuse_fouling(scene: Scene, stage: Stage, subject: str) -> None:
+    """Refuse internal pairs whose tips meet material where a stage lets them run."""
+    if stage.name in _DRAWN or subject in scene.gears:
+        return
+    for name, pair in scene.pairs.items():
+        if name == subject or subject not in scene.pairs:
+            try:
+                pair.refuse_fouling()
+            except GeometryError as error:
+                raise InputError(f"pair.{name}", error.value, error.rule, error.remedy) from None
 
 
 def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> None:

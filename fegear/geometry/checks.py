@@ -227,7 +227,7 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
             )  # fmt: skip
     checks += [
         Check(name, one.name, one.margin * module, 0.0, "mm", one.trouble)
-        for one in pair.internal_checks
+        for one in (check.of_pinion for check in pair.internal_checks)
         if math.isfinite(one.margin)
     ]
     return tuple(checks)

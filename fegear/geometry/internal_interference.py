@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,10 @@ from fegear.geometry.involute_tooth import InvoluteTooth
 #: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet, and of a
 #: tip's chamfer or rounding.
 _TURNS, _CLOSER, _FILLET, _EDGE = 257, 4, 1025, 9
+#: Less than this is no interference [m]: what tips wear off, and circles printed with three digits leave.
+MEETS = 1e-6
+#: Halvings of a range of tip radii.
+_HALVINGS = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,17 @@ class InternalCheck:
         if self.margin >= 0.0:
             return f"{self.name}: free by {self.margin * module * 1e3:.4g} mm"
         return f"{self.name}: {self.trouble}, by {-self.margin * module * 1e3:.4g} mm"
+
+    def fouls(self, module: float) -> bool:
+        """Whether a pair of this module [m] cannot run: material meets by a micrometre or more."""
+        return self.refused and self.margin * module <= -MEETS
+
+    @property
+    def of_pinion(self) -> InternalCheck:
+        """The same with the external gear called pinion, which it is where no planetary set is meant."""
+        return replace(
+            self, name=self.name.replace("planet", "pinion"), trouble=self.trouble.replace("planet", "pinion")
+        )
 
 
 class TipCorner(NamedTuple):
@@ -117,6 +132,74 @@ def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float)
                       f"a cutter of {ring.cutter.teeth} teeth fed straight across the axis trims tips of the ring; "
                       "take one of fewer teeth, or feed it otherwise", refused=False),
     )  # fmt: skip
+
+
+class ClearingTips(NamedTuple):
+    """Tip radii [modules] with which a pair runs; None where the tip stays as it is."""
+
+    planet: float | None
+    ring: float | None
+
+
+def clearing_tips(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> ClearingTips | None:
+    """The shortest cut of one tip, or of both where one does not do, with which no material meets.
+
+    Parameters
+    ----------
+    planet : InvoluteTooth
+    ring : InternalTooth
+    distance : float
+        Between the axes [modules].
+
+    Returns
+    -------
+    ClearingTips or None
+        None where no tip circle that leaves an active flank does.
+    """
+
+    def room(one: InvoluteTooth, other: InternalTooth) -> float:
+        return min(check.margin for check in internal_checks(one, other, distance) if check.refused)
+
+    def cut_ring(one: InvoluteTooth) -> float | None:
+        return _shortest_cut(lambda r: room(one, replace(ring, tip_radius=r)), ring.tip_radius, ring.form_radius)
+
+    def cut_planet(other: InternalTooth) -> float | None:
+        return _shortest_cut(lambda r: room(replace(planet, tip_radius=r), other), planet.tip_radius,
+                             max(planet.form_radius, planet.base_radius))  # fmt: skip
+
+    own, others = cut_planet(ring), cut_ring(planet)
+    if own is not None and (others is None or planet.tip_radius - own <= others - ring.tip_radius):
+        return ClearingTips(own, None)
+    if others is not None:
+        return ClearingTips(None, others)
+    for share in (0.25, 0.5, 0.75):
+        try:
+            shorter = planet.tip_radius - share * (planet.tip_radius - max(planet.form_radius, planet.base_radius))
+            rest = cut_ring(replace(planet, tip_radius=shorter))
+        except GeometryError:
+            continue
+        if rest is not None:
+            return ClearingTips(shorter, rest)
+    return None
+
+
+def _shortest_cut(room: Callable[[float], float], tip: float, limit: float) -> float | None:
+    """Tip radius nearest to the present one with which there is room, by halves; None where there is none."""
+
+    def clears(radius: float) -> bool:
+        try:
+            return room(radius) >= 0.0
+        except GeometryError:
+            return False
+
+    far = next((r for r in (tip + share * (limit - tip) for share in (0.02, 0.1, 0.25, 0.5, 0.8)) if clears(r)), None)
+    if far is None:
+        return None
+    near = tip
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (near + far)
+        near, far = (near, middle) if clears(middle) else (middle, far)
+    return far
 
 
 def _tip_corner(tooth: InvoluteTooth) -> TipCorner:

@@ -63,8 +63,9 @@ class GearPair:
     Raises
     ------
     GeometryError
-        If both gears are internal, tips of an internal pair meet what they must not (`internal_checks`), hands, helix
-        angles or base pitches do not go together, the teeth jam or never meet, or the faces stand beside each other.
+        If both gears are internal, hands, helix angles or base pitches do not go together, the teeth jam or never
+        meet, or the faces stand beside each other. Tips of an internal pair that meet what they must not leave a pair
+        that can be drawn, not run (`refuse_fouling`).
     """
 
     driver: Gear
@@ -117,7 +118,6 @@ class GearPair:
                 "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces next to each other",
                 f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
             )  # fmt: skip
-        self._check_tips()
 
     def _check_hands(self) -> None:
         """Refuse two ring gears, and hands that do not mesh on parallel axes."""
@@ -134,14 +134,39 @@ class GearPair:
                 "turn the hand of one gear",
             )
 
-    def _check_tips(self) -> None:
-        """Refuse gears inside ring gears whose tips meet what they must not."""
+    def refuse_fouling(self) -> None:
+        """Refuse gears inside ring gears whose tips meet what they must not: they can be drawn, not run.
+
+        Raises
+        ------
+        GeometryError
+            With the tip diameter that clears.
+        """
         for one in self.internal_checks:
-            if one.refused and one.margin < 0.0:
+            if one.fouls(self.driver.module):
                 raise GeometryError(
-                    "pair", one.name, f"fails: {one.trouble}, by {-one.margin * self.driver.module * 1e3:.4g} mm",
-                    "shorten that tip, or change profile shifts, centre distance or numbers of teeth",
+                    "pair", one.of_pinion.name,
+                    f"fails: {one.of_pinion.trouble}, by {-one.margin * self.driver.module * 1e3:.4g} mm",
+                    self.clearing or "change profile shifts, centre distance or numbers of teeth",
                 )  # fmt: skip
+
+    @cached_property
+    def clearing(self) -> str:
+        """How tips of an internal pair are cut so that none meets material; empty where none does, or no cut helps."""
+        if not any(one.fouls(self.driver.module) for one in self.internal_checks):
+            return ""
+        from fegear.geometry.internal_interference import clearing_tips
+
+        planet, ring = sorted((self.driver, self.driven), key=lambda gear: gear.tooth.internal)
+        tips = clearing_tips(planet.tooth, ring.tooth, self.centre_distance / ring.module)
+        if tips is None:
+            return ""
+        step, found = 1e5, []  # hundredths of a millimetre, to the safe side
+        if tips.planet is not None:
+            found.append(f"of the pinion to {math.floor(2.0 * tips.planet * planet.module * step) / step * 1e3:.2f} mm")
+        if tips.ring is not None:
+            found.append(f"of the ring gear to {math.ceil(2.0 * tips.ring * ring.module * step) / step * 1e3:.2f} mm")
+        return f"set tip_diameter {' and '.join(found)}"
 
     def _check_helix(self) -> None:
         """Refuse helical gears that are cut by different racks."""

@@ -27,17 +27,21 @@ from fegear.geometry.tooth import Tooth
 MODULE = 2e-3
 
 
-@pytest.fixture(scope="module")
-def solved():
-    beta, gears = math.radians(15.0), []
+@pytest.fixture(scope="module", params=["usual", "stub"])
+def solved(request):
+    """Gears of usual height, and stub ones that always have lines in contact but not in every section of the face."""
+    beta, gears, stub = math.radians(15.0), [], request.param == "stub"
     for teeth, hand in ((20, "right"), (31, "left")):
-        tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.25), helix_angle=beta)
+        tooth = Tooth(teeth, BasicRack(0.5 if stub else 1.0, 1.25, 0.25), helix_angle=beta)
         gears.append(Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, 4.0 * MODULE, hand=hand))
     known = {}
     for member, g in zip(MEMBERS, gears, strict=True):
         size = g.twist * MODULE, g.face_width / MODULE, g.material.poisson_ratio, g.bore_radius / MODULE
         known[member] = solid_influence(g.tooth, *size, solid_settings(0.1), reach=1, estimate_error=False)
-    return GearPair(*gears), known
+    pair = GearPair(*gears)
+    assert (pair.contact_ratio < 1.0) == stub
+    assert pair.total_contact_ratio > 1.1
+    return pair, known
 
 
 def own_lines(pair, roll, panel):

@@ -194,10 +194,11 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
         refuse_load(pair, max(part.all_loads(pair)))
     except InputError as error:
         raise at(f"pair.{name}", error) from None
-    if pair.contact_ratio < 1.0:
+    if pair.total_contact_ratio < 1.0 and not effects.corner_contact:
         raise InputError(
-            f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", "is below 1",
-            "lengthen the teeth or raise the number of teeth",
+            f"pair.{name}", f"total contact ratio {pair.total_contact_ratio:.4f}",
+            "is below 1: at some roll positions no tooth pair is on the path of contact",
+            "lengthen the teeth, widen the face, raise the number of teeth, or set effects.corner_contact = true",
         )  # fmt: skip
     if effects.misalignment:
         _check_misalignment(scene, name)

@@ -213,7 +213,8 @@ class LoadedWidePair:
             te_effective=effective,
             local_stiffness_mean=local,
             mesh_stiffness_mean=each[i].mean_secant,
-            mesh_compliance_mean=perfect / self.nominal,
+            # else tip edges carry where no pair is on the path, and perfect flanks have no stiffness there
+            mesh_compliance_mean=perfect / self.nominal if self.pair.total_contact_ratio >= 1.0 else None,
             te_error=self.error.transmission_error[:, i],
             only=self.gaps.base_pitch if uneven else None,
         )

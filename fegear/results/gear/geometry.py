@@ -72,10 +72,15 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
         if sentence
     )
     remarks += tuple(
-        f"Pair {name}: {one.sentence(pair.driver.module)}."
+        f"Pair {name}: {one.of_pinion.sentence(pair.driver.module)}."
         for name, pair in pairs.items()
         for one in pair.internal_checks
-        if one.margin < 0.0
+        if one.margin < 0.0 and (one.fouls(pair.driver.module) or not one.refused)
+    )
+    remarks += tuple(
+        f"Pair {name}: these gears cannot run; {pair.clearing} to clear all tips."
+        for name, pair in pairs.items()
+        if pair.clearing
     )
     lone = lone_table(drawing)
     tables = (table, bodies, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))

@@ -1,0 +1,87 @@
+"""Tip diameters with which internal pairs run: named where tips meet, and confirmed by polygons that are rolled."""
+
+import importlib.util
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import fegear
+from fegear.base.errors import InputError
+from fegear.geometry.internal_interference import clearing_tips, internal_checks
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.tooth import Tooth
+
+
+def polygons():
+    """The polygons of the other test: outlines and motion alone."""
+    path = Path(__file__).with_name("test_internal_interference_closed_form.py")
+    spec = importlib.util.spec_from_file_location("internal_interference_by_polygons", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def case(pinion=20, ring=60, **more):
+    return {
+        "results": ["geometry"],
+        "gear": {
+            "p": {"teeth": pinion, "module": "3 mm"},
+            "r": {"teeth": ring, "module": "3 mm", "internal": True, "cutter": {"teeth": 25}},
+        },
+        "pair": {"I": {"driver": "p", "driven": "r", "load": "1 kN"}},
+    } | more
+
+
+def diameter(text):
+    found = re.search(r"set tip_diameter of the (pinion|ring gear) to ([0-9.]+) mm", text)
+    assert found, text
+    return {"pinion": "p", "ring gear": "r"}[found[1]], float(found[2])
+
+
+def test_a_pair_without_profile_shift_is_drawn_and_says_the_tip_diameter_that_clears():
+    found = fegear.run(case(), progress=False)
+    said = " ".join(found.remarks)
+    assert "cuts into the fillet, by 0.01024 mm" in said
+    assert "planet" not in said
+    gear, tip = diameter(said)
+    repaired = case()
+    repaired["gear"][gear]["tip_diameter"] = f"{tip} mm"
+    assert not any("tip_diameter" in one for one in fegear.run(repaired, progress=False).remarks)
+
+
+def test_results_under_load_are_refused_with_that_diameter():
+    with pytest.raises(InputError) as error:
+        fegear.run(case(results=["transmission-error"]), progress=False)
+    assert error.value.key == "pair.I"
+    assert diameter(str(error.value)) == diameter(" ".join(fegear.run(case(), progress=False).remarks))
+
+
+@pytest.mark.parametrize("pinion", [17, 20, 25, 30])
+@pytest.mark.parametrize("ring", [60, 80, 100])
+def test_usual_pairs_without_profile_shift_are_drawn(pinion, ring):
+    fegear.run(case(pinion, ring), progress=False)
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize(("z1", "z3"), [(20, 60), (22, 61), (17, 60), (30, 80), (17, 23)])
+def test_polygons_at_that_tip_are_clear_and_beyond_it_meet(z1, z3):
+    by_polygons = polygons()
+    planet = Tooth(z1, thickness_allowance=0.02, **({"profile_shift": 0.2} if z3 == 23 else {}))
+    cutter = PinionCutter(min(25, z3 - 5))
+    ring = InternalTooth(z3, cutter, **({"profile_shift": -0.2, "tip_radius": 10.9} if z3 == 23 else {}))
+    distance = 0.5 * (z3 - z1)
+    before = [one for one in internal_checks(planet, ring, distance) if one.refused and one.margin < 0.0]
+    assert before
+    tips = clearing_tips(planet, ring, distance)
+    if tips is None:
+        pytest.fail("no tip clears")
+    clear = [
+        gear if tip is None else replace(gear, tip_radius=tip) for gear, tip in zip((planet, ring), tips, strict=True)
+    ]
+    assert min(one.margin for one in internal_checks(*clear, distance) if one.refused) >= 0.0
+    assert by_polygons.rolled(*clear, distance) < by_polygons.MEETS
+    longer = [replace(one, tip_radius=0.5 * (one.tip_radius + own.tip_radius))
+              for one, own in zip(clear, (planet, ring), strict=True)]  # fmt: skip
+    assert by_polygons.rolled(*longer, distance) > by_polygons.MEETS
