@@ -262,8 +262,8 @@ def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> F
     return type(error)(f"{prefix}.{key}" if key else prefix, error.value, error.rule, error.remedy)
 
 
-#: How alike two spellings must be, 0 to 1: words of the trade that are not in `trade_words` are no misspelt keys.
-_ALIKE = 0.65
+#: How alike two spellings must be, 0 to 1; more where one may type a word of the trade that is no misspelt key.
+_ALIKE, _ALIKE_KEYS = 0.5, 0.65
 
 
 def nearest(
@@ -286,7 +286,7 @@ def nearest(
     meaning = words(name) if words else None
     if meaning is not None:
         return f"{meaning.remedy(names)}; {listed}"
-    near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE)
+    near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE_KEYS if words else _ALIKE)
     return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed
 
 

@@ -10,6 +10,7 @@ import contextlib
 import csv
 import errno
 import hashlib
+import json
 import math
 import os
 import re
@@ -292,3 +293,8 @@ def _entry(text: str, path: Path, key: str, where: str) -> float:
     if not math.isfinite(value):
         raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
     return value
+
+
+def toml_string(text: str) -> str:
+    """A text as TOML writes it: in quotes like JSON's, which leave one control character as it is."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -55,13 +55,13 @@ def of_value(key: str, value: object) -> str:
 
 
 def plain(word: str) -> str:
-    """A word without capitals, umlauts and hyphens."""
+    """A word without capitals, umlauts and what joins its parts: sigma_Hlim and sigmaHlim are one."""
     return word.strip().lower().translate(_LETTERS)
 
 
 _LETTERS = str.maketrans({
     "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "α": "alpha", "β": "beta", "ρ": "rho", "ν": "nu", "σ": "sigma",
-    "-": "_", " ": "_", "'": "",
+    "-": "", " ": "", "_": "", "'": "",
 })  # fmt: skip
 _RACK = "a rack is not possible in fegear: a gear of 1000 teeth comes nearest"
 _STEPPED = "stepped planets are not possible in fegear: a planet is one gear, which meshes with sun and ring"
@@ -104,7 +104,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("b width facewidth zahnbreite breite gear_width", ("gear.NAME.face_width",), ""),
     (("d_a da od do tip_circle tip_circle_diameter outside_diameter outer_diameter addendum_diameter kopfkreis "
      "kopfkreisdurchmesser"), ("gear.NAME.tip_diameter",), ""),
-    ("r_a ra_tip tip_circle_radius outside_radius", ("gear.NAME.tip_diameter",), "twice the radius"),
+    ("ra_tip tip_circle_radius outside_radius", ("gear.NAME.tip_diameter",), "twice the radius"),
     ("d_f df root_circle root_circle_diameter fusskreis fusskreisdurchmesser root_diameter",
      ("gear.NAME.cutter.root_diameter", "gear.NAME.rack.dedendum"), "d_f = m (z + 2 x - 2 h_fP*)"),
     (("bore bore_diameter bore_dia d_i di inner_diameter inside_diameter shaft_hole hole_diameter bohrung "
@@ -155,7 +155,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("a a_w aw c center_distance centre_dist axis_distance achsabstand", ("pair.NAME.centre_distance",), ""),
     ("pinion ritzel gear_1 gear1 input_gear", ("pair.NAME.driver",), ""),
     ("wheel rad gear_2 gear2 output_gear gear", ("pair.NAME.driven",), ""),
-    ("t t1 t_1 input_torque torque_1 pinion_torque moment drehmoment", ("pair.NAME.torque", "train.torque"), ""),
+    ("t t1 torque input_torque torque_1 pinion_torque moment drehmoment", ("pair.NAME.torque", "train.torque"), ""),
     ("power leistung p_kw kw hp transmitted_power", ("pair.NAME.torque",), "the power over the angular speed"),
     ("f_t ft w_t wt force tangential_force transmitted_load umfangskraft normal_force f_n fn",
      ("pair.NAME.load",), "along the line of action: F_t / cos(alpha_wt)"),
@@ -196,7 +196,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("bearings lager", ("bearing.NAME",), "a table for each: [bearing.ball]"),
     ("planets planetary_set planet_set planetengetriebe epicyclic", ("planetary.NAME",), "a table: [planetary.P]"),
     ("outputs output result wanted ergebnisse", ("results",), ""),
-    ("tolerance mesh_size element_size elements refinement solver netz", ("accuracy.tolerance", "accuracy"), ""),
+    ("tolerance mesh_size element_size elements refinement netz", ("accuracy.tolerance", "accuracy"), ""),
     ("headline titel", ("title",), ""),
     ("coupling_between_teeth coupled_teeth", ("effects.neighbour_coupling", "effects"), ""),
     ("tip_contact premature_contact off_line_contact vorzeitiger_eingriff", ("effects.corner_contact", "effects"), ""),
@@ -249,13 +249,13 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
      "sound is not computed in fegear; transmission-error and dynamic-factor are what excites it"),
 )  # fmt: skip
 _VALUES = {
-    "hand": dict.fromkeys(("double", "double_helical", "herringbone", "both"), _DOUBLE),
+    "hand": dict.fromkeys(("double", "doublehelical", "herringbone", "both"), _DOUBLE),
 }
 
 
 def _rows(rows: tuple[tuple[str, tuple[str, ...], str], ...]) -> Iterator[tuple[str, Meaning]]:
     for words, keys, how in rows:
-        yield from ((word, Meaning(keys, how)) for word in words.split())
+        yield from ((plain(word), Meaning(keys, how)) for word in words.split())
 
 
 _KEYS = dict(_rows(_OF_KEYS))

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.base.shown import shown
+from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True, slots=True)
@@ -347,3 +348,20 @@ def _largest(wave: Array, at: Array, load: Array) -> Array:
     started = np.cumsum(slope * np.diff(turned, axis=1), axis=1) * (1j / wave[:, None])
     swing = load[0] * turned[:, :1] + np.concatenate([np.zeros((wave.size, 1)), started], axis=1)
     return np.asarray((load - np.real(swing * turned.conj())).max(axis=1))
+
+
+def refuse_beyond_path(loading: LoadingFunction, pair: GearPair) -> None:
+    """Refuse a design zone that reaches beyond the path of contact.
+
+    Raises
+    ------
+    RangeError
+    """
+    slack = 1e-9 * pair.base_pitch
+    if loading.x_start < pair.x_start - slack or loading.x_end > pair.x_end + slack:
+        raise RangeError(
+            "design.length",
+            f"{loading.x_start * 1e3:.6g} to {loading.x_end * 1e3:.6g} mm",
+            f"reaches beyond the path of contact, {pair.x_start * 1e3:.6g} to {pair.x_end * 1e3:.6g} mm",
+            "choose a shorter design length or another centre",
+        )

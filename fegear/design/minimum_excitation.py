@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.base.errors import InputError, RangeError
+from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.design.loading import LoadingFunction
+from fegear.design.loading import LoadingFunction, refuse_beyond_path
 from fegear.design.relief_bound import refuse_deeper_than_the_tooth
 from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.relief import Relief, TabulatedRelief
@@ -68,14 +68,7 @@ class MinimumExcitationRelief:
         """Refuse design zones that reach beyond the path of contact, and loads that are none."""
         if not (np.isfinite(self.load) and self.load > 0.0):
             raise InputError("design.load", f"{self.load} N", "must be positive and finite")
-        pair, slack = self.compliance.pair, 1e-9 * self.compliance.pair.base_pitch
-        if self.loading.x_start < pair.x_start - slack or self.loading.x_end > pair.x_end + slack:
-            raise RangeError(
-                "design.length",
-                f"{self.loading.x_start * 1e3:.6g} to {self.loading.x_end * 1e3:.6g} mm",
-                f"reaches beyond the path of contact, {pair.x_start * 1e3:.6g} to {pair.x_end * 1e3:.6g} mm",
-                "choose a shorter design length or another centre",
-            )
+        refuse_beyond_path(self.loading, self.compliance.pair)
 
     def _radius(self, x: Array) -> Array:
         return np.asarray(self.compliance.pair.radius(x, self.member))

@@ -253,6 +253,8 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         )
         for task, stage in stages_of.items()
     )  # fmt: skip
+    for step in steps:
+        step.inputs(scene)  # what a run would refuse as it begins a step, after others have taken their time
     running = {step.stage.name for step in steps}
     skipped = tuple((one.name, _why_not(one, wanted)) for one in known.entries if one.name not in running)
     used = {effect for step in steps for effect in step.effects}

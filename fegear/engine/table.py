@@ -61,6 +61,14 @@ class Column(Alike):
         return f"<column {self.head}: {len(self)} rows, {ends}>"
 
     @property
+    def explained(self) -> str:
+        """The meaning, with what the blank cells of a written table say where it has some."""
+        if self.si.dtype.kind != "f" or "blank" in self.meaning or np.isfinite(self.si).all():
+            return self.meaning
+        endless = "is unlimited or " if np.isinf(self.si).any() else ""
+        return "; ".join(filter(None, (self.meaning, f"blank where it {endless}does not apply")))
+
+    @property
     def head(self) -> str:
         """``name [unit]``."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name

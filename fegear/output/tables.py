@@ -27,12 +27,16 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 #: What names of values begin with that had no such beginning where the other result of their pair was not wanted.
 _PREFIX = re.compile(r"^(.+\.)(?:unloaded|wide)_(?=[^.]+$)")
-_QUANTITY = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?( ?[A-Za-zµ°%]+)?|inf|nan)?")
+_QUANTITY = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?( ?[A-Za-zµ°%]+)?)?")
 
 
 def cell(value: np.generic) -> str:
-    """Write one cell: floats with 12 significant digits, whole numbers and texts as they are."""
-    return f"{value:.12g}" if isinstance(value, np.floating) else str(value)
+    """Write one cell: floats with 12 significant digits, whole numbers and texts as they are; blank: does not apply."""
+    return f"{value:.12g}" if isinstance(value, np.floating) and np.isfinite(value) else _text(value)
+
+
+def _text(value: np.generic) -> str:
+    return "" if isinstance(value, np.floating) else str(value)
 
 
 def table_file(table: Table) -> str:
@@ -59,7 +63,7 @@ def table_text(table: Table) -> str:
 
 def sheet_lines(table: Table) -> list[str]:
     """Lines for the terminal: a line for each quantity, a column for each row of the table."""
-    rows = [[column.head, *(f"{v:.7g}" if v.dtype.kind == "f" else str(v) for v in column.values)]
+    rows = [[column.head, *(f"{v:.7g}" if v.dtype.kind == "f" and np.isfinite(v) else _text(v) for v in column.values)]
             for column in table.columns]  # fmt: skip
     first, *widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import functools
 import itertools
-import json
 import re
 import tomllib
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from tomlkit.items import AbstractTable, Table
 
 from fegear.base.errors import InputError
 from fegear.case.reading import typed_value
+from fegear.case.text_file import toml_string
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,7 +36,9 @@ def literal(value: object) -> str:
         return f"{{ {inside} }}" if inside else "{}"
     if isinstance(value, list):
         return f"[{', '.join(map(literal, value))}]"
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, (str, bool)) else str(value)
+    if isinstance(value, str):
+        return toml_string(value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def as_typed(text: str) -> str:
@@ -191,4 +193,4 @@ def _remove(document: Any, path: Path, wanted: Mapping[str, Any]) -> None:
 
 
 def _quoted(key: str) -> str:
-    return key if _BARE.fullmatch(key) else json.dumps(key, ensure_ascii=False)
+    return key if _BARE.fullmatch(key) else toml_string(key)

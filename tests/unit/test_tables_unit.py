@@ -28,9 +28,10 @@ def test_other_texts_stay_as_they_are(text):
     assert table_text(table) == f"gear\n{text}\n" or text == ""
 
 
-def test_numbers_stay_numbers():
+def test_numbers_stay_numbers_and_what_is_none_is_blank():
     values = np.array([-1.5, 1e-30, -np.inf, np.nan, 12345.678901234])
     text = table_text(Table("t", (Column("x", values), Column("n", np.array([-1, 2, -3, 4, 5])))))
-    found = np.array([[float(cell) for cell in line.split(",")] for line in text.splitlines()[1:]])
-    np.testing.assert_allclose(found[:, 0], values, rtol=1e-11)
+    assert text.splitlines()[3:5] == [",-3", ",4"]
+    found = np.array([[float(cell or "nan") for cell in line.split(",")] for line in text.splitlines()[1:]])
+    np.testing.assert_allclose(found[:, 0], np.where(np.isfinite(values), values, np.nan), rtol=1e-11)
     assert found[:, 1].tolist() == [-1, 2, -3, 4, 5]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import Flanks, PairInputs, pair_inputs, refuse_formulas
+from fegear.case.built.pair_inputs import Flanks, PairInputs, gear_name, pair_inputs, refuse_formulas
 from fegear.case.part import at
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible import refuse_deep_relief, refuse_load, refuse_relief_elsewhere
@@ -234,22 +234,21 @@ def _with(compliance: PairCompliance, driver: GearCompliance, driven: GearCompli
 
 def check_pair(scene: Scene, name: str) -> None:
     """Refuse pairs that cannot be loaded as the case asks, and effects without data or data against an effect."""
+    from fegear.contact.plane.meshing import refuse_gaps
+
     part, effects = scene.case.pair[name], scene.case.effects
     pair, key = scene.pairs[name], f"pair.{name}"
     if part.normal_load(pair) is None:
         raise InputError(f"{key}.load", "(not given)", "is needed for load sharing", "give load, loads or torque")
-    if pair.contact_ratio < 1.0 and not effects.corner_contact:
-        raise InputError(
-            key, f"contact ratio {pair.contact_ratio:.4f}",
-            "is below 1: at some roll positions no tooth pair is on the path of contact",
-            "lengthen the teeth, raise the number of teeth, or set effects.corner_contact = true",
-        )  # fmt: skip
+    refuse_gaps(pair, key, corner_contact=effects.corner_contact)
     try:
         refuse_load(pair, max(part.all_loads(pair)))
     except InputError as error:
         raise at(key, error) from None
     source = part.compliance.source
     refuse_formulas(scene, name)
+    if source not in ("fe", "table"):
+        _check_closed_forms(scene, name)
     if effects.neighbour_coupling and source != "fe":
         raise InputError(
             "effects.neighbour_coupling", "true", f'is not known to the compliances of {key}, source = "{source}"',
@@ -271,6 +270,24 @@ def check_pair(scene: Scene, name: str) -> None:
             f"give gear.{part.driver}.spacing_errors, or leave the effect out",
         )  # fmt: skip
     _check_flanks(scene, name)
+
+
+def _check_closed_forms(scene: Scene, name: str) -> None:
+    """Refuse a formula of tooth compliance outside the range of teeth and bodies that it is made for."""
+    from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+
+    source = scene.case.pair[name].compliance.source
+    for member in MEMBERS:
+        try:
+            closed_form_compliance(scene.pairs[name].gear(member), source)
+        except InputError as error:
+            key, gear = f"pair.{name}.compliance.source", gear_name(scene, name, member)
+            raise InputError(
+                key,
+                f'"{source}"',
+                f"requires another gear {gear}: {error.key} = {error.value} {error.rule}",
+                error.remedy,
+            ) from None
 
 
 def _check_flanks(scene: Scene, name: str) -> None:

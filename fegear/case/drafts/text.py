@@ -12,6 +12,7 @@ from string import Template
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 
 _HEAD = """\
@@ -130,7 +131,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         file=file,
         stem=stem,
         pad=" " * len(file),
-        title=json.dumps(f"{stem}: {teeth} teeth, module {answers['module']}", ensure_ascii=False),
+        title=toml_string(f"{stem}: {teeth} teeth, module {answers['module']}"),
     )
     values = {
         "head": head,
@@ -159,7 +160,7 @@ def _aligned(line: str) -> str:
 
 
 def _texts(answers: Answers, names: tuple[str, ...]) -> dict[str, str]:
-    quoted = {name: json.dumps(answers[name], ensure_ascii=False) for name in names}
+    quoted = {name: toml_string(answers[name]) for name in names}
     return quoted | {f"{name}_note": _ASSUMED if answers.assumed(name) else "" for name in names}
 
 
@@ -234,7 +235,7 @@ def _planetary(answers: Answers) -> Mapping[str, str]:
     radius = 0.5 * both * module
     carrier = math.pi * _STEEL * face * radius**2
     speed, stiffness = answers.si("speed"), _PER_WIDTH * face
-    torque, at = (json.dumps(answers[key], ensure_ascii=False) for key in ("torque", "speed"))
+    torque, at = (toml_string(answers[key]) for key in ("torque", "speed"))
     return {
         "ring_teeth": str(sun + 2 * planet),
         "planets": str(planets),

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.shown import shown, shows
@@ -34,7 +34,7 @@ from fegear.formulas.outcome import ComplianceSource, Outcome, attempt
 from fegear.formulas.root_section import load_line
 from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES, pair_compliance
 from fegear.geometry.gear import Gear
-from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.tooth import Tooth
 
 _REASON = "why the formula gives nothing; empty where it does"
@@ -155,10 +155,34 @@ def pair_compliance_answers(pair: GearPair, x: ArrayLike, line_load: float) -> d
     return {name: _pointwise(partial(parts, source), points) for name, source in SOURCES.items()}
 
 
+def contact_half_width(pair: GearPair, x: Array, line_load: float) -> Array:
+    """Hertz's half-width of one tooth pair that carries all of a line load [N/m], at positions x [m]."""
+    curvature = hertz.relative_curvature(
+        pair.flank_curvature_radius(x, "driver"), pair.flank_curvature_radius(x, "driven")
+    )
+    modulus = 1.0 / sum(1.0 / pair.gear(member).plane_modulus for member in MEMBERS)
+    return np.asarray(hertz.line_contact(line_load, curvature, modulus).half_width)
+
+
+def contact_fits(pair: GearPair, x: Array, half_width: Array) -> NDArray[np.bool_]:
+    """Whether the flanks of both gears hold contacts of these half-widths [m] at positions x [m]."""
+    from fegear.fem.plane.contact_width import flank_holds
+
+    fits = np.ones(x.shape, dtype=bool)
+    for member in MEMBERS:
+        gear, r = pair.gear(member), pair.radius(x, member)
+        low, high = gear.involute_radii
+        room = np.minimum(r**2 - low**2, high**2 - r**2) / (2.0 * gear.base_radius)
+        fits &= flank_holds(half_width / gear.module, room / gear.module)
+    return fits
+
+
 def pair_reference(
     pair: GearPair, driver: GearInfluence, driven: GearInfluence, x: ArrayLike, line_load: float
 ) -> PairReference:
-    """Finite elements of one tooth pair under a Hertzian contact; positions off a meshed flank are skipped.
+    """Finite elements of one tooth pair under a Hertzian contact.
+
+    Positions off a meshed flank are skipped, and those near its ends where the contact is wider than the flank.
 
     Parameters
     ----------
@@ -176,11 +200,9 @@ def pair_reference(
         r, slack = pair.radius(at, member), 1e-9 * known.gear.module
         on &= (r >= known.lowest_radius - slack) & (r <= known.highest_radius + slack)
     at = at[on]
-    curvature = hertz.relative_curvature(
-        pair.flank_curvature_radius(at, "driver"), pair.flank_curvature_radius(at, "driven")
-    )
-    modulus = 1.0 / sum(1.0 / known.gear.plane_modulus for _, known in members)
-    width = hertz.line_contact(line_load, curvature, modulus).half_width
+    width = contact_half_width(pair, at, line_load)
+    fits = contact_fits(pair, at, width)
+    at, width = at[fits], width[fits]
     c = [
         known.self_compliance(np.clip(pair.radius(at, member), known.lowest_radius, known.highest_radius), width)
         for member, known in members

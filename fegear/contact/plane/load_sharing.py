@@ -116,12 +116,11 @@ def share_load(
     reach = e < np.inf
     somewhere: Mask = np.logical_or.reduce(reach, axis=0)
     if not somewhere.all():
-        p = int(np.argwhere(~somewhere)[0, 0])
         raise InputError(
             "pair",
-            f"roll position number {p}",
-            "has no tooth pair in reach of the line of action",
-            "raise the contact ratio above 1 or allow corner contact",
+            f"({int((~somewhere).sum())} of {positions} roll positions)",
+            "has no tooth pair in reach of the line of action there",
+            "increase the contact ratio",
         )
     near = reach.any(axis=(1, 2))  # pairs that are nowhere in reach would only cost time
     slope, reference, bent = (

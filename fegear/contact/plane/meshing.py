@@ -66,6 +66,39 @@ class Touching(NamedTuple):
     edge: Array
 
 
+def refuse_gaps(pair: GearPair, key: str, *, corner_contact: bool) -> None:
+    """Refuse a pair of which at some roll positions no teeth touch, on the path of contact or at a tip corner.
+
+    Parameters
+    ----------
+    pair : GearPair
+    key : str
+        Of the pair in the case.
+    corner_contact : bool
+        Whether tip corners may touch the mating flank before and after the path of contact.
+
+    Raises
+    ------
+    InputError
+    """
+    if pair.contact_ratio >= 1.0:
+        return
+    corners = sum(corner.reach for corner in _corners(pair)) / pair.base_pitch
+    closed = pair.contact_ratio + corners >= 1.0
+    if corner_contact and closed:
+        return
+    rule = "is below 1: at some roll positions no tooth pair is on the path of contact"
+    if not closed:
+        rule += f", and tip corners reach over {corners:.4g} of a base pitch beyond it only"
+    longer = "increase addendum, numbers of teeth or profile shift"
+    remedy = f"{longer}, or set effects.corner_contact = true" if closed else longer
+    raise InputError(key, f"contact ratio {pair.contact_ratio:.4f}", rule, remedy)
+
+
+def _corners(pair: GearPair) -> tuple[CornerContact, CornerContact]:
+    return corner_contact(pair, "driven"), corner_contact(pair, "driver")
+
+
 @dataclass(frozen=True)
 class Meshing:
     """Finds the contacts of a gear pair.
@@ -87,18 +120,12 @@ class Meshing:
 
     def __post_init__(self) -> None:
         """Refuse pairs that lose contact."""
-        if self.pair.contact_ratio < 1.0 and not self.corner_contact:
-            raise InputError(
-                "pair",
-                f"contact ratio {self.pair.contact_ratio:.4f}",
-                "is below 1: at some roll positions no tooth pair is on the path of contact",
-                "lengthen the teeth, raise the number of teeth, or set effects.corner_contact = true",
-            )
+        refuse_gaps(self.pair, "pair", corner_contact=self.corner_contact)
 
     @cached_property
     def corners(self) -> tuple[CornerContact, CornerContact]:
         """The driven tip before the path and the driver's tip after it."""
-        return corner_contact(self.pair, "driven"), corner_contact(self.pair, "driver")
+        return _corners(self.pair)
 
     @property
     def pair_numbers(self) -> NDArray[np.int64]:

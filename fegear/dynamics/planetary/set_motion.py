@@ -194,7 +194,7 @@ class SetSweep:
         return np.array([state.periods for state in self.states], dtype=np.intp)
 
     @property
-    @shows("", "estimated error of the factors of motions that repeat; nan of others, of which they are a sample")
+    @shows("", "estimated error of the factors of motions that repeat; blank of others, of which they are a sample")
     def error(self) -> Array:
         """That of the integration, and what errors of the teeth do to linear vibration, shape (speeds,)."""
         repeats = np.array([state.repeats for state in self.states])

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.geometry.involute_tooth import InvoluteTooth
 
@@ -71,6 +72,12 @@ def check_half_widths(
             f"by more than a tenth of a module",
             usual + ", or choose radii farther from the flank's ends",
         )
+
+
+def flank_holds(half_width: Array, room: Array) -> NDArray[np.bool_]:
+    """Whether `check_half_widths` takes each contact [modules]."""
+    most = np.minimum(LARGEST_HALF_WIDTH, np.maximum(room, 0.0) + FARTHEST_PAST_END)
+    return np.asarray((half_width > 0.0) & (half_width <= most))
 
 
 def wedge_slope(angle: float) -> float:

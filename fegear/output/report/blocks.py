@@ -197,7 +197,7 @@ class DataTable(Block):
     @property
     def heads(self) -> list[tuple[str, str, str]]:
         """Name, unit and meaning of each column."""
-        return [(*_name_and_unit(column), column.meaning) for column in self.table.columns]
+        return [(*_name_and_unit(column), column.explained) for column in self.table.columns]
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
@@ -217,7 +217,7 @@ class SheetGroup:
     def rows(self) -> list[tuple[str, str, tuple[str, ...]]]:
         """What each row is, its unit and its values."""
         return [
-            (column.meaning, column.unit, tuple(_short(cell(value)) for value in column.values))
+            (column.explained, column.unit, tuple(_short(cell(value)) for value in column.values))
             for column in self.columns
         ]
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, error_column, tiled
@@ -108,6 +109,25 @@ def _pair_check(scene: Scene, name: str) -> PairCheck:
     if line_load is None and load is not None:
         return PairCheck(pair, gears, count, load / pair.face_width, False, part.operation.applied_factor)
     return PairCheck(pair, gears, count, line_load or USUAL_LINE_LOAD, line_load is None)
+
+
+def _check(scene: Scene, _subject: str) -> None:
+    """Refuse loads under which no contact of a single tooth pair fits on its flanks."""
+    from fegear.contact.compared.crosscheck import contact_fits, contact_half_width
+
+    for name in _pairs(scene):
+        check = _pair_check(scene, name)
+        pair = check.pair
+        x = np.linspace(pair.x_start, pair.x_end, check.positions)
+        remedy = "check load and face_width, or remove crosscheck"
+        try:
+            width = contact_half_width(pair, x, check.line_load)
+        except InputError as error:
+            rule = f"{error.key} = {error.value} {error.rule}"
+            raise InputError(f"pair.{name}.load", f"{check.line_load * 1e-3:.6g} N/mm", rule, remedy) from None
+        if not contact_fits(pair, x, width).any():
+            rule = f"gives contacts of {width.min() * 1e3:.4g} mm half-width at least, wider than the flanks"
+            raise InputError(f"pair.{name}.load", f"{check.line_load * 1e-3:.6g} N/mm", rule, remedy)
 
 
 def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
@@ -473,6 +493,7 @@ CROSSCHECK = Stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
+    check=_check,
     cites=citing(
         *ROOT_STRESS_FORMULAS,
         *(citation for group in CLOSED_FORM_COMPLIANCES.values() for citation in group),

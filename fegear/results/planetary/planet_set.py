@@ -135,7 +135,7 @@ def _ring_table(inputs: PlanetSetInputs) -> Table:
         f"planet_in_ring_{inputs.asked.name}",
         (
             Column("check", np.array([one.name for one in inputs.checks]), "", "what may meet"),
-            Column("margin", margins, "mm", "room that is left; negative where material meets, inf where none can"),
+            Column("margin", margins, "mm", "room that is left; negative where material meets, blank where none can"),
         ),
         f"What planets and ring of set {inputs.asked.name} may foul each other in",
     )

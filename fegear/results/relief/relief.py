@@ -136,7 +136,13 @@ def _check(scene: Scene, name: str) -> None:
     peak = design_part(scene).peak
     if isinstance(peak, str) and scene.case.pair[name].compliance.source != "fe":
         raise InputError("design.peak", f'"{peak}"', "needs root stresses", f'set pair.{name}.compliance.source = "fe"')
-    pair = scene.pairs[name]
+    from fegear.design.loading import refuse_beyond_path
+
+    pair, part = scene.pairs[name], design_part(scene)
+    if pair.contact_ratio < 1.0 and part.length is None and part.contact_ratio is None:
+        rule = "is below 1: relief shares the load over the whole path of contact"
+        raise InputError(f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", rule, "increase the contact ratio")
+    refuse_beyond_path(_loading(part, pair), pair)
     for member in MEMBERS:
         ends = [float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)]
         for roll in design_part(scene).roll_angles or ():

@@ -82,7 +82,7 @@ def orders_table(results: CostResults) -> Table:
     columns = (
         Column("quantity", np.array([k.quantity for k in knobs], dtype=np.str_)),
         Column("knob", np.array([k.name for k in knobs], dtype=np.str_), "", "the setting that was varied alone"),
-        Column("order", np.array([k.order.slope for k in knobs]), "", "p of error ~ step^p; nan: none"),
+        Column("order", np.array([k.order.slope for k in knobs]), "", "p of error ~ step^p; blank: none"),
         Column("configurations_used", np.array([k.order.used for k in knobs], dtype=int), "", "on the line"),
         Column("configurations", np.array([k.step.size for k in knobs], dtype=int), "", "tried"),
         Column("scatter", np.array([k.order.scatter for k in knobs]), "", "largest factor off the line"),
@@ -106,7 +106,7 @@ def knobs_table(results: CostResults) -> Table:
         Column("setting", joined("settings"), "", "its value: edges and patches in modules"),
         Column("error", joined("error"), "", "relative, from this knob alone"),
         Column("floor", np.repeat(np.array([k.floor for k in knobs]), count), "", "what the reference itself knows"),
-        Column("seconds", joined("seconds"), "s", "of one core; nan where it takes no time of its own"),
+        Column("seconds", joined("seconds"), "s", "of one core; blank where it takes no time of its own"),
     )
     return Table("cost_knobs", columns, "Error over each knob")
 

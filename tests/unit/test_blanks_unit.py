@@ -1,0 +1,62 @@
+"""What does not apply is blank in tables, null in JSON, and said so in the meaning of its column; readers take it."""
+
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+
+from fegear.engine.table import Column, Table
+from fegear.output.run_folder import _read_table as read_table
+from fegear.output.tables import cell, sheet_lines, table_text
+
+TABLE = Table("lives_I", (
+    Column("place", np.array([0.0, 1e-3]), "mm", "along the shaft"),
+    Column("life", np.array([math.inf, 3.6e6]), "h", "at this load"),
+    Column("share", np.array([math.nan, 0.5])),
+    Column("what", np.array(["", "x"])),
+))  # fmt: skip
+#: What Python, JSON and C write for what is no number.
+NO_NUMBER = re.compile(r"(?i)(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])")
+
+
+def test_a_table_has_blanks_and_its_columns_say_why():
+    assert table_text(TABLE).splitlines()[1:] == ["0,,,", "1,1000,0.5,x"]
+    assert not NO_NUMBER.search("\n".join(sheet_lines(TABLE)))
+    assert [column.explained for column in TABLE.columns] == [
+        "along the shaft", "at this load; blank where it is unlimited or does not apply",
+        "blank where it does not apply", "",
+    ]  # fmt: skip
+    odd = (np.float64("nan"), np.float64("-inf"), np.int64(3), np.str_("a"))
+    assert [cell(one) for one in odd] == ["", "", "3", "a"]
+
+
+def test_a_reader_takes_blanks_for_what_does_not_apply(tmp_path):
+    path = tmp_path / "lives_I.csv"
+    path.write_text(table_text(TABLE), "utf-8")
+    read = read_table(path, "DIR")
+    assert np.array_equal(read.column("life").values, [math.nan, 1000.0], equal_nan=True)
+    assert np.array_equal(read.column("share").values, [math.nan, 0.5], equal_nan=True)
+    assert list(read.column("what").values) == ["", "x"]
+
+
+CASES = {
+    "lin_table1": {}, "rating_spur": {}, "two_stage_shafts": {}, "planetary_set": {}, "pinion_and_wheel": {},
+    "litvin_lead": {}, "blankenship_singh": {}, "surface_and_loss": {}, "planet_and_ring": {},
+}  # fmt: skip
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize("name", CASES)
+def test_no_file_of_a_run_has_a_number_that_is_none(name, tmp_path, monkeypatch):
+    from case_laws import case, ran
+
+    ran(case(name), monkeypatch).save(tmp_path / "run", plots=False)
+    texts = [*(tmp_path / "run").rglob("*.csv"), *(tmp_path / "run").rglob("*.json")]
+    assert len(texts) > 2
+    for path in texts:
+        found = NO_NUMBER.search(path.read_text("utf-8"))
+        assert found is None, f"{path.name}: {found}"
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))
+    assert "results" in summary
