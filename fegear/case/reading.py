@@ -21,7 +21,7 @@ from fegear.case.part import BARE_SI, check_references, nearest
 from fegear.case.planetary import with_set_pairs
 from fegear.case.renamed import current, current_key, without_old
 from fegear.case.schema import keys_at, places_of
-from fegear.case.text_file import read_text
+from fegear.case.text_file import is_below, read_text
 from fegear.case.trade_words import Meaning, of_key, of_value
 
 if TYPE_CHECKING:
@@ -68,6 +68,8 @@ class Scene:
         usually wants, and not compared with it.
     renamed : tuple of str
         A sentence about every name of the case that is another one now.
+    within : tuple of str, optional
+        Real folders below which the files lie that the case may name; None for anywhere.
     """
 
     case: Case
@@ -82,6 +84,7 @@ class Scene:
     neglects: bool = True
     drafts: Mapping[str, float] = field(default_factory=dict)
     renamed: tuple[str, ...] = ()
+    within: tuple[str, ...] | None = None
 
     @property
     def sizes_neglected(self) -> bool:
@@ -114,8 +117,13 @@ class Scene:
         return {name: pair for name, pair in self.pairs.items() if self.width_of(name) != "plane"}
 
     def file(self, text: str, key: str) -> Path:
-        """Return the path of a file that the case names, or refuse if it is not there."""
+        """Return the path of a file that the case names, or refuse if it is not there or must not be read."""
         path = self.folder / text
+        if self.within is not None and not is_below(path, self.within):
+            raise InputError(
+                key, shown(text, PATH), f"is outside the folders opened here ({', '.join(self.within)})",
+                "start fegear open with --folder FOLDER",
+            )  # fmt: skip
         if not path.is_file():
             raise InputError(key, f'"{text}"', "is no file", f"looked for it as {path}")
         return path
@@ -182,7 +190,14 @@ def _refuse_decimal_commas(text: str) -> None:
             )  # fmt: skip
 
 
-def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare_si: bool = False) -> Scene:
+def build_scene(
+    document: Mapping[str, object],
+    name: str,
+    folder: Path,
+    *,
+    bare_si: bool = False,
+    within: tuple[str, ...] | None = None,
+) -> Scene:
     """Check a case given as a plain mapping and build its gears and pairs.
 
     Parameters
@@ -193,6 +208,8 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         Where relative file names in the case start.
     bare_si : bool
         Whether numbers without a unit are SI; a case file has none.
+    within : tuple of str, optional
+        Real folders below which the files lie that the case may name.
 
     Raises
     ------
@@ -227,7 +244,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         for key, pair in case.pair.items()
         if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical and not pairs[key].internal
     }
-    scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document, renamed=renamed)
+    scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document, renamed=renamed, within=within)
     check_references(scene)
     return scene
 

@@ -17,7 +17,7 @@ import re
 import stat
 import tempfile
 import unicodedata
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -141,6 +141,15 @@ def leads_to(path: Path, kind: Callable[[int], bool]) -> bool:
         return kind(path.stat().st_mode)
     except (OSError, ValueError):
         return False
+
+
+def is_below(path: Path, folders: Sequence[str]) -> bool:
+    """Whether a path leads to one of some real folders or files, or to something below one, links followed."""
+    try:
+        real = Path(os.path.realpath(path))
+    except (OSError, ValueError):
+        return False
+    return any(real.is_relative_to(one) for one in folders)
 
 
 def named_path(text: str, key: str, *, home: bool = False) -> Path:

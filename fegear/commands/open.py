@@ -16,6 +16,14 @@ def open(  # noqa: A001 - it is the name of the command
     ] = None,
     port: Annotated[int | None, typer.Option("--port", help="Port to listen on; a free one by default.")] = None,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, and open no browser.")] = False,
+    folder: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--folder",
+            metavar="FOLDER",
+            help="Folder whose files the page may open and write, besides this one and that of CASE; repeatable.",
+        ),
+    ] = None,
 ) -> None:
     """Open the live workbench in the browser: change a case and see the gears answer.
 
@@ -24,6 +32,6 @@ def open(  # noqa: A001 - it is the name of the command
     from fegear.window.server import serve
 
     try:
-        serve(case, port, browser=not no_browser, say=typer.echo)
+        serve(case, port, browser=not no_browser, say=typer.echo, folders=folder or ())
     except KeyboardInterrupt:
         leave("closed; what is not saved is kept for the next time.", 130)

@@ -1,8 +1,19 @@
-"""Who may speak to the page: this machine, by its own name and with the secret of the address; no other site's page."""
+"""Who may speak to the page: this machine, by its own name, the account that runs it, with the secret of its cookie.
+
+An address brings a key that works once: what it opens gets the cookie, and the next key is printed. A browser that
+fegear itself starts gets its address by a file that its owner only can read, as command lines are read by everybody.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import hmac
+import html
+import os
+import secrets
+import sys
+from ipaddress import ip_address
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
 
@@ -18,6 +29,51 @@ _POLICY = (
     "img-src 'self' data: blob:; font-src 'self' data:; connect-src 'self'; worker-src 'self' blob:; "
     "frame-ancestors 'none'; form-action 'self'; base-uri 'self'"
 )
+#: A page that leads to another, which is then no longer asked for by another site or by a file.
+_LEADS = (
+    '<!DOCTYPE html><html lang="en-US"><head><meta charset="utf-8"><meta name="referrer" content="no-referrer">'
+    '<meta http-equiv="refresh" content="1; url={address}"><title>fegear</title></head>'
+    '<body><script>location.replace({quoted})</script><a href="{address}">fegear</a></body></html>\n'
+)
+_REFUSED = "Refused: open the address that fegear open printed last. Each works once, for the account that runs it.\n"
+#: Where Linux tells which account a connection belongs to.
+_CONNECTIONS = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
+_ROOT = 0
+_LITTLE = sys.byteorder == "little"
+#: Whose connection was closed meanwhile: the system counts it as that of the first account, who may do everything.
+_NOBODY = -1
+
+
+class Keys:
+    """Keys that work once, and the secret that they are exchanged for.
+
+    Attributes
+    ----------
+    secret : str
+        Of the cookie.
+    """
+
+    def __init__(self) -> None:
+        self.secret = secrets.token_urlsafe(24)
+        self._open: dict[str, Callable[[], object]] = {}
+
+    def another(self, used: Callable[[], object]) -> str:
+        """Make a key; `used` is called when it is."""
+        key = secrets.token_urlsafe(24)
+        self._open[key] = used
+        return key
+
+    def is_open(self, key: str) -> bool:
+        """Whether a key has not been used."""
+        return key in self._open
+
+    def take(self, key: str) -> bool:
+        """Use a key; False if it is none, or has been used."""
+        for one in list(self._open):
+            if hmac.compare_digest(one.encode(), key.encode()):
+                self._open.pop(one)()
+                return True
+        return False
 
 
 class Doorkeeper:
@@ -28,12 +84,12 @@ class Doorkeeper:
     app : ASGI application
     port : int
         On which it listens.
-    secret : str
-        Of the address; the first request brings it as ``?key=``, the others as a cookie of this port.
+    keys : Keys
+        The first request brings one of them as ``?key=``, the others their secret as a cookie of this port.
     """
 
-    def __init__(self, app: App, port: int, secret: str) -> None:
-        self._app, self._secret, self._port = app, secret, port
+    def __init__(self, app: App, port: int, keys: Keys) -> None:
+        self._app, self._keys, self._port = app, keys, port
         self._hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
 
     async def __call__(
@@ -47,36 +103,94 @@ class Doorkeeper:
         for name, value in scope["headers"]:
             head = name.decode("latin-1").lower()
             heads[head] = "; ".join(filter(None, [heads.get(head), value.decode("latin-1")]))
-        key = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("key", [""])[0]
-        if not self._welcome(heads, key):
+        if not self._is_ours(scope, heads):
             await _refuse(scope, send)
-            return
+        elif _opens(scope, heads) and self._keys.take(_key_of(scope)):  # used up though the browser has the cookie
+            cookie = f"fegear-{self._port}={self._keys.secret}; HttpOnly; SameSite=Strict; Path=/"
+            await _answer(_with_heads(send), 200, leading_to("/"), "text/html", [(b"set-cookie", cookie.encode())])
+        elif self._has_cookie(heads):
+            await self._app(scope, receive, _with_heads(send))
+        else:
+            await _refuse(scope, send)
 
-        async def with_heads(message: MutableMapping[str, Any]) -> None:
-            if message["type"] == "http.response.start":
-                more = [
-                    (b"content-security-policy", _POLICY.encode()),
-                    (b"referrer-policy", b"no-referrer"),
-                    (b"x-content-type-options", b"nosniff"),
-                ]
-                if key:
-                    cookie = f"fegear-{self._port}={self._secret}; HttpOnly; SameSite=Strict; Path=/"
-                    more.append((b"set-cookie", cookie.encode()))
-                message = {**message, "headers": [*message.get("headers", ()), *more]}
-            await send(message)
-
-        await self._app(scope, receive, with_heads)
-
-    def _welcome(self, heads: dict[str, str], key: str) -> bool:
+    def _is_ours(self, scope: Scope, heads: dict[str, str]) -> bool:
+        """Whether it comes to this machine by its own name, from no other site's page and from no other account."""
         if heads.get("host") not in self._hosts:  # another name for this machine is another site's (DNS rebinding)
             return False
         origin = heads.get("origin")
         if origin is not None and origin.removeprefix("http://") not in self._hosts:
             return False
+        asking = account_of(scope.get("client"), self._port)
+        return asking is None or asking in (_ROOT, os.getuid())
+
+    def _has_cookie(self, heads: dict[str, str]) -> bool:
         if heads.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return False
-        shown = [key, *_cookies(heads.get("cookie", ""), f"fegear-{self._port}")]
-        return any(hmac.compare_digest(one.encode(), self._secret.encode()) for one in shown)
+        shown = _cookies(heads.get("cookie", ""), f"fegear-{self._port}")
+        return any(hmac.compare_digest(one.encode(), self._keys.secret.encode()) for one in shown)
+
+
+def leading_to(address: str) -> str:
+    """A page that leads to an address."""
+    return _LEADS.format(address=html.escape(address), quoted=f'"{address}"')
+
+
+def file_leading_to(address: str, folder: Path) -> Path:
+    """Write a page that leads to an address, which its owner only can read.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    place = folder / "open.html"
+    with os.fdopen(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
+        file.write(leading_to(address))
+    return place
+
+
+def account_of(client: tuple[str, int] | None, port: int) -> int | None:
+    """The account that a connection of this machine belongs to; None where the system does not tell.
+
+    Parameters
+    ----------
+    client : (str, int), optional
+        Address and port of who has connected.
+    port : int
+        To which.
+    """
+    if client is None or not hasattr(os, "getuid"):
+        return None
+    try:
+        own = ip_address(client[0])
+    except ValueError:
+        return None
+    ends = (f":{client[1]:04X}", f":{port:04X}")
+    for place in _CONNECTIONS:
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            for line in place.read_text("ascii").splitlines()[1:]:
+                _, here, there, _, _, _, _, uid, _, inode, *_ = line.split()
+                if here.endswith(ends[0]) and there.endswith(ends[1]) and _is_at(here.partition(":")[0], own.packed):
+                    return int(uid) if inode != "0" else _NOBODY
+    return None
+
+
+def _is_at(told: str, packed: bytes) -> bool:
+    """Whether four bytes, the last ones of the system's notation, are an address: each word is turned about."""
+    words = bytes.fromhex(told)
+    return words[-4:][::-1] == packed[-4:] if _LITTLE else words[-4:] == packed[-4:]
+
+
+def _opens(scope: Scope, heads: dict[str, str]) -> bool:
+    """Whether a request opens a page in a window of its own: by hand, by a program, or led there by a file."""
+    if scope["type"] != "http" or scope.get("method", "GET") != "GET" or scope.get("path", "/") != "/":
+        return False
+    whence = heads.get("sec-fetch-site", "none")
+    return whence in ("none", "same-origin") or heads.get("sec-fetch-dest") == "document"
+
+
+def _key_of(scope: Scope) -> str:
+    return parse_qs(scope.get("query_string", b"").decode("latin-1")).get("key", [""])[0]
 
 
 def _cookies(head: str, name: str) -> list[str]:
@@ -85,11 +199,34 @@ def _cookies(head: str, name: str) -> list[str]:
     return [value.strip() for one, _, value in parts if one.strip() == name]
 
 
+def _with_heads(send: Callable[..., Awaitable[None]]) -> Callable[..., Awaitable[None]]:
+    async def with_heads(message: MutableMapping[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            more = [
+                (b"content-security-policy", _POLICY.encode()),
+                (b"referrer-policy", b"no-referrer"),
+                (b"x-content-type-options", b"nosniff"),
+            ]
+            message = {**message, "headers": [*message.get("headers", ()), *more]}
+        await send(message)
+
+    return with_heads
+
+
+async def _answer(
+    send: Callable[..., Awaitable[None]], status: int, text: str, kind: str, more: list[tuple[bytes, bytes]]
+) -> None:
+    said = text.encode()
+    heads = [
+        (b"content-type", f"{kind}; charset=utf-8".encode()), (b"content-length", str(len(said)).encode()),
+        (b"cache-control", b"no-store"), *more,
+    ]  # fmt: skip
+    await send({"type": "http.response.start", "status": status, "headers": heads})
+    await send({"type": "http.response.body", "body": said})
+
+
 async def _refuse(scope: Scope, send: Callable[..., Awaitable[None]]) -> None:
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": 1008})
         return
-    said = b"Refused: open the address that fegear open printed.\n"
-    heads = [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(said)).encode())]
-    await send({"type": "http.response.start", "status": 403, "headers": heads})
-    await send({"type": "http.response.body", "body": said})
+    await _answer(send, 403, _REFUSED, "text/plain", [])

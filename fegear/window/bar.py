@@ -29,6 +29,10 @@ EXPORTS = (
 )
 
 
+#: What the bar says of a text that takes a while to be judged.
+_CHECKED = "The text is long: it is being checked."
+
+
 class Bar:
     """The bar of one page."""
 
@@ -81,11 +85,11 @@ class Bar:
         self._redo.set_enabled(desk.can_redo)
         self._give_up.set_visibility(desk.path is not None and desk.changed)
         self._pin.set_text("Unpin A" if self._bench.pinned else "Pin as A")
-        self._told.set_text(desk.trouble or desk.restored)
+        self._told.set_text(desk.trouble or (_CHECKED if desk.pending else "") or desk.restored)
 
     def hear(self, what: str, content: dict[str, Any]) -> None:
         """Follow what goes on."""
-        if what in ("changed", "pinned", "unpinned"):
+        if what in ("changed", "kept", "pinned", "unpinned"):
             self.refresh()
             self._level.set_value(self._bench.level)
         elif what == "designed":

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import itertools
+import threading
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,11 +27,18 @@ if TYPE_CHECKING:
     from fegear.results.relief.relief import How
     from fegear.window.case_text import Path as KeyPath
     from fegear.window.computing import Computing
+    from fegear.window.document import Verdict
+    from fegear.window.journal import Left
+    from fegear.window.reach import Reach
 
 #: Accuracy against time: factor of the case's own tolerance.
 LEVELS = {"draft": 10.0, "normal": 1.0, "fine": 0.1}
 #: A value that has not moved for so long stands still, whether or not anybody has said so [s].
 _HELD = 2.0
+#: What could not be kept beyond a crash is tried again after this [s].
+_AGAIN = 3.0
+#: Between two changes that are shown are so many times the time that one takes, and at most so much [s].
+_TIMES, _PAUSE = 2.0, 0.5
 #: Figures and values of so many tasks are kept for pages that open later.
 _Content = dict[str, Any]
 
@@ -52,6 +62,8 @@ class Bench:
         The case to begin with.
     computing : Computing, optional
         What answers; without it nothing does.
+    reach : Reach, optional
+        Where files are opened and written; None for anywhere.
 
     Attributes
     ----------
@@ -65,8 +77,11 @@ class Bench:
         What is shown at a glance, and how.
     """
 
-    def __init__(self, case: Path | None, computing: Computing | None = None) -> None:
-        self.desk = Desk.of_file(case) if case is not None else None
+    def __init__(self, case: Path | None, computing: Computing | None = None, reach: Reach | None = None) -> None:
+        if reach is not None:  # copies of the gallery's cases may name the tables beside them
+            reach = reach._replace(sources=tuple({str(path.parent.resolve()) for path in gallery().values()}))
+        self.reach = reach
+        self.desk = Desk.of_file(case, reach) if case is not None else None
         self.level = "normal"
         self.pinned: Asked | None = None
         self.view = read_view(case)
@@ -76,6 +91,11 @@ class Bench:
         self._computing = computing
         self._loop: asyncio.AbstractEventLoop | None = None
         self._held: asyncio.TimerHandle | None = None
+        self._keeping: asyncio.TimerHandle | None = None
+        self._settling: asyncio.TimerHandle | None = None
+        self._more: bool | None = None  # what has changed since: whether all of it moves
+        self._to_judge: tuple[Desk, str, Callable[[], Verdict]] | None = None
+        self._is_judging = False
         self._number = self._first = self._laid = self._comparing = 0
         self._busy = False
         self._sight: tuple[str, ...] = ()
@@ -88,9 +108,16 @@ class Bench:
     def begin(self) -> None:
         """Listen to what is computed, and ask for the case; called within the loop that the pages run in."""
         self._loop = asyncio.get_running_loop()
+        if self.desk is not None:
+            self.desk.patient = True
         if self._computing is not None:
             self._computing.hear = self._from_process
         self.compute()
+
+    def end(self) -> None:
+        """Keep what has been changed: the window is closed."""
+        if self.desk is not None:
+            self.desk.keep_up()
 
     # ---- pages ---------------------------------------------------------------------------------------------------
 
@@ -152,18 +179,30 @@ class Bench:
         self._settled, self._busy = None, False
         if desk is not None:
             self.view = read_view(desk.path)
+            desk.patient = self._loop is not None
         self._first = next(self._numbers)
+        self._judge_aside()
         self.tell("laid")
         self.compute()
 
     def from_template(self, kind: str) -> None:
         """Begin with a draft of a kind."""
-        self.lay(Desk(draft(Answers(kind, {}), kind), kind, Path.cwd()))
+        self.lay(Desk(draft(Answers(kind, {}), kind), kind, Path.cwd(), None, self.reach))
 
     def from_gallery(self, name: str) -> None:
         """Begin with a copy of a case of the gallery."""
         path = gallery()[name]
-        self.lay(Desk(path.read_text("utf-8"), name, path.parent))
+        self.lay(Desk(path.read_text("utf-8"), name, path.parent, None, self.reach))
+
+    def from_left(self, left: Left) -> None:
+        """Take up a case without a file that an earlier window left behind.
+
+        Raises
+        ------
+        InputError
+            If another window has taken it meanwhile.
+        """
+        self.lay(Desk.of_left(left, self.reach))
 
     def from_file(self, path: Path) -> None:
         """Open a case file.
@@ -171,27 +210,91 @@ class Bench:
         Raises
         ------
         InputError
-            If it cannot be read.
+            If it cannot be read, or must not be.
         """
-        self.lay(Desk.of_file(path))
+        self.lay(Desk.of_file(path, self.reach))
 
     def changed(self, *, moving: bool = False) -> None:
-        """Show the case as it is now everywhere, and compute it; a value that is moved has its errors later."""
+        """Show the case as it is now everywhere, and compute it; a value that is moved has its errors later.
+
+        What is changed while that takes, and some time after, is shown, computed and kept once, however much it is.
+        """
+        if self._settling is not None:
+            self._more = moving and self._more is not False
+            return
+        begun = time.monotonic()
+        self._show_change(moving=moving)
+        if self._loop is not None:
+            pause = min(_TIMES * (time.monotonic() - begun), _PAUSE)
+            self._settling = self._loop.call_later(pause, self._settle)
+
+    def _settle(self) -> None:
+        more, self._settling, self._more = self._more, None, None
+        if more is not None:
+            self.changed(moving=more)
+
+    def _show_change(self, *, moving: bool) -> None:
+        self._judge_aside()
         self.tell("changed", {"moving": moving})
         self.compute(moving=moving)
         if self._held is not None:
             self._held.cancel()
         # Who has let go may not have been able to say so: the page was closed, or loaded again.
         self._held = self._loop.call_later(_HELD, self.changed) if moving and self._loop is not None else None
+        if moving and self._loop is not None:
+            self._loop.call_soon(self._keep_up)  # behind what is sent at once
+        else:
+            self._keep_up()
+
+    def _keep_up(self) -> None:
+        """Keep the case beyond a crash; where that fails pages say so, and it is tried again until it does not."""
+        if self._keeping is not None:
+            self._keeping.cancel()
+            self._keeping = None
+        if self.desk is None:
+            return
+        before = self.desk.trouble
+        self.desk.keep_up()
+        if self.desk.trouble and self._loop is not None:
+            self._keeping = self._loop.call_later(_AGAIN, self._keep_up)
+        if self.desk.trouble != before:
+            self.tell("kept")
+
+    def _judge_aside(self) -> None:
+        """Have a long text judged in a thread of its own, one after the other."""
+        desk = self.desk
+        if desk is not None and desk.heavy and self._loop is not None:
+            self._to_judge = (desk, desk.text, desk.hand_out())
+        if self._to_judge is None or self._is_judging or self._loop is None:
+            return
+        (of, text, judge), loop = self._to_judge, self._loop
+        self._to_judge, self._is_judging = None, True
+
+        def run() -> None:
+            verdict = judge()
+            with contextlib.suppress(RuntimeError):  # the window is closed
+                loop.call_soon_threadsafe(self._take_verdict, of, text, verdict)
+
+        threading.Thread(target=run, daemon=True).start()  # the end does not wait for it
+
+    def _take_verdict(self, desk: Desk, text: str, verdict: Verdict) -> None:
+        self._is_judging = False
+        if desk.take_verdict(text, verdict) and desk is self.desk:
+            self.changed()
+        self._judge_aside()
 
     def asked(self) -> Asked:
         """The case as it would be computed now."""
         desk = self._on_desk()
-        return Asked(desk.text, desk.name, str(desk.folder), LEVELS[self.level])
+        within = self.reach.readable if self.reach is not None else None
+        return Asked(desk.text, desk.name, str(desk.folder), LEVELS[self.level], within=within)
 
     def compute(self, *, moving: bool = False) -> None:
         """Ask for the case as it is now, unless it is refused already."""
         if self.desk is None or self._computing is None:
+            return
+        self._judge_aside()
+        if self.desk.pending:
             return
         if not self.desk.may_be_asked() if moving else self.desk.refusal is not None:
             return
@@ -204,7 +307,15 @@ class Bench:
         self._computing.ask(Compute(self._number, asked))
 
     def export(self, what: str, target: str) -> None:
-        """Write the report or the drawings of the case as it is, at its own tolerance."""
+        """Write the report or the drawings of the case as it is, at its own tolerance.
+
+        Raises
+        ------
+        InputError
+            If the folder is one that must not be written to.
+        """
+        if self.reach is not None:
+            self.reach.check(Path(target), "folder")
         if self._computing is not None:
             self._computing.ask(Export(self._aside(), self.asked()._replace(loosened=1.0), what, target))
 
@@ -295,10 +406,6 @@ class Bench:
         if not moving:
             desk.end_stroke()
         self.changed(moving=moving)
-        if moving and self._loop is not None:
-            self._loop.call_soon(desk.keep_up)  # behind what is sent at once
-        else:
-            desk.keep_up()
 
     # ---- what the computing process says -------------------------------------------------------------------------
 

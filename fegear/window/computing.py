@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
+    from pathlib import Path
 
     from fegear.window.job_queue import Job
 
@@ -55,6 +56,11 @@ class Computing:
         self._process: BaseProcess
         self._connection: Connection
         self._start()
+
+    @property
+    def folder(self) -> Path:
+        """A folder of this process, which no other account can look into; removed at the end."""
+        return self._scratch.folder
 
     @property
     def pid(self) -> int | None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import traceback
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.errors import PATH, FegearError, InputError, shown
 from fegear.case.reading import build_scene, parse_document
@@ -12,15 +14,76 @@ from fegear.case.text_file import TextFile, digest_of, read_file, write_file
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 from fegear.window.case_text import with_value
-from fegear.window.journal import Journal, Kept, Left, drop, left_behind, now
+from fegear.window.journal import HALVES, Journal, Kept, Left, drop, left_behind, now
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fegear.case.reading import Scene
+    from fegear.window.reach import Reach
 
-#: Earlier states that can be gone back to.
-_STATES = 500
+#: Earlier states that can be gone back to, and the characters that all of them may have.
+_STATES, _CHARACTERS = 500, 30_000_000
+#: A text of more characters is judged where nobody waits for it: 3000 gears take two seconds.
+_LONG = 30_000
+#: Most characters of a case that the window takes.
+LARGEST = 4_000_000
+
+
+class Verdict(NamedTuple):
+    """What a text says.
+
+    Attributes
+    ----------
+    document : mapping or None
+        As plain tables; None where it is no TOML.
+    scene : Scene or None
+        What it describes; None where it describes none.
+    refusal : FegearError or None
+        What is wrong with it.
+    """
+
+    document: Mapping[str, Any] | None
+    scene: Scene | None
+    refusal: FegearError | None
+
+
+def judged(text: str, name: str, folder: Path, within: tuple[str, ...] | None) -> Verdict:
+    """Read a case and say what is wrong with it.
+
+    Parameters
+    ----------
+    text, name : str
+    folder : Path
+        Where relative file names in the case start.
+    within : tuple of str, optional
+        Below which folders they must lie.
+    """
+    document = scene = None
+    try:
+        document = parse_document(text, f'"{name}.toml"')
+        scene = build_scene(document, name, folder, within=within)
+        make_plan(scene, STAGES)
+    except FegearError as error:
+        return Verdict(document, scene, error)
+    return Verdict(document, scene, None)
+
+
+def check_text(text: str, key: str = "case") -> str:
+    """Return a text that a case file can have.
+
+    Raises
+    ------
+    InputError
+        If it holds half a character or is too long.
+    """
+    if len(text) > LARGEST:
+        rule = f"has {len(text)} characters, and the window takes {LARGEST} at most"
+        raise InputError(key, "(text)", rule, "put tables into files of their own, or use fegear run")
+    if (half := HALVES.search(text)) is not None:
+        line = text.count("\n", 0, half.start()) + 1
+        raise InputError(key, "(text)", f"has half a character in line {line}, which no file takes", "remove it")
+    return text
 
 
 class Desk:
@@ -35,6 +98,8 @@ class Desk:
         Where relative file names in the case start.
     path : Path, optional
         Its file; None for a new case.
+    reach : Reach, optional
+        Where files are read and written; None for anywhere.
 
     Attributes
     ----------
@@ -42,10 +107,18 @@ class Desk:
         What became of unsaved changes that an earlier window left behind, in a sentence; empty where there were none.
     trouble : str
         Why the state cannot be kept beyond a crash; empty as a rule.
+    patient : bool
+        Whether every change waits for `keep_up`: somebody calls it after several.
+    pending : bool
+        Whether the text is being judged where nobody waits for it; `document`, `scene` and `refusal` are those before.
     """
 
-    def __init__(self, text: str, name: str, folder: Path, path: Path | None = None) -> None:
+    def __init__(
+        self, text: str, name: str, folder: Path, path: Path | None = None, reach: Reach | None = None
+    ) -> None:
         self.name, self.folder, self.path = name, folder, path
+        self._reach = reach
+        self.patient = self.pending = False
         self.restored = self.trouble = ""
         self._document: Mapping[str, Any] = {}
         self._scene: Scene | None = None
@@ -55,20 +128,21 @@ class Desk:
         self._journal = Journal(path)
         self._outdated: Left | None = None
         self._states, self._at = [text], 0
-        self._stroke = self._unkept = False
-        self._judge()
+        self._stroke = self._unkept = self._judged = False
+        if not self.heavy:
+            self._judge()
 
     @classmethod
-    def of_file(cls, path: Path) -> Desk:
+    def of_file(cls, path: Path, reach: Reach | None = None) -> Desk:
         """Lay a case file on the desk, with the changes that were made and not saved when it last lay there.
 
         Raises
         ------
         InputError
-            If it cannot be read as a text.
+            If it cannot be read as a text, or must not be.
         """
-        file = read_file(path, "case")
-        desk = cls(file.text, path.stem, path.parent, path)
+        file = read_file(path if reach is None else reach.check(path, "case"), "case")
+        desk = cls(file.text, path.stem, path.parent, path, reach)
         desk._file = file
         outdated: list[Left] = []
         for left in left_behind(path):
@@ -89,7 +163,7 @@ class Desk:
         return desk
 
     @classmethod
-    def of_left(cls, left: Left) -> Desk:
+    def of_left(cls, left: Left, reach: Reach | None = None) -> Desk:
         """Lay a case without a file on the desk that an earlier window left behind.
 
         Raises
@@ -97,7 +171,7 @@ class Desk:
         InputError
             If another window has taken it meanwhile.
         """
-        desk = cls(left.kept.text, left.kept.name, Path(left.kept.origin))
+        desk = cls(left.kept.text, left.kept.name, Path(left.kept.origin), None, reach)
         if not desk._journal.take(left):
             raise InputError("case", f'"{left.kept.name}"', "is open in another window by now", "go on there")
         desk.restored = f"Changes of {left.kept.when} that were not saved are here again."
@@ -143,7 +217,33 @@ class Desk:
 
     def may_be_asked(self) -> bool:
         """Whether nothing is known to be wrong: a value that is moved is judged after its answer has been asked for."""
-        return self._refusal is None or self.refusal is None
+        return not self.pending and (self._refusal is None or self.refusal is None)
+
+    @property
+    def heavy(self) -> bool:
+        """Whether the text has not been judged, and that takes so long that nobody should wait for it."""
+        return not self._judged and len(self.text) > _LONG
+
+    def hand_out(self) -> Callable[[], Verdict]:
+        """What judges the text as it is now, to be called elsewhere; `take_verdict` has what comes of it."""
+        self._judged = self.pending = True
+        return partial(self._verdict, self.text)
+
+    def take_verdict(self, text: str, verdict: Verdict) -> bool:
+        """Take what was found of a text; False if it is another one now."""
+        if not self.pending or text != self.text:
+            return False
+        self._take(verdict)
+        return True
+
+    def _verdict(self, text: str) -> Verdict:
+        within = self._reach.readable if self._reach is not None else None
+        try:
+            return judged(text, self.name, self.folder, within)
+        except Exception as error:  # noqa: BLE001 - printed, and said where a refusal is
+            traceback.print_exc()
+            fault = f"A fault of fegear, not of the case ({type(error).__name__}: {error}); the terminal shows where."
+            return Verdict(None, None, FegearError(fault))
 
     def _judge_late(self) -> None:
         if not self._judged:
@@ -151,14 +251,13 @@ class Desk:
 
     def _judge(self) -> None:
         """Read the case and say what is wrong with it."""
-        self._judged = True
-        try:
-            self._document = parse_document(self.text, f'"{self.name}.toml"')
-            self._scene = build_scene(self._document, self.name, self.folder)
-            make_plan(self._scene, STAGES)
-            self._refusal = None
-        except FegearError as error:
-            self._refusal = error
+        self._take(self._verdict(self.text))
+
+    def _take(self, verdict: Verdict) -> None:
+        self._judged, self.pending = True, False
+        self._document = self._document if verdict.document is None else verdict.document
+        self._scene = self._scene if verdict.scene is None else verdict.scene
+        self._refusal = verdict.refusal
 
     def change(self, text: str, *, stroke: bool = False) -> None:
         """Take another text; a state that is the same as now is none.
@@ -168,11 +267,19 @@ class Desk:
         text : str
         stroke : bool
             Whether a value is being moved: the states of one stroke are undone together, and each waits for `keep_up`.
+
+        Raises
+        ------
+        InputError
+            If no case file can have it; the case stays as it is.
         """
-        if text == self.text:
+        if check_text(text) == self.text:
             return
         kept = self._at + 1 - (stroke and self._stroke)
         self._states = [*self._states[:kept], text][-_STATES:]
+        if len(text) > _CHARACTERS // _STATES:
+            while len(self._states) > 2 and sum(map(len, self._states)) > _CHARACTERS:
+                del self._states[0]
         self._at = len(self._states) - 1
         self._stroke = stroke
         self._moved(late=stroke)
@@ -211,25 +318,30 @@ class Desk:
             self._moved()
 
     def _moved(self, *, late: bool = False) -> None:
-        self._judged, self._unkept = False, True
+        self._judged, self._unkept, self.pending = False, True, False
         self.restored = ""
-        if not late:
+        if not (late or self.patient):
             self.keep_up()
 
     def keep_up(self) -> None:
-        """Judge the case as it is now and keep it beyond a crash, where that has waited for something more urgent."""
-        self._judge_late()
+        """Judge the case as it is now and keep it beyond a crash, where that has waited for something more urgent.
+
+        What could not be kept is tried again.
+        """
+        if not self.heavy:
+            self._judge_late()
         if not self._unkept:
             return
-        self._unkept = False
         try:
             if self.changed:
                 self._journal.keep(Kept(self.text, str(self.folder), self.name, now(), self._file.digest))
             else:
                 self._journal.forget()
+            self._unkept = False
             self.trouble = ""
         except OSError as error:
-            self.trouble = f"Changes are not kept beyond a crash: {error.filename or ''} {error.strerror or error}"
+            place = f" ({error.filename})" if error.filename else ""
+            self.trouble = f"Changes are not kept beyond a crash: {error.strerror or error}{place}; make room."
 
     def save(self, *, over_others: bool = False) -> None:
         """Write the text into its file, which is then whole at any moment.
@@ -241,13 +353,17 @@ class Desk:
         """
         if self.path is None:
             raise InputError("case", self.name, "has no file yet", "save it under a name")
-        if not over_others and self.path.exists() and read_file(self.path, "case").digest != self._file.digest:
+        path = self._within_reach(self.path)
+        if not over_others and path.exists() and read_file(path, "case").digest != self._file.digest:
             raise InputError(
                 "case", shown(str(self.path), PATH), "was changed by somebody else since it was opened",
                 "save under another name, or save again to replace it",
             )  # fmt: skip
-        self._write(self.path)
+        self._write(path)
         self._settled()
+
+    def _within_reach(self, path: Path) -> Path:
+        return path if self._reach is None else self._reach.check(path, "case")
 
     def save_as(self, path: Path, *, replace: bool = False) -> None:
         """Write the text into another file, which is the case's from then on.
@@ -260,7 +376,7 @@ class Desk:
         told = shown(str(path), PATH)
         if path.name in ("", ".."):
             raise InputError("case", told, "is a folder, not a file's name", "write a name behind it")
-        path = path if path.suffix == ".toml" else path.with_name(f"{path.name}.toml")
+        path = self._within_reach(path if path.suffix == ".toml" else path.with_name(f"{path.name}.toml"))
         if not os.path.isdir(path.parent):  # noqa: PTH112  (Path's own raises where a name is too long)
             raise InputError("case", told, "lies in a folder that is not there", "choose another, or make it first")
         if os.path.lexists(path) and not replace:
@@ -271,7 +387,7 @@ class Desk:
         self._outdated = None  # of the file that it was before, with which it stays
         self.path, self.name, self.folder = path, path.stem, path.parent
         self._settled()
-        self._judge()
+        self._judged = False
 
     def _write(self, path: Path) -> None:
         try:
@@ -286,7 +402,7 @@ class Desk:
     def _settled(self) -> None:
         """Keep nothing beside the file any more: it has what is open."""
         self._saved = self.text
-        self._unkept = False
+        self._unkept, self.trouble = False, ""
         self.restored = ""
         self._journal.forget()
         if self._outdated is not None:  # whoever saves has been told of it
@@ -302,7 +418,7 @@ class Desk:
             If the file cannot be read any more.
         """
         if self.path is not None:
-            self._file = read_file(self.path, "case")
+            self._file = read_file(self._within_reach(self.path), "case")
             self._saved = self._file.text
             self.change(self._saved)
         self._settled()

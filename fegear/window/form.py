@@ -144,6 +144,25 @@ def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
     return tuple(found)
 
 
+#: Tables of one kind that a form shows: the fields of 3000 gears are built in a minute, and nobody scrolls to them.
+_TABLES = 40
+
+
+def shortened(document: Mapping[str, Any]) -> tuple[dict[str, Any], int]:
+    """A case with so many tables as a form shows, and how many it leaves out."""
+    found: dict[str, Any] = {}
+    left = 0
+    for key, value in document.items():
+        if not isinstance(value, dict):
+            found[key] = value
+            continue
+        named = [name for name, one in value.items() if isinstance(one, dict)]
+        gone = set(named[_TABLES:])
+        found[key], inside = shortened({name: one for name, one in value.items() if name not in gone})
+        left += len(gone) + inside
+    return found, left
+
+
 def tables_to_add(document: Mapping[str, Any]) -> dict[str, str]:
     """Tables that a case may have besides, with what each is."""
     top = _nodes().top
@@ -222,14 +241,16 @@ def fields_told(sections: tuple[Section, ...], remarks: Sequence[str]) -> dict[P
         Remarks by the path of the field.
     """
     found: dict[Path, str] = {}
-    every = list(fields(sections))
+    named: dict[str, list[Field]] = {}
+    for field in fields(sections):
+        if len(field.path) == (3 if field.path[0] in NAMED else 2):
+            named.setdefault(field.path[-1], []).append(field)
     for remark in remarks:
         keys = {key for one in _NAMED_KEY.finditer(remark) for key in one.groups() if key}
         words = set(re.findall(r"[^\s:;,]+", remark.replace("[", " ").replace("]", " ").replace(".", " ")))
-        for field in every:
+        for field in (one for key in keys for one in named.get(key, ())):
             table = field.path[0]
-            about = field.path[1] in words and table.capitalize() in words if table in NAMED else True
-            if field.path[-1] in keys and len(field.path) == (3 if table in NAMED else 2) and about:
+            if table not in NAMED or (field.path[1] in words and table.capitalize() in words):
                 found[field.path] = f"{found[field.path]} {remark}" if field.path in found else remark
     return found
 

@@ -16,9 +16,12 @@ from typing import TYPE_CHECKING, Any
 from nicegui import ui
 
 from fegear.base.errors import InputError
-from fegear.window.form import Field, Section, fields, fields_told, form, tables_to_add
+from fegear.window.document import LARGEST, check_text
+from fegear.window.form import Field, Section, fields, fields_told, form, shortened, tables_to_add
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from nicegui.element import Element
 
     from fegear.window.bench import Bench
@@ -33,6 +36,9 @@ _PAUSE = 500
 
 class Inputs:
     """Form and text of one page."""
+
+    #: Why what is in the text's field is not the case's; empty as a rule.
+    _not_taken = ""
 
     def __init__(self, bench: Bench) -> None:
         self._bench = bench
@@ -68,7 +74,7 @@ class Inputs:
         if what == "changed":
             self._refresh()
         elif what == "done" and not content["moving"] and self._desk is not None:
-            self._warn(fields_told(form(self._desk.document), content["remarks"]))
+            self._warn(fields_told(self._sections()[0], content["remarks"]))
         elif what == "refused" and self._desk is not None and self._desk.refusal is None:
             self._say(content["sentence"], content["key"])
 
@@ -78,9 +84,12 @@ class Inputs:
         typed = self._unconfirmed()
         self._form.clear()
         self._elements, self._places, self._held = {}, {}, {}
+        sections, left = self._sections()
         with self._form:
-            for section in form(self._desk.document):
+            for section in sections:
                 self._section(section)
+            if left:
+                ui.label(f"{left} more tables are in the text only.").classes("about")
             more = tables_to_add(self._desk.document)
             if more:
                 ui.html("Add a table", tag="h3")
@@ -90,6 +99,11 @@ class Inputs:
             again: Any = self._elements.get(path)
             if again is not None:
                 again.set_value(text)
+
+    def _sections(self) -> tuple[tuple[Section, ...], int]:
+        """What the form shows, and how many tables it leaves out."""
+        document, left = shortened(self._desk.document)
+        return form(document), left
 
     def _unconfirmed(self) -> dict[Path, str]:
         """What somebody has typed and not confirmed yet: no change that comes from elsewhere takes it away."""
@@ -196,7 +210,8 @@ class Inputs:
 
     def _step(self, field: Field, way: int, event: Any) -> None:
         element: Any = self._elements[field.path]
-        text = stepped(element.value or field.default, way * (10 if event.args.get("shiftKey") else 1))
+        far = isinstance(event.args, dict) and event.args.get("shiftKey") is True
+        text = stepped(element.value or field.default, way * (10 if far else 1))
         if text is not None:
             element.set_value(text)
             self._set(field, text)
@@ -206,7 +221,7 @@ class Inputs:
         if text == now.shown or (not now.given and text == now.default and now.kind == "switch"):
             return
         try:
-            self._desk.set(field.path, now.written(text))
+            self._desk.set(field.path, now.written(check_text(text, field.key)))
         except InputError as error:
             self._say(str(error), field.key)
             return
@@ -217,20 +232,40 @@ class Inputs:
         self._typing = time.monotonic()
 
     def _text_typed(self, event: Any) -> None:
-        if event.value == self._desk.text:
+        before, refused = self._desk.text, self._not_taken
+        try:
+            text = merged(self._shown, check_text(event.value or ""), before)
+            self._desk.change(text)
+        except InputError as error:
+            self._leave_untaken(str(error))
             return
-        text = merged(self._shown, event.value or "", self._desk.text)
-        self._typing, self._shown = 0.0, text
+        self._typing, self._shown, self._not_taken = 0.0, text, ""
         if text != event.value:  # with what another page has changed since
             self._text.set_value(text)
-        if text != self._desk.text:
-            self._desk.change(text)
+        if text != before:
             self._bench.changed()
+        elif refused:
+            self._judge()
+
+    def leave_too_long(self) -> None:
+        """Say that the text is too long to be taken: the page has not sent it."""
+        self._leave_untaken(f"it is longer than {LARGEST} characters; put tables into files of their own.")
+
+    def _leave_untaken(self, sentence: str) -> None:
+        """Leave a text that cannot be the case's in its field, and say so, until it can."""
+        self._not_taken = f"Not taken, and kept in this field only: {sentence}"
+        self._text_refusal.set_text(self._not_taken)
+        self._refusal.set_text(f"The text is not taken: {sentence}")
 
     def _table_chosen(self, event: Any) -> None:
-        if event.value:
+        if not event.value:
+            return
+        try:
             self._desk.change(f"{self._desk.text.rstrip()}\n\n[{event.value}]\n")
-            self._bench.changed()
+        except InputError as error:
+            self._say(str(error), "")
+            return
+        self._bench.changed()
 
     # ---- showing -------------------------------------------------------------------------------------------------
 
@@ -238,7 +273,7 @@ class Inputs:
         if self._desk is None:
             return
         self._refresh_text()
-        now = {field.path: field for field in fields(form(self._desk.document))}
+        now = {field.path: field for field in fields(self._sections()[0])}
         if set(now) != set(self._held) or any(now[path].kind != self._held[path].kind for path in now):
             self._build()
         else:
@@ -262,7 +297,7 @@ class Inputs:
 
     def _refresh_text(self) -> None:
         """Show the text as it is now; where somebody types, later: what is typed comes soon, and is merged with it."""
-        if self._desk is None:
+        if self._desk is None or self._not_taken:
             return
         if time.monotonic() - self._typing < 2e-3 * _PAUSE:
             asyncio.get_running_loop().call_later(2e-3 * _PAUSE, self._refresh_text)
@@ -279,7 +314,7 @@ class Inputs:
         if self._refused_at is not None and (old := self._elements.get(self._refused_at)) is not None:
             old.props(remove="error error-message")
         self._refused_at = self._nearest(key) if sentence else None
-        self._text_refusal.set_text(sentence)
+        self._text_refusal.set_text(self._not_taken or sentence)
         element: Any = self._elements.get(self._refused_at) if self._refused_at else None
         at_field = element is not None and hasattr(element, "value") and not isinstance(element, ui.switch)
         self._refusal.set_text("" if at_field else sentence)
@@ -302,22 +337,38 @@ def merged(base: str, mine: str, theirs: str) -> str:
 
     Where both have changed the same lines, what was typed last, which is `mine`, counts alone.
     """
-    if mine == base:
-        return theirs
+    if base in (mine, theirs):
+        return theirs if mine == base else mine
     old, own, other = (text.splitlines(keepends=True) for text in (base, mine, theirs))
     first = next((i for i, (a, b) in enumerate(zip(old, own, strict=False)) if a != b), min(len(old), len(own)))
     most = min(len(old), len(own)) - first
     same = next((i for i, (a, b) in enumerate(zip(old[::-1], own[::-1], strict=False)) if a != b), most)
     last = len(old) - min(same, most)
     start, end = first, last
-    for kind, i, j, k, n in SequenceMatcher(None, old, other, autojunk=False).get_opcodes():
-        if kind == "equal":
-            continue
+    for i, j, k, n in _changes(old, other):
         if i <= last and j >= first:
             return mine
         if j < first:
             start, end = start + (n - k) - (j - i), end + (n - k) - (j - i)
     return "".join([*other[:start], *own[first : len(own) - (len(old) - last)], *other[end:]])
+
+
+#: Pairs of lines that are compared with each other; of longer texts all between the first change and the last is one.
+_PAIRS = 1_000_000
+
+
+def _changes(old: list[str], new: list[str]) -> Iterator[tuple[int, int, int, int]]:
+    """Where lines differ: first and last of the old ones, first and last of those in their place."""
+    first = next((i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
+    most = min(len(old), len(new)) - first
+    same = next((i for i, (a, b) in enumerate(zip(old[::-1], new[::-1], strict=False)) if a != b), most)
+    before, after = old[first : len(old) - min(same, most)], new[first : len(new) - min(same, most)]
+    if len(before) * len(after) > _PAIRS:
+        yield first, first + len(before), first, first + len(after)
+        return
+    for kind, i, j, k, n in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+        if kind != "equal":
+            yield first + i, first + j, first + k, first + n
 
 
 def more_labels(tables: dict[str, str]) -> dict[str, str]:

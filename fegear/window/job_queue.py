@@ -192,6 +192,8 @@ class Asked(NamedTuple):
         Small pictures that are chosen at a glance (none: the usual ones); None where the case alone is wanted.
     field : bool
         Whether stress inside the teeth is shown.
+    within : tuple of str, optional
+        Folders below which the files lie that the case may name; None for anywhere.
     """
 
     text: str
@@ -204,6 +206,7 @@ class Asked(NamedTuple):
     laid: int = 0
     pictures: tuple[str, ...] | None = None
     field: bool = False
+    within: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)

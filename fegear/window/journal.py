@@ -12,6 +12,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import secrets
 import shutil
 import tempfile
@@ -21,6 +22,10 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from typing import TextIO
+
+
+#: Half a character, which JSON can say and no file takes, and what stands for it on its way from a page.
+HALF, HALVES = "\uffff", re.compile("[\ud800-\udfff\uffff]")
 
 
 class Kept(NamedTuple):
@@ -104,7 +109,8 @@ class Journal:
             _lock(file)  # before it stands where others look
             Path(scratch).replace(place)
         except BaseException:
-            file.close()
+            with contextlib.suppress(OSError):
+                file.close()  # writes what is left in memory, which fails again where the disk is full
             with contextlib.suppress(OSError):
                 Path(scratch).unlink()
             raise
@@ -150,6 +156,7 @@ def left_behind(path: Path | None) -> list[Left]:
                 content = json.load(file)
                 base = str(content.get("base", ""))
                 text, origin, name, when = (str(content[key]) for key in ("text", "origin", "name", "when"))
+                text = HALVES.sub("\ufffd", text)  # earlier versions kept what no page can be sent
                 found.append((os.fstat(file.fileno()).st_mtime, Left(place, Kept(text, origin, name, when, base))))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             continue

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import tomllib
+from functools import partial
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -19,10 +20,11 @@ from fegear.output.draw_plotly.layout import template
 from fegear.output.report.page import plotly_file
 from fegear.window.bar import Bar
 from fegear.window.bench import TEMPLATES, gallery
-from fegear.window.document import Desk
+from fegear.window.document import LARGEST
 from fegear.window.glance import told_of_view
 from fegear.window.inputs import Inputs
 from fegear.window.journal import left_behind
+from fegear.window.messages import PIECE, Messages, checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,11 +34,11 @@ if TYPE_CHECKING:
 
 
 #: What bar and form hear; each change of theirs has the browser go through the whole form.
-_OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "designed", "failed"})
+_OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "designed", "failed", "kept"})
 
 
 #: What the page's scripts have no use for.
-_NOT_OF_THE_PAGE = frozenset({"changed"})
+_NOT_OF_THE_PAGE = frozenset({"changed", "kept"})
 
 
 #: A value that has not moved for so long stands still [s].
@@ -45,6 +47,7 @@ _STILL = 0.4
 
 #: Its own scripts, in their order.
 _SCRIPTS = (
+    "pieces",
     "packed",
     "moved",
     "window",
@@ -65,10 +68,14 @@ _SCRIPTS = (
 _AT = "/fegear"
 
 
-def _serve_files() -> None:
-    """Offer plotly.js and the files of this package and of the report to the page."""
+def _serve_files(bench: Bench) -> None:
+    """Offer plotly.js and the files of this package and of the report to the page, and hear what pages say."""
     if any(getattr(route, "path", "").startswith(f"{_AT}/plotly") for route in app.routes):
         return
+    messages = Messages()
+    messages.install()
+    app.on_shutdown(messages.end)
+    app.on_shutdown(bench.end)  # keeps what these have changed
     own, report = resources.files("fegear.window"), resources.files("fegear.output.report")
     app.add_static_file(local_file=str(plotly_file()), url_path=f"{_AT}/plotly.js")
     for folder, name in (
@@ -97,14 +104,15 @@ class Page:
         self._inputs: Inputs | None = None
         self._soon: asyncio.TimerHandle | None = None
         self._unsent: list[tuple[str, dict[str, Any]]] = []
-        ui.on("relief", lambda event: self._by_hand(lambda: bench.move_relief(**event.args)))
-        ui.on("load", lambda event: self._by_hand(lambda: bench.move_load(**event.args)))
-        ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
-        ui.on("name_driven", lambda event: self._by_hand(lambda: bench.name_driven(**event.args)))
-        ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
-        ui.on("shows", lambda event: bench.show(**event.args))
-        ui.on("view", lambda event: bench.see_otherwise(event.args))
-        ui.on("sight", lambda event: bench.see(event.args["tasks"]))
+        for kind, do in (
+            ("relief", bench.move_relief), ("load", bench.move_load), ("drop", bench.drop_relief),
+            ("name_driven", bench.name_driven), ("design", bench.design), ("shows", bench.show), ("sight", bench.see),
+        ):  # fmt: skip
+            ui.on(kind, partial(self._said, kind, do))
+        ui.on("untaken", self._too_long)
+        ui.on("view", lambda event: bench.see_otherwise(event.args if isinstance(event.args, dict) else {}))
+        parts = json.dumps({"piece": PIECE, "most": LARGEST})
+        self._client.run_javascript(f"fegearPieces.begin({parts})")
         self._client.run_javascript(f"fegear.begin({json.dumps(template())}, {_AT + '/plotly.js'!r})")
         self._client.on_delete(bench.listen(self._hear))
         self._client.on_delete(self._forget)
@@ -135,6 +143,14 @@ class Page:
             self._send(what, content)
             if what == "done":
                 self._inputs.hear(what, content)
+
+    def _said(self, kind: str, do: Callable[..., None], event: Any) -> None:
+        """Do what a page says, with the parts that it says it with."""
+        self._by_hand(lambda: do(**checked(kind, event.args)))
+
+    def _too_long(self) -> None:
+        if self._inputs is not None:
+            self._inputs.leave_too_long()
 
     @staticmethod
     def _by_hand(do: Callable[[], None]) -> None:
@@ -192,7 +208,7 @@ class Page:
 
 def show(bench: Bench) -> None:
     """Build the page for who has just opened it."""
-    _serve_files()
+    _serve_files(bench)
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
     for name in ("figure", *_SCRIPTS):
@@ -219,7 +235,7 @@ def start_page(bench: Bench) -> None:
 
     def lay_left(left: Left) -> None:
         try:
-            bench.lay(Desk.of_left(left))
+            bench.from_left(left)
         except FegearError as error:
             ui.notify(str(error), type="warning", multi_line=True)
 

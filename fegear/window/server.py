@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
-import secrets
 import signal
 import socket
 import sys
@@ -13,16 +13,21 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, MissingLibraryError
 from fegear.engine.processes import end_tracker, loading
-from fegear.window.access import Doorkeeper
+from fegear.window.access import Doorkeeper, Keys, file_leading_to
 from fegear.window.computing import Computing
+from fegear.window.reach import Reach
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
 HOST = "127.0.0.1"
 #: What the web server's library imports for clients that this server has none of.
 _CLIENTS = ("aiohttp", "requests")
+#: How often the page is tried before its address is printed, and how long is waited between [s].
+_TRIES, _PAUSE = 500, 0.01
+#: A browser that has not come to the page after this time may not be able to read what leads there [s].
+_ARRIVAL = 15.0
 #: What `fegear open` needs beside fegear.
 EXTRA = (
     "fegear open needs NiceGUI; in a copy of the source run ./open.sh, which installs it, "
@@ -72,7 +77,9 @@ def _end_with_the_terminal() -> None:
         signal.signal(hang_up, lambda *_: signal.raise_signal(signal.SIGTERM))
 
 
-def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None]) -> None:
+def serve(
+    case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None], folders: Sequence[Path] = ()
+) -> None:
     """Serve the page until the process is asked to end.
 
     Parameters
@@ -84,6 +91,8 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
         Whether to open the page.
     say : callable
         Receives the address.
+    folders : sequence of Path
+        Whose files the page may open and write, besides the working folder and that of the case.
 
     Raises
     ------
@@ -93,19 +102,22 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
         If NiceGUI is not installed.
     """
     port = free_port(port)
+    reach = Reach.of(case, folders)
     computing = Computing()  # it loads what computes while this process loads what serves, which takes as long
     try:
-        _serve(case, port, computing, browser=browser, say=say)
+        _serve(case, port, computing, reach, browser=browser, say=say)
     finally:
         computing.close()
         end_tracker()
 
 
-def _serve(case: Path | None, port: int, computing: Computing, *, browser: bool, say: Callable[[str], None]) -> None:
+def _serve(
+    case: Path | None, port: int, computing: Computing, reach: Reach, *, browser: bool, say: Callable[[str], None]
+) -> None:
     with loading():
         from fegear.window.bench import Bench
 
-        bench = Bench(case, computing)
+        bench = Bench(case, computing, reach)
         with _without_clients():
             try:
                 import nicegui
@@ -115,23 +127,77 @@ def _serve(case: Path | None, port: int, computing: Computing, *, browser: bool,
 
         from fegear.window.page import show
 
-    secret = secrets.token_urlsafe(24)
-    address = f"http://{HOST}:{port}/?key={secret}"
+    door = _Door(port, computing.folder, say)
 
     def opened() -> None:
         bench.begin()
-        say(f"Open {address}")
-        say("It ends with Ctrl-C; what is not saved is kept for the next time.")
-        if browser:
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        door.begin(browser=browser)
 
     _end_with_the_terminal()
     nicegui.app.on_startup(opened)
     nicegui.app.on_shutdown(computing.close)
-    nicegui.app.add_middleware(Doorkeeper, port=port, secret=secret)
+    nicegui.app.add_middleware(Doorkeeper, port=port, keys=door.keys)
     ui.run(
         lambda: show(bench), host=HOST, port=port, title="fegear", language="en-US", dark=None, reload=False,
         show=False, show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
         gzip_middleware_factory=None, ws_per_message_deflate=False,  # nothing is far away
         message_history_length=100,  # each may be a figure of a hundred kilobytes
+        proxy_headers=False,  # who asks is who has connected, whatever a request says of itself
     )  # fmt: skip
+
+
+class _Door:
+    """Addresses of the page, each with a key that works once.
+
+    Parameters
+    ----------
+    port : int
+    folder : Path
+        Of this process, which no other account can look into.
+    say : callable
+    """
+
+    def __init__(self, port: int, folder: Path, say: Callable[[str], None]) -> None:
+        self.keys = Keys()
+        self._port, self._folder, self._say = port, folder, say
+        self._opening: asyncio.Task[None] | None = None
+
+    def begin(self, *, browser: bool) -> None:
+        """Print an address as soon as it answers, and lead a browser to another; called within the loop."""
+        self._opening = asyncio.get_running_loop().create_task(self._open(browser=browser))
+
+    def _address(self, used: Callable[[], object]) -> str:
+        return f"http://{HOST}:{self._port}/?key={self.keys.another(used)}"
+
+    async def _open(self, *, browser: bool) -> None:
+        for _ in range(_TRIES):
+            with contextlib.suppress(OSError):
+                _, connection = await asyncio.open_connection(HOST, self._port)
+                connection.close()
+                break
+            await asyncio.sleep(_PAUSE)
+        self._say(f"Open {self._address(self._print_another)}")
+        self._say("It ends with Ctrl-C; what is not saved is kept for the next time.")
+        if browser:
+            await self._lead()
+
+    def _print_another(self) -> None:
+        with contextlib.suppress(OSError):  # of a terminal that is closed
+            self._say(f"That address has been used; for another browser open {self._address(self._print_another)}")
+
+    async def _lead(self) -> None:
+        """Open a browser by a file: what stands on its command line is read by every account of this machine."""
+        arrived = asyncio.Event()
+        try:
+            place = file_leading_to(self._address(arrived.set), self._folder)
+        except OSError:
+            self._say("No browser is opened: the file that would lead it to the page cannot be written.")
+            return
+        threading.Thread(target=webbrowser.open, args=(place.as_uri(),), daemon=True).start()
+        try:
+            await asyncio.wait_for(arrived.wait(), _ARRIVAL)
+        except TimeoutError:
+            self._say("No page has been opened yet. A browser in a sandbox (snap) cannot read the file that leads to")
+            self._say("the page: copy the address above into it.")
+            await arrived.wait()
+        place.unlink(missing_ok=True)

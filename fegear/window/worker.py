@@ -393,11 +393,11 @@ def scene_of(asked: Asked) -> Scene:
     from fegear.case.reading import build_scene, parse_document
 
     document = parse_document(asked.text, f'"{asked.name}.toml"')
-    scene = build_scene(document, asked.name, Path(asked.folder))
+    scene = build_scene(document, asked.name, Path(asked.folder), within=asked.within)
     if asked.loosened != 1.0:
         tolerance = min(max(scene.case.accuracy.tolerance * asked.loosened, 1e-6), 0.5)
         accuracy = {**dict(document.get("accuracy", {})), "tolerance": tolerance}
-        scene = build_scene({**document, "accuracy": accuracy}, asked.name, Path(asked.folder))
+        scene = build_scene({**document, "accuracy": accuracy}, asked.name, Path(asked.folder), within=asked.within)
     return replace(scene, text=asked.text, estimates=not asked.moving)
 
 

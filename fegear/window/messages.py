@@ -1,0 +1,225 @@
+"""What pages say, looked at before anything acts on it: whole, of the right kind, and not too long.
+
+A page takes a long message apart, for the web server closes connections over a megabyte; here it is put together. What
+cannot be taken is answered with a sentence on the page: nothing that somebody has changed is dropped without a word.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import time
+from collections import deque
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from nicegui import core, ui
+from nicegui import json as wire
+from nicegui.client import Client
+from nicegui.elements.input import Input
+from nicegui.elements.mixins.value_element import ValueElement
+
+from fegear.base.errors import InputError
+from fegear.window.document import LARGEST
+from fegear.window.journal import HALF, HALVES
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Mapping
+
+#: Characters of one piece, and of all pieces of a message: a text of half that length with every character escaped.
+PIECE, _MOST = 100_000, 4 * LARGEST
+#: For so long messages are acted on before the connections are looked at again, and for how long these are [s].
+_SPELL, _REST = 0.03, 0.01
+#: For so long messages that wait are acted on when the window is closed [s].
+_FAREWELL = 3.0
+#: Messages that come in pieces at the same time.
+_OPEN = 8
+_NOT_TAKEN = "What this page has sent could not be read, and is not taken: change it once more, or load the page again."
+#: What is said with each kind of event, and what each part of it must be.
+EVENTS: dict[str, dict[str, type]] = {
+    "relief": {"gear": str, "end": str, "index": int, "start": float, "amount": float, "moving": bool},
+    "load": {"pair": str, "key": str, "text": str, "moving": bool},
+    "drop": {"gear": str},
+    "name_driven": {"pair": str},
+    "design": {"pair": str, "how": str},
+    "shows": {"pair": str, "kind": str, "on": bool},
+    "sight": {"tasks": list},
+}
+#: Parts that may be left out.
+_FREE = {"index", "how"}
+
+
+def checked(kind: str, said: object) -> dict[str, Any]:
+    """Return what a page says with an event.
+
+    Parameters
+    ----------
+    kind : str
+        A key of `EVENTS`.
+    said : object
+
+    Raises
+    ------
+    InputError
+        If a part is missing, is another or is not what it must be.
+    """
+    parts = EVENTS[kind]
+    if not isinstance(said, dict) or not set(parts) - _FREE <= set(said) <= set(parts):
+        raise InputError(f"page.{kind}", _short(said), f"must have {', '.join(parts)}", "load the page again")
+    for name, value in said.items():
+        if not _is_a(value, parts[name]):
+            raise InputError(f"page.{kind}.{name}", _short(value), f"must be {_KINDS[parts[name]]}")
+    return dict(said)
+
+
+_KINDS = {str: "a text", int: "a whole number from 0", float: "a finite number", bool: "true or false", list: "names"}
+
+
+def _is_a(value: object, kind: type) -> bool:
+    if kind is float:  # JSON has no infinity: what a page without room for its axes sends arrives as None
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if kind is int:
+        return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+    if kind is list:
+        return isinstance(value, list) and all(_is_a(one, str) for one in value)
+    if kind is str:
+        return isinstance(value, str) and HALVES.search(value) is None
+    return isinstance(value, kind)
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:60]}..."
+
+
+class Messages:
+    """Hears what pages say before the web framework does."""
+
+    def __init__(self) -> None:
+        self._pieces: dict[tuple[str, str], list[str]] = {}
+        self._waiting: deque[object] = deque()
+        self._is_acting = False
+
+    def install(self) -> None:
+        """Take the place of what hears of pages; once for a server."""
+        heard: Mapping[str, Callable[..., Any]] = core.sio.handlers["/"]
+        for name in ("handshake", "javascript_response", "ack", "log"):
+            core.sio.on(name, _guarded(heard[name]))
+        core.sio.on("event", self.event)
+        core.sio.on("piece", self.piece)
+
+    async def event(self, _socket: str, said: object = None, *_more: object) -> None:
+        """Act on an event of a page, at once or behind those that wait: a page that is not heard for long is lost."""
+        self._waiting.append(said)
+        if self._is_acting:
+            return
+        self._is_acting = True
+        try:
+            begun = time.monotonic()
+            while self._waiting:
+                _act(self._waiting.popleft())
+                if self._waiting and time.monotonic() - begun > _SPELL:
+                    await asyncio.sleep(_REST)
+                    begun = time.monotonic()
+        finally:
+            self._is_acting = False
+
+    def end(self) -> None:
+        """Act on what waits: the window is closed."""
+        end = time.monotonic() + _FAREWELL
+        while self._waiting and time.monotonic() < end:
+            _act(self._waiting.popleft())
+
+    async def piece(self, socket: str, said: object = None, *_more: object) -> None:
+        """Put a message together; act on it when the last piece is here."""
+        client = _client_of(said)
+        if client is None or not isinstance(said, dict):
+            return
+        name, count, at, text = (said.get(key) for key in ("name", "count", "at", "text"))
+        place = (client.id, str(name)[:60])
+        begun = self._pieces.pop(place, [])
+        fits = isinstance(at, int) and isinstance(count, int) and isinstance(text, str) and at == len(begun) < count
+        if not fits or sum(map(len, begun)) + len(str(text)) > _MOST or len(self._pieces) >= _OPEN:
+            refuse(client, _NOT_TAKEN)
+            return
+        begun.append(str(text))
+        if len(begun) < int(str(count)):
+            self._pieces[place] = begun
+            return
+        try:
+            whole = json.loads("".join(begun))
+        except (ValueError, RecursionError):
+            whole = None
+        if isinstance(whole, dict) and whole.get("client_id") == client.id:
+            await self.event(socket, whole)
+        else:
+            refuse(client, _NOT_TAKEN)
+
+
+def _act(said: object) -> None:
+    """Act on an event of a page as long as the page is known, though its connection may be gone by now."""
+    client = _client_of(said)
+    if client is None or not isinstance(said, dict):
+        return
+    try:
+        message = {**said, "args": [None if one is None else _decoded(one) for one in said.get("args", [])]}
+        known = _is_of_its_kind(client, message)
+    except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
+        known = False
+    if known:
+        client.handle_event(message)
+    else:
+        refuse(client, _NOT_TAKEN)
+
+
+def refuse(client: Client, sentence: str) -> None:
+    """Say on a page what is not taken."""
+    if client.is_deleted:
+        return
+    with client:
+        ui.notify(sentence, type="warning", multi_line=True, timeout=10_000)
+
+
+def _guarded(hear: Callable[..., Any]) -> Callable[..., Awaitable[Any]]:
+    """The same that takes what is not understood for nothing said."""
+
+    async def guarded(*said: Any) -> Any:
+        try:
+            found = hear(*said)
+            return await found if hasattr(found, "__await__") else found
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError):
+            return False
+
+    return guarded
+
+
+def _client_of(said: object) -> Client | None:
+    name = said.get("client_id") if isinstance(said, dict) else None
+    return Client.instances.get(name) if isinstance(name, str) else None
+
+
+def _decoded(text: str) -> str:
+    """One argument as the framework reads it: half a character, which it cannot read, as what stands for it."""
+    try:
+        wire.loads(text)
+    except ValueError:
+        text = HALVES.sub(HALF, json.dumps(json.loads(text), ensure_ascii=False))
+        wire.loads(text)
+    return text
+
+
+def _is_of_its_kind(client: Client, message: dict[str, Any]) -> bool:
+    """Whether an event is one that its element hears of, with a value that it can have."""
+    sender = client.elements.get(message["id"])
+    if sender is None:  # gone with the form that it was of
+        return True
+    listener = sender._event_listeners[message["listener_id"]]  # noqa: SLF001 - the framework looks there, too
+    if not isinstance(sender, ValueElement) or not listener.type.startswith("update:"):
+        return True
+    values = [None if one is None else wire.loads(one) for one in message["args"]]
+    told: Any = SimpleNamespace(args=values[0] if len(values) == 1 else values)
+    value = sender._event_args_to_value(told)  # noqa: SLF001 - as it will read it itself
+    if isinstance(sender, Input):
+        return value is None or isinstance(value, str)
+    return not isinstance(sender.value, bool) or isinstance(value, bool)
