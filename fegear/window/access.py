@@ -39,6 +39,8 @@ _REFUSED = "Refused: open the address that fegear open printed last. Each works 
 #: Where Linux tells which account a connection belongs to.
 _CONNECTIONS = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 _ROOT = 0
+#: How frames of a page begin: the end, an answer to a ping, a message, another transport (engine.io).
+_FRAMES = ("1", "3", "4", "5")
 _LITTLE = sys.byteorder == "little"
 #: Whose connection was closed meanwhile: the system counts it as that of the first account, who may do everything.
 _NOBODY = -1
@@ -109,7 +111,7 @@ class Doorkeeper:
             cookie = f"fegear-{self._port}={self._keys.secret}; HttpOnly; SameSite=Strict; Path=/"
             await _answer(_with_heads(send), 200, leading_to("/"), "text/html", [(b"set-cookie", cookie.encode())])
         elif self._has_cookie(heads):
-            await self._app(scope, receive, _with_heads(send))
+            await self._app(scope, _whole_frames(receive), _with_heads(send))
         else:
             await _refuse(scope, send)
 
@@ -197,6 +199,18 @@ def _cookies(head: str, name: str) -> list[str]:
     """All cookies of a name, whatever other programs on this machine have put beside them."""
     parts = (part.partition("=") for part in head.split(";"))
     return [value.strip() for one, _, value in parts if one.strip() == name]
+
+
+def _whole_frames(receive: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
+    """Pass over what no page says on a connection, and what the web framework has no answer to but to fail."""
+
+    async def received() -> Any:
+        while True:
+            message = await receive()
+            if message["type"] != "websocket.receive" or (message.get("text") or "")[:1] in _FRAMES:
+                return message
+
+    return received
 
 
 def _with_heads(send: Callable[..., Awaitable[None]]) -> Callable[..., Awaitable[None]]:

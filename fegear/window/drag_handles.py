@@ -114,7 +114,8 @@ def moved_relief(desk: Desk, gear: str, end: str, start: float, amount: float, i
             raise InputError(".".join((*table, key)), str(value), "must be a finite number")
     if isinstance(value_at(desk.document, table), list):
         table = (*table, str(index))
-    given = value_at(desk.document, table) or {}
+    given = value_at(desk.document, table)
+    given = given if isinstance(given, dict) else {}
     handle = None if desk.scene is None else handle_of(desk.scene, gear, end, index)
     changes: dict[Path, str | None] = {}
     if handle is None or "amount" not in given or abs(amount - handle.amount) > _SAME_AMOUNT:
@@ -127,6 +128,12 @@ def moved_relief(desk: Desk, gear: str, end: str, start: float, amount: float, i
     return with_values(desk.text, {**changes, ("effects", "relief"): "true"})
 
 
+def _tables(document: Mapping[str, Any], kind: str) -> dict[str, dict[str, Any]]:
+    """The named tables of a kind, as far as the case goes: it may have faults."""
+    found = document.get(kind)
+    return {name: one for name, one in found.items() if isinstance(one, dict)} if isinstance(found, dict) else {}
+
+
 def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
     """The text of a case with a gear without relief, and without the effect where no flank is modified any more.
 
@@ -135,11 +142,10 @@ def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
     InputError
         If the text cannot be changed there.
     """
-    left = {name: {key for key in one if name != gear or key != "relief"} for name, one in document["gear"].items()}
+    gears, pairs = (_tables(document, kind) for kind in ("gear", "pair"))
+    left = {name: {key for key in one if name != gear or key != "relief"} for name, one in gears.items()}
     changes: dict[Path, str | None] = {("gear", gear, "relief"): None}
-    if not any(keys & _MODIFIED for keys in left.values()) and not any(
-        "modification" in one for one in document["pair"].values()
-    ):
+    if not any(keys & _MODIFIED for keys in left.values()) and not any("modification" in one for one in pairs.values()):
         changes["effects", "relief"] = None
     return with_values(text, changes)
 
@@ -152,8 +158,9 @@ def own_name(text: str, document: Mapping[str, Any], pair: str) -> str:
     InputError
         If the text cannot be changed there.
     """
-    gears = document["gear"]
-    gear = value_at(document, ("pair", pair, "driven"))
+    gears, gear = _tables(document, "gear"), value_at(document, ("pair", pair, "driven"))
+    if gear not in gears:
+        raise InputError(f"pair.{pair}.driven", gear, "is no gear of this case")
     name = next(n for n in (f"{gear}_driven", *(f"{gear}_driven_{i}" for i in range(2, 99))) if n not in gears)
     text = with_value(text, ("pair", pair, "driven"), literal(name))
     lines = [f"{key} = {literal(value)}" for key, value in gears[gear].items()]

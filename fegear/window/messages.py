@@ -20,7 +20,8 @@ from nicegui.client import Client
 from nicegui.elements.input import Input
 from nicegui.elements.mixins.value_element import ValueElement
 
-from fegear.base.errors import InputError
+from fegear.base.errors import PATH, InputError, shown
+from fegear.base.streams import complain
 from fegear.window.document import LARGEST
 from fegear.window.journal import HALF, HALVES
 
@@ -29,13 +30,14 @@ if TYPE_CHECKING:
 
 #: Characters of one piece, and of all pieces of a message: a text of half that length with every character escaped.
 PIECE, _MOST = 100_000, 4 * LARGEST
-#: For so long messages are acted on before the connections are looked at again, and for how long these are [s].
-_SPELL, _REST = 0.03, 0.01
+#: For so long messages are acted on before connections are read again, and for so long they are at most [s].
+_SPELL, _REST = 0.03, 0.02
 #: For so long messages that wait are acted on when the window is closed [s].
 _FAREWELL = 3.0
 #: Messages that come in pieces at the same time.
 _OPEN = 8
 _NOT_TAKEN = "What this page has sent could not be read, and is not taken: change it once more, or load the page again."
+_GONE = "The form has been made anew since, for another page changed the case: what was typed last is not taken."
 #: What is said with each kind of event, and what each part of it must be.
 EVENTS: dict[str, dict[str, type]] = {
     "relief": {"gear": str, "end": str, "index": int, "start": float, "amount": float, "moving": bool},
@@ -46,6 +48,13 @@ EVENTS: dict[str, dict[str, type]] = {
     "shows": {"pair": str, "kind": str, "on": bool},
     "sight": {"tasks": list},
 }
+#: What parts may be where that is not free.
+_ONE_OF = {
+    "end": ("tip", "root", "crowning"), "key": ("load", "torque"), "how": ("exact", "ground"),
+    "kind": ("stress", "deformed", "tool"),
+}  # fmt: skip
+#: Parts that change while a value is moved.
+_ON_ITS_WAY = {"start", "amount", "text"}
 #: Parts that may be left out.
 _FREE = {"index", "how"}
 
@@ -70,6 +79,8 @@ def checked(kind: str, said: object) -> dict[str, Any]:
     for name, value in said.items():
         if not _is_a(value, parts[name]):
             raise InputError(f"page.{kind}.{name}", _short(value), f"must be {_KINDS[parts[name]]}")
+        if value not in (known := _ONE_OF.get(name, (value,))):
+            raise InputError(f"page.{kind}.{name}", _short(value), f"must be one of {', '.join(known)}")
     return dict(said)
 
 
@@ -99,28 +110,34 @@ class Messages:
     def __init__(self) -> None:
         self._pieces: dict[tuple[str, str], list[str]] = {}
         self._waiting: deque[object] = deque()
+        self._moves: dict[tuple[str, ...], dict[str, Any]] = {}
         self._is_acting = False
 
     def install(self) -> None:
         """Take the place of what hears of pages; once for a server."""
         heard: Mapping[str, Callable[..., Any]] = core.sio.handlers["/"]
-        for name in ("handshake", "javascript_response", "ack", "log"):
+        for name in ("handshake", "javascript_response", "ack"):
             core.sio.on(name, _guarded(heard[name]))
+        core.sio.on("log", _log)
+        connection = core.sio.eio
+        connection.on("message", _guarded(connection.handlers["message"]))  # what is no message at all
         core.sio.on("event", self.event)
         core.sio.on("piece", self.piece)
 
     async def event(self, _socket: str, said: object = None, *_more: object) -> None:
         """Act on an event of a page, at once or behind those that wait: a page that is not heard for long is lost."""
-        self._waiting.append(said)
+        if not self._replaces(said):
+            self._waiting.append(said)
         if self._is_acting:
             return
         self._is_acting = True
         try:
             begun = time.monotonic()
             while self._waiting:
-                _act(self._waiting.popleft())
-                if self._waiting and time.monotonic() - begun > _SPELL:
-                    await asyncio.sleep(_REST)
+                self._act_on_next()
+                spent = time.monotonic() - begun
+                if spent > _SPELL or not self._waiting:  # what has come meanwhile is read, and joins what waits
+                    await asyncio.sleep(min(spent, _REST))
                     begun = time.monotonic()
         finally:
             self._is_acting = False
@@ -129,7 +146,24 @@ class Messages:
         """Act on what waits: the window is closed."""
         end = time.monotonic() + _FAREWELL
         while self._waiting and time.monotonic() < end:
-            _act(self._waiting.popleft())
+            self._act_on_next()
+
+    def _act_on_next(self) -> None:
+        said = self._waiting.popleft()
+        self._moves = {place: one for place, one in self._moves.items() if one is not said}
+        _act(said)
+
+    def _replaces(self, said: object) -> bool:
+        """Whether a value that is being moved is further than where a message that waits has it: one stroke."""
+        place = _moved(said) if isinstance(said, dict) else None
+        if place is None or not isinstance(said, dict):  # what comes before something else stays before it
+            self._moves = {}
+            return False
+        if (before := self._moves.get(place)) is not None:
+            before["args"] = said["args"]
+            return True
+        self._moves[place] = said
+        return False
 
     async def piece(self, socket: str, said: object = None, *_more: object) -> None:
         """Put a message together; act on it when the last piece is here."""
@@ -157,6 +191,19 @@ class Messages:
             refuse(client, _NOT_TAKEN)
 
 
+def _moved(said: Mapping[str, Any]) -> tuple[str, ...] | None:
+    """What a message moves on its way, by its page and all but numbers; None for others."""
+    try:
+        (text,) = said["args"]
+        parts = json.loads(text) if len(text) < 1000 else None
+        if not isinstance(parts, dict) or parts.get("moving") is not True:
+            return None
+        fixed = [f"{name} {one}" for name, one in sorted(parts.items()) if name not in _ON_ITS_WAY]
+        return (str(said["client_id"]), str(said["listener_id"]), *fixed)
+    except (KeyError, TypeError, ValueError, RecursionError):
+        return None
+
+
 def _act(said: object) -> None:
     """Act on an event of a page as long as the page is known, though its connection may be gone by now."""
     client = _client_of(said)
@@ -167,10 +214,12 @@ def _act(said: object) -> None:
         known = _is_of_its_kind(client, message)
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
         known = False
-    if known:
-        client.handle_event(message)
-    else:
+    if not known:
         refuse(client, _NOT_TAKEN)
+        return
+    if message["id"] not in client.elements and any(str(one).startswith('"') for one in message["args"]):
+        refuse(client, _GONE)  # a text, typed where another page has laid another case
+    client.handle_event(message)
 
 
 def refuse(client: Client, sentence: str) -> None:
@@ -179,6 +228,12 @@ def refuse(client: Client, sentence: str) -> None:
         return
     with client:
         ui.notify(sentence, type="warning", multi_line=True, timeout=10_000)
+
+
+def _log(_socket: str, said: object = None, *_more: object) -> None:
+    """Print what a page's scripts complain of, on one line whatever it is."""
+    if _client_of(said) is not None and isinstance(said, dict) and said.get("level") in ("warning", "error"):
+        complain(f"The page says: {shown(said.get('message', ''), PATH)}")
 
 
 def _guarded(hear: Callable[..., Any]) -> Callable[..., Awaitable[Any]]:
@@ -215,6 +270,8 @@ def _is_of_its_kind(client: Client, message: dict[str, Any]) -> bool:
     if sender is None:  # gone with the form that it was of
         return True
     listener = sender._event_listeners[message["listener_id"]]  # noqa: SLF001 - the framework looks there, too
+    if listener.type.startswith("sub_pages"):  # of the framework, which this page has none of
+        return False
     if not isinstance(sender, ValueElement) or not listener.type.startswith("update:"):
         return True
     values = [None if one is None else wire.loads(one) for one in message["args"]]

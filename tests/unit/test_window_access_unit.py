@@ -232,7 +232,7 @@ def test_a_case_named_on_the_command_line_is_opened_wherever_it_lies(places):
         bench.desk.save_as(places.others / "d.toml")
     of_others = Bench(None, None, Reach.of(None, [places.others]))
     of_others.from_file(places.others / "c.toml")
-    with pytest.raises(InputError, match="--folder = .*is not a folder"):
+    with pytest.raises(InputError, match=r"--folder = .*is not a folder"):
         Reach.of(None, [places.others / "c.toml"])
 
 

@@ -12,6 +12,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import tomllib
 from dataclasses import replace
@@ -47,7 +48,7 @@ from fegear.window.computing import SAME, Computing, Sent, whole
 from fegear.window.designs import draft_of
 from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
-from fegear.window.form import fields, fields_told, form, tables_to_add
+from fegear.window.form import fields, fields_told, form, shortened, tables_to_add
 from fegear.window.glance import glance_tasks, numbers_of, plan_with
 from fegear.window.inputs import Inputs, merged
 from fegear.window.job_queue import Asked, Compute, Design, Export, Inbox, Said, Unwanted
@@ -344,6 +345,102 @@ def test_a_folder_that_takes_no_journal_is_told_and_loses_nothing_else(tmp_path,
     desk.set(("gear", "a", "teeth"), "30")
     assert "not kept" in desk.trouble
     assert desk.document["gear"]["a"]["teeth"] == 30
+
+
+@pytest.fixture
+def full_disk():
+    """Lets no file grow beyond some bytes, as a full disk does; gives room again when it is called."""
+    resource = pytest.importorskip("resource", reason="only Unix bounds the size of files")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (64, before[1]))
+    yield lambda: resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_full_disk_is_told_with_the_change_that_is_not_kept_until_there_is_room(tmp_path, monkeypatch, full_disk):
+    """A dragged value told it one move late, it was told for ever, and each try left a hidden file behind."""
+    monkeypatch.setattr("fegear.window.bench._AGAIN", 0.02)
+    bench, told = Bench(None), []
+    bench.desk = Desk(TWO, "c", tmp_path)
+    bench.listen(lambda what, _content: told.append((what, bool(bench.desk.trouble))))
+
+    async def full():
+        bench.begin()
+        bench.move_load("I", "load", "900 N", moving=True)
+        await asyncio.sleep(0.1)
+        assert told[-1] == ("kept", True)
+        assert "not kept beyond a crash" in bench.desk.trouble
+        assert list(journal_folder().iterdir()) == []
+        full_disk()
+        for _ in range(100):
+            await asyncio.sleep(0.02)
+            if not bench.desk.trouble:
+                break
+        assert told[-1] == ("kept", False)
+
+    asyncio.run(full())
+    (kept,) = journal_folder().iterdir()
+    assert "900 N" in json.loads(kept.read_text())["text"]
+
+
+def test_a_text_that_no_file_takes_is_refused_and_the_case_stays(tmp_path):
+    desk = Desk(TEXT, "c", tmp_path)
+    for text in (TEXT.replace("28", "28 # \ud800"), TEXT.replace("28", "28 # \uffff")):
+        with pytest.raises(InputError, match="half a character in line 4"):
+            desk.change(text)
+    with pytest.raises(InputError, match="has 4000001 characters"):
+        desk.change("#" * 4_000_001)
+    assert (desk.text, desk.can_undo) == (TEXT, False)
+
+
+def test_earlier_states_of_long_texts_are_bounded(tmp_path):
+    desk = Desk(TEXT, "c", tmp_path)
+    for i in range(40):
+        desk.change(f"{TEXT}#{i}{'x' * 1_000_000}", stroke=True)
+        desk.end_stroke()
+    assert sum(map(len, desk._states)) < 31_000_000
+    assert desk.can_undo
+
+
+def test_a_long_text_is_judged_where_nobody_waits_for_it(tmp_path):
+    """3000 gears that were pasted blocked the server and its end for a minute."""
+    threads, jobs = [], []
+    bench = Bench(None, SimpleNamespace(ask=jobs.append, hear=None))
+    bench.desk = Desk(TEXT, "c", tmp_path)
+    many = "".join(f'[gear.g{i}]\nteeth = 28\nmodule = "3 mm"\nface_width = "20 mm"\n' for i in range(500))
+
+    async def pasted(text):
+        bench.begin()
+        jobs.clear()
+        bench.desk.change(text)
+        bench.changed()
+        assert bench.desk.pending
+        assert bench.desk.document == tomllib.loads(TEXT)  # nobody waits
+        assert jobs == []
+        (left,) = journal_folder().iterdir()
+        assert json.loads(left.read_text())["text"] == text  # it is kept all the same
+        while bench.desk.pending:
+            threads.append(threading.active_count())
+            await asyncio.sleep(0.01)
+
+    asyncio.run(pasted(TEXT + many))
+    assert bench.desk.refusal is None
+    assert len(bench.desk.document["gear"]) == 501
+    assert jobs[-1].asked.text == TEXT + many
+    assert max(threads) >= 2
+    bench.desk.undo()
+    bench.desk.change(TEXT + many.replace("teeth = 28", "teeth = 2"))
+    assert "gear.g0.teeth = 2" in str(bench.desk.refusal)  # who must know waits
+
+
+def test_the_form_of_a_case_with_many_tables_shows_some_and_says_so():
+    gears = {f"g{i}": {"teeth": 20, "relief": {f"r{j}": {} for j in range(50)}} for i in range(100)}
+    short, left = shortened({"title": "x", "gear": gears, "pair": {"I": {"driver": "a"}}})
+    assert len(short["gear"]) == 40
+    assert left == 60 + 40 * 10
+    assert short["pair"] == {"I": {"driver": "a"}}
+    document = tomllib.loads(TEXT)
+    assert shortened(document) == (document, 0)
 
 
 def test_a_stroke_is_undone_in_one_step(tmp_path):
@@ -747,7 +844,7 @@ def test_only_the_page_that_was_opened_is_let_in(heads, query, let_in, kind):
         sent.append(message)
 
     keys = Keys()
-    keys.secret = "secret"
+    keys.secret = KEY["cookie"].rpartition("=")[2]
     scope = {
         "type": kind,
         "path": "/",
@@ -1286,6 +1383,16 @@ def test_text_that_is_being_typed_outlives_the_change_of_another_page(tmp_path):
 
     asyncio.run(both())
     assert field.changes == 1
+
+
+def test_long_texts_are_merged_at_once():
+    """A line that stands there thousands of times was compared with each of them."""
+    base = "teeth = 20\n" * 20_000
+    started = time.process_time()
+    assert merged(base, f"{base}x\n", base) == f"{base}x\n"
+    assert merged(base, f"{base}x\n", f"y\n{base}") == f"y\n{base}x\n"
+    assert merged(base, base.replace("20", "21"), base.replace("20", "22")) == base.replace("20", "21")
+    assert time.process_time() - started < 2.0
 
 
 @pytest.mark.parametrize(
