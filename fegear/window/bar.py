@@ -33,6 +33,14 @@ EXPORTS = (
 _CHECKED = "The text is long: it is being checked."
 
 
+def in_words(do: Callable[[], object]) -> None:
+    """Do what was asked for; what is refused is said on the page."""
+    try:
+        do()
+    except FegearError as error:
+        ui.notify(str(error), type="warning", multi_line=True)
+
+
 class Bar:
     """The bar of one page."""
 
@@ -47,9 +55,9 @@ class Bar:
             self._button("Save as", lambda: self._ask_path("Save as", self._own_path(), self._save_as))
             self._give_up = self._button("Give up changes", self._give_up_changes)
             with ui.button("Export").props("flat dense no-caps"), ui.menu():
-                ui.menu_item("Case (TOML), as it is now", self._download)
+                ui.menu_item("Case (TOML), as it is now", lambda: in_words(self._download))
                 for words, what, ending in EXPORTS:
-                    ui.menu_item(words, partial(self._ask_folder, what, ending))
+                    ui.menu_item(words, partial(in_words, partial(self._ask_folder, what, ending)))
             self._pin = self._button("Pin as A", self._pin_or_not)
             self._button("Other case", lambda: bench.lay(None))
             self._level = ui.toggle(list(LEVELS), value=bench.level, on_change=self._level_chosen)
@@ -58,18 +66,17 @@ class Bar:
                 ui.element("button").classes("button").props(f"type=button id={name}")
             ui.element("div").classes("state").props("role=status id=state")  # the page writes it: it changes often
         self._told = ui.label().classes("told")
-        ui.on("save", self._save)
         self.refresh()
 
     @staticmethod
     def _button(text: str, pressed: Callable[[], object]) -> ui.button:
-        return ui.button(text, on_click=pressed).props("flat dense no-caps")
+        return ui.button(text, on_click=lambda: in_words(pressed)).props("flat dense no-caps")
 
     @property
     def _desk(self) -> Desk:
         desk = self._bench.desk
         if desk is None:
-            raise InputError("case", "(none)", "is open", "choose a template")
+            raise InputError("case", "(none)", "is not open any more", "choose a template or a case")
         return desk
 
     def refresh(self) -> None:
@@ -104,7 +111,9 @@ class Bar:
         self._bench.changed()
 
     def _level_chosen(self, event: Any) -> None:
-        if event.value != self._bench.level:
+        if event.value not in LEVELS:
+            self._level.set_value(self._bench.level)
+        elif event.value != self._bench.level:
             self._bench.level = event.value
             self._bench.changed()
 
@@ -124,6 +133,10 @@ class Bar:
             ui.notify(str(self._desk.refusal), type="warning")
 
     # ---- files ---------------------------------------------------------------------------------------------------
+
+    def save(self) -> None:
+        """Save the case, or ask for a name."""
+        in_words(self._save)
 
     def _save(self) -> None:
         desk = self._desk
@@ -195,10 +208,7 @@ class Bar:
     def _confirm(said: str, yes: str, do: Callable[[], None]) -> None:
         def take() -> None:
             dialog.close()
-            try:
-                do()
-            except FegearError as error:
-                ui.notify(str(error), type="warning", multi_line=True)
+            in_words(do)
 
         with ui.dialog(value=True) as dialog, ui.card():
             ui.label(said)

@@ -397,7 +397,7 @@ class Bench:
 
     def _on_desk(self) -> Desk:
         if self.desk is None:
-            raise InputError("case", "(none)", "is open", "choose a template")
+            raise InputError("case", "(none)", "is not open any more", "choose a template or a case")
         return self.desk
 
     def _put(self, text: str, *, moving: bool) -> None:

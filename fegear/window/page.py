@@ -110,6 +110,7 @@ class Page:
         ):  # fmt: skip
             ui.on(kind, partial(self._said, kind, do))
         ui.on("untaken", self._too_long)
+        ui.on("save", lambda: self._bar.save() if self._bar is not None else None)
         ui.on("view", lambda event: bench.see_otherwise(event.args if isinstance(event.args, dict) else {}))
         parts = json.dumps({"piece": PIECE, "most": LARGEST})
         self._client.run_javascript(f"fegearPieces.begin({parts})")
