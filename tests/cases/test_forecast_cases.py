@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.case.reading import read_scene
+from fegear.case.reading import build_scene, read_scene
 from fegear.engine.plan import forecast_seconds, make_plan, plan_lines
 from fegear.engine.stage import Stage, Task
 from fegear.results.catalogue import STAGES
@@ -60,6 +60,21 @@ def test_a_shape_is_solved_once_and_counts_once():
 def test_what_costs_more_is_predicted_to_cost_more(name, more, less):
     total = [sum(found or 0.0 for found in forecast_seconds(*planned(name, option))) for option in (more, less)]
     assert total[0] > 1.1 * total[1]
+
+
+@pytest.mark.parametrize(
+    ("width", "loads", "measured"),  # CPU seconds, z = 500, slices, one core
+    [("20 mm", 4, 3.7), ("45 mm", 4, 17.5), ("90 mm", 4, 104.0), ("20 mm", 24, 8.9), ("45 mm", 24, 27.0)],
+)
+def test_wide_faces_and_many_loads_are_predicted_within_a_factor_of_three(width, loads, measured):
+    gear = {"teeth": 500, "module": "2 mm", "face_width": width}
+    pair = {"driver": "a", "driven": "b", "width": "slices", "loads": [f"{500 * n} N" for n in range(1, loads + 1)]}
+    effects = {"neighbour_coupling": True, "hertz": "load-dependent"}
+    case = {"results": ["load-distribution"], "gear": {"a": gear, "b": gear}, "pair": {"I": pair}, "effects": effects}
+    scene = build_scene(case, "wide", CASES)
+    plan = make_plan(scene, STAGES)
+    by_task = dict(zip([step.task for step in plan.steps], forecast_seconds(scene, plan), strict=True))
+    assert measured / 3.0 < by_task[Task("loaded-flanks", "I")] < 3.0 * measured
 
 
 def test_the_plan_says_where_the_run_time_is_unknown():

@@ -13,7 +13,8 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
-from fegear.contact.wide import compliance
+from fegear.contact.wide import complementarity, compliance
+from fegear.contact.wide import over_pitch as over_pitch_module
 from fegear.contact.wide.complementarity import GAUSS, averages, hat_averages, solve_contact
 from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
 from fegear.contact.wide.error import flank_error
@@ -540,3 +541,25 @@ def test_what_gaps_do_not_change_is_recalled(solved):
     alone = replace(flanks, cache=SolutionCache()).compliance(1000.0)
     assert alone is not known
     assert np.array_equal(alone.matrix, known.matrix)
+
+
+def test_problems_in_parts_are_the_same_to_the_last_bit_and_tell_how_far_they_are(known, monkeypatch):
+    flanks, compliances = known
+    told, loads = [], LOAD * np.array([0.2, 1.0, 3.0])
+    whole = flanks.solve(loads, MISALIGNED, compliances)
+    monkeypatch.setattr(complementarity, "_ENTRIES", 5 * compliances.lines.x.shape[1] ** 2)
+    parts = replace(flanks, progress=told.append).solve(loads, MISALIGNED, compliances)
+    for name in ("force", "approach", "stiffness", "residual"):
+        np.testing.assert_array_equal(getattr(parts.contact, name), getattr(whole.contact, name))
+    assert parts.contact.steps == whole.contact.steps
+    assert told == [5 / 12, 10 / 12, 1.0]  # four positions under three loads, five at a time
+
+
+def test_peaks_of_many_loads_are_looked_for_at_a_bounded_number_of_places():
+    period, loads = 1e-2, 400
+    x = np.linspace(0.0, period, 48, endpoint=False)
+    places = np.random.default_rng(0).uniform(0.0, period, (48, loads, 2))
+    new = over_pitch_module._worth_a_look(x, [(places, np.ones((48, loads)))] * 2, period)
+    assert 10 <= new.size <= 64
+    few = over_pitch_module._worth_a_look(x, [(places[:, :3], np.ones((48, 3)))] * 2, period)
+    assert few.size == 12  # two places of two ends each of three loads

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -33,12 +33,18 @@ from fegear.base.tally import note, tallied
 from fegear.contact.plane.edge_law import edge_law
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.lines import ContactLines
 
 
 #: Steps in which many stations may change, and steps in all.
 _MANY_AT_ONCE, _MOST_STEPS = 15, 400
+
+
+#: Entries of the matrices that are solved at a time: many loads would otherwise fill the memory.
+_ENTRIES = 1 << 23
 
 
 #: Share of the mean line load below which the logarithm is continued by its tangent.
@@ -91,7 +97,13 @@ def averaged_gaps(lines: ContactLines, gap: Array, loads: int) -> Array:
 
 
 @tallied("load sharing")
-def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: int = _MOST_STEPS) -> Contact:
+def solve_contact(
+    known: FlankCompliance,
+    gap: Array,
+    load: Array,
+    most_steps: int = _MOST_STEPS,
+    progress: Callable[[float], None] | None = None,
+) -> Contact:
     """Find forces and approach at all roll positions under all loads.
 
     Parameters
@@ -104,6 +116,8 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
         Total loads along the transverse line of action [N], positive.
     most_steps : int
         After which it gives up.
+    progress : callable, optional
+        Receives the fraction of problems solved.
 
     Returns
     -------
@@ -117,13 +131,43 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
     lines = known.lines
     positions, most = lines.x.shape
     cases = load.size
+    averaged = np.moveaxis(averaged_gaps(lines, gap, cases), 2, 1).reshape(-1, most)
     place = np.repeat(np.arange(positions), cases)
     total = np.tile(load, positions)
-    averaged = np.moveaxis(averaged_gaps(lines, gap, cases), 2, 1).reshape(-1, most)
     nearest = np.where(lines.present[place], averaged, np.inf).min(axis=1)
-    apart = np.where(lines.present[place], averaged - nearest[:, None], 0.0)
-    force, approach = np.zeros((place.size, most)), np.zeros(place.size)
-    stiffness, residual = np.zeros(place.size), np.zeros(place.size)
+    found = _Found(
+        np.zeros((place.size, most)), np.zeros(place.size), np.zeros(place.size), np.zeros(place.size)
+    )  # fmt: skip
+    at_a_time, steps = max(1, _ENTRIES // most**2), 0
+    for start in range(0, place.size, at_a_time):
+        part = slice(start, start + at_a_time)
+        apart = np.where(lines.present[place[part]], averaged[part] - nearest[part, None], 0.0)
+        own = _Found(*(one[part] for one in found))
+        steps = max(steps, _solve(known, place[part], apart, total[part], own, most_steps))
+        own.approach[:] += nearest[part]
+        if progress is not None:
+            progress(min(1.0, (start + at_a_time) / place.size))
+    shape = (positions, cases)
+    forces = np.ascontiguousarray(np.moveaxis(found.force.reshape(*shape, most), 2, 1))
+    return Contact(
+        forces, found.approach.reshape(shape), found.stiffness.reshape(shape), found.residual.reshape(shape), steps
+    )
+
+
+class _Found(NamedTuple):
+    """What is found of problems in a row, filled in as they are solved."""
+
+    force: Array
+    approach: Array
+    stiffness: Array
+    residual: Array
+
+
+def _solve(
+    known: FlankCompliance, place: Index, apart: Array, total: Array, found: _Found, most_steps: int
+) -> int:  # fmt: skip
+    """Solve problems at once: place, gaps beyond the nearest and load of each; returns the steps of the slowest."""
+    lines = known.lines
     index = np.arange(place.size)
     active = lines.present[place]
     v = lines.support[place] / lines.length[place][:, None] * total[:, None]
@@ -148,9 +192,9 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
         changes = leaves | enters
         done = ~changes.any(axis=1) & (close | (known.fixed_half_width is not None))
         at = index[done]
-        force[at], approach[at], stiffness[at] = kept[done], z[done] + nearest[at], rate[done]
+        found.force[at], found.approach[at], found.stiffness[at] = kept[done], z[done], rate[done]
         wrong = np.where(active, np.abs(distance), np.maximum(-distance, 0.0)) * lines.present[here]
-        residual[at] = (wrong.max(axis=1) / np.abs(z))[done]
+        found.residual[at] = (wrong.max(axis=1) / np.abs(z))[done]
         if steps > _MANY_AT_ONCE:
             least = np.argmax(changes, axis=1)
             only = np.zeros_like(changes)
@@ -158,9 +202,7 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: i
             changes &= only
         active = (active ^ changes)[~done]
         v, index = kept[~done], index[~done]
-    shape = (positions, cases)
-    forces = np.ascontiguousarray(np.moveaxis(force.reshape(*shape, most), 2, 1))
-    return Contact(forces, approach.reshape(shape), stiffness.reshape(shape), residual.reshape(shape), steps)
+    return steps
 
 
 def tangent_compliance(known: FlankCompliance, place: Index, force: Array) -> Array:

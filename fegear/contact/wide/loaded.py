@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
@@ -302,6 +302,8 @@ class FlankPair:
         Contact lines go on along tip edges up to this distance from the mate's flank [m]; 0 for lines that end there.
     cache : SolutionCache
         Where what gaps and loads do not change is recalled from and kept; by default a memory of this pair's own.
+    progress : callable or None
+        Receives the fraction of every `solve` that is done.
     """
 
     pair: GearPair
@@ -312,6 +314,7 @@ class FlankPair:
     positions: int = 16
     most_gap: float = 0.0
     cache: SolutionCache = field(default_factory=partial(SolutionCache, most=_KEPT), compare=False, repr=False)
+    progress: Callable[[float], None] | None = field(default=None, compare=False, repr=False)
 
     @property
     def points(self) -> Panels:
@@ -380,6 +383,7 @@ class FlankPair:
         known = self.compliance(float(loads.max())) if known is None else known
         assembled = time.perf_counter()
         with one_thread(with_scipy=False):
-            known, contact = solve_spots(known, (gaps or FlankGaps()).at(self.pair, known.lines, loads), loads)
+            apart = (gaps or FlankGaps()).at(self.pair, known.lines, loads)
+            known, contact = solve_spots(known, apart, loads, self.progress)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)

@@ -27,6 +27,8 @@ _ROUNDS, _PLACES = 3, 2
 _JUMP = 1e-5
 #: Positions that peaks are looked for at stand this share of a base pitch from others, at least.
 _APART = 1e-4
+#: Positions of a round, at most about: those of many loads stand close together.
+_MOST_PLACES = 64
 #: What is taken for an error of what half of the positions change: of a mean over them, and of the load over the face.
 _OF_MEAN, _OF_FACE = 0.5, 0.5
 
@@ -175,10 +177,15 @@ def _worth_a_look(x: Array, peaks: list[tuple[Array, Array]], period: float) -> 
         for case in range(height.shape[1]):
             likeliest = np.argsort(-height[:, case], kind="stable")[:_PLACES]
             wanted += places[likeliest, case][height[likeliest, case] > 0.0].ravel().tolist()
+    # Peaks of many loads stand close together; what is left between places is stated.
+    apart = _APART if len(wanted) <= _MOST_PLACES else 1.0 / _MOST_PLACES
     new: list[float] = []
     for one in sorted(wanted):
-        beside = np.abs(np.mod(np.array([*x.tolist(), *new]) - one + 0.5 * period, period) - 0.5 * period)
-        if beside.min() > _APART * period:
+        known, found = (
+            np.abs(np.mod(np.array(others) - one + 0.5 * period, period) - 0.5 * period).min(initial=period)
+            for others in (x, new)
+        )
+        if known > _APART * period and found > apart * period:
             new.append(one)
     return np.array(new)
 

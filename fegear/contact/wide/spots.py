@@ -11,6 +11,7 @@ is low by a quarter of (b/a)^2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -28,7 +29,9 @@ _SHARES = (0.5, 1.0)
 _MISSED = 0.6
 
 
-def solve_spots(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankCompliance, Contact]:
+def solve_spots(
+    known: FlankCompliance, gap: Array, load: Array, progress: Callable[[float], None] | None = None
+) -> tuple[FlankCompliance, Contact]:
     """Find forces and approach as `solve_contact` does, of spots with averages over their own width.
 
     Parameters
@@ -38,6 +41,8 @@ def solve_spots(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankC
         [m].
     load : ndarray, shape (L,)
         [N].
+    progress : callable, optional
+        Receives the fraction of problems solved.
 
     Returns
     -------
@@ -51,9 +56,9 @@ def solve_spots(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankC
         If no consistent set of loaded stations is found.
     """
     if known.fixed_half_width is not None or known.line_half_width is None:
-        return known, solve_contact(known, gap, load)
+        return known, solve_contact(known, gap, load, progress=progress)
     try:
-        return known, solve_contact(known, gap, load, _PATIENCE)
+        return known, solve_contact(known, gap, load, _PATIENCE, progress)
     except ConvergenceError:
         pass
     # Each load on its own, so that what it does hangs on no other.

@@ -24,7 +24,7 @@ from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution
 from fegear.results.pair.loaded_teeth import wide_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fegear.base.solution_cache import SolutionCache
     from fegear.case.reading import Scene
@@ -45,8 +45,15 @@ _LONGER_EDGES = 3
 _FEW = 24
 #: So many loaded places at a roll position tell too little of the load along a contact line.
 _FEWEST = 3
-#: Seconds of one contact line on one gear, and of the contact at one roll position.
-_LINE, _CONTACT = 0.0023, 0.001
+#: Seconds of a contact line of few stations on one gear, stations of which it takes twice that, and those from which on
+#: it goes with their cube.
+_LINE, _STATIONS, _MANY = 0.0023, 24, 46
+#: Seconds of the contact at one roll position under one load, and what each square of stations there adds.
+_CONTACT, _SQUARE = 0.0006, 8e-8
+#: Roll positions under every load: of means and errors, and most of those at which its peaks are looked for.
+_OVER_PITCH, _PEAKS = 80, 192
+#: Times that flanks are loaded in all, about, for the progress.
+_TIMES = 6
 
 
 def needs_flanks(_scene: Scene, name: str) -> tuple[Task, ...]:
@@ -60,7 +67,10 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedWidePair:
 
 
 def load_flanks(
-    asked: FlanksToLoad, bodies: Mapping[Member, FlankBody], cache: SolutionCache
+    asked: FlanksToLoad,
+    bodies: Mapping[Member, FlankBody],
+    cache: SolutionCache,
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[FlankPair, FlankGaps, LoadedFlanks]:
     """Load a pair of solved gears as its case says, along tip edges as far as these carry load.
 
@@ -70,6 +80,8 @@ def load_flanks(
     bodies : mapping of {"driver", "driven"} to FlankBody
     cache : SolutionCache
         Of compliances.
+    progress : callable, optional
+        Of each solve.
 
     Returns
     -------
@@ -85,7 +97,7 @@ def load_flanks(
     effects = asked.effects
     flanks = FlankPair(
         asked.pair, bodies, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
-        usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, cache,
+        usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, cache, progress,
     )  # fmt: skip
     gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in GAPS})
     found = flanks.solve(asked.loads, gaps, flanks.compliance(asked.nominal))
@@ -110,7 +122,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
     fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
     coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
-    flanks, gaps, found = load_flanks(asked, fine, work.cache)
+    flanks, gaps, found = load_flanks(asked, fine, work.cache, _Solves(work.progress))
     known = found.known
     missed = missed_by_slices(asked.pair.driver.twist)["contact"] if asked.width == "slices" else 0.0
     over = over_pitch(flanks, found, gaps, asked.nominal, peaks=asked.estimates)
@@ -122,7 +134,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
         if effect == "corner_contact"
         else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
         for effect in WIDE_EFFECTS
-        if asked.neglected and not effects.is_on(effect) and asked.has_data(effect)
+        if asked.estimates and not effects.is_on(effect) and asked.has_data(effect)
     }
     stated, i = over.stated, asked.loads.index(asked.nominal)
     changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}
@@ -132,6 +144,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
         unloaded = unloaded_error(asked.pair, rigid, found.lines.roll)
         beside = beside_the_lines(asked.pair, rigid, found.lines)
     apart = asked.gaps(relief=False, misalignment=effects.misalignment)
+    flanks = replace(flanks, progress=None)  # which goes no farther than this stage
     return LoadedWidePair(
         flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, Neglected(changes), unloaded,
         beside, missed,
@@ -250,9 +263,27 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     asked = flanks_to_load(scene, name)
-    lines = asked.positions * (1.0 + asked.pair.total_contact_ratio)
-    seconds = 2.0 * 2.0 * _LINE * lines + _CONTACT * asked.positions * (1 + len(asked.loads))
+    pair, loads = asked.pair, 1 + len(asked.loads)
+    width = min(pair.driver.face_width, pair.driven.face_width)
+    stations = 1.0 + width / (asked.panel * pair.driver.module)
+    lines = asked.positions * (1.0 + pair.total_contact_ratio)
+    long = max(1.0, stations / _STATIONS * (1.0 + (stations / _MANY) ** 2))
+    problem = _CONTACT + _SQUARE * (stations * math.ceil(pair.total_contact_ratio)) ** 2
+    seconds = 2.0 * 2.0 * _LINE * lines * long + problem * loads * (_OVER_PITCH + min(4 * loads, _PEAKS))
     return Forecast({"positions": asked.positions, "panels": asked.panels}, seconds)
+
+
+class _Solves:
+    """Progress over several solves, each of which reports from its own beginning to its end."""
+
+    def __init__(self, report: Callable[[float], None]) -> None:
+        self._report, self._done, self._last = report, 0, 0.0
+
+    def __call__(self, fraction: float) -> None:
+        if fraction < self._last or self._last == 1.0:
+            self._done += 1
+        self._last = fraction
+        self._report(min(0.99, (self._done + fraction) / _TIMES))
 
 
 LOADED_FLANKS = Stage(
