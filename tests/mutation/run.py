@@ -34,7 +34,6 @@ from pathlib import Path
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 WORK = ROOT / ".mutation"
-RECORDED = WORK / "tree"
 sys.path.insert(0, str(HERE))
 from mutants import Mutant, draw  # noqa: E402
 
@@ -69,30 +68,23 @@ def environment(tree: Path, **more: str) -> dict[str, str]:
 
 
 def record(tests: list[str]) -> None:
-    """Run the ordinary tests under `coverage`, the named ones only if there are any."""
-    tree, lines = copied(RECORDED), WORK / "lines"
+    """Run the ordinary tests under `coverage`, or the named ones: a record more beside the earlier ones."""
     if not tests:
-        shutil.rmtree(lines, ignore_errors=True)
-    lines.mkdir(exist_ok=True)
-    settings = WORK / "coveragerc"
+        for earlier in WORK.glob("record-*"):
+            shutil.rmtree(earlier)
+    place = WORK / f"record-{time.time_ns()}"
+    tree, settings = copied(place / "tree"), place / "coveragerc"
     settings.write_text(
-        f"[run]\nsource = {tree / 'fegear'}\ndata_file = {lines / 'coverage'}\nparallel = true\n"
+        f"[run]\nsource = {tree / 'fegear'}\ndata_file = {place / 'coverage'}\nparallel = true\n"
         "patch = subprocess\nsigterm = true\ncontext = ${MUTATION_TEST-}\n"
     )
-    found = WORK / f"found-{time.time_ns()}.json"
-    asked = environment(tree, MUTATION_FOUND=str(found), FEGEAR_CACHE=str(WORK / "cache"))
+    asked = environment(tree, MUTATION_FOUND=str(place / "found.json"), FEGEAR_CACHE=str(place / "cache"))
     asked["PYTHONPATH"] += os.pathsep + str(HERE)
-    command = ["coverage", "run", f"--rcfile={settings}", "-m", "pytest", "-n", "0", "-p", "no:cacheprovider"]
+    coverage = [sys.executable, "-m", "coverage"]
+    pytest = ["-m", "pytest", "-n", "0", "-p", "no:cacheprovider", "-p", "recording"]
     given = tests or ["--ignore=tests/architecture", "tests"]
-    subprocess.run([sys.executable, "-m", *command, "-p", "recording", *given], cwd=tree, env=asked, check=False)
-    subprocess.run(
-        [sys.executable, "-m", "coverage", "combine", "--append", f"--rcfile={settings}"], cwd=tree, check=False
-    )
-    known = WORK / "found.json"
-    before = json.loads(known.read_text()) if tests and known.exists() else {}
-    new = json.loads(found.read_text())
-    known.write_text(json.dumps({key: before.get(key, {}) | new[key] for key in ("seconds", "heirs", "failed")}))
-    found.unlink()
+    subprocess.run([*coverage, "run", f"--rcfile={settings}", *pytest, *given], cwd=tree, env=asked, check=False)
+    subprocess.run([*coverage, "combine", "--quiet", f"--rcfile={settings}"], cwd=tree, check=False)
 
 
 class Record:
@@ -101,11 +93,20 @@ class Record:
     def __init__(self) -> None:
         from coverage import CoverageData
 
-        self.lines = CoverageData(str(WORK / "lines" / "coverage"))
-        self.lines.read()
-        found = json.loads((WORK / "found.json").read_text())
-        self.seconds = {name: taken for name, taken in found["seconds"].items() if name not in found["failed"]}
-        self.heirs = found["heirs"]
+        self.seconds: dict[str, float] = {}
+        self.heirs: dict[str, set[str]] = defaultdict(set)
+        self.lines: list[tuple[Path, CoverageData]] = []
+        for place in sorted(WORK.glob("record-*")):
+            data = CoverageData(str(place / "coverage"))
+            data.read()
+            self.lines.append((place / "tree", data))
+            found = json.loads((place / "found.json").read_text())
+            self.seconds |= found["seconds"]
+            for failed in found["failed"]:
+                self.seconds.pop(failed, None)
+            for maker, heirs in found["heirs"].items():
+                self.heirs[maker].update(heirs)
+        self.seconds = {name: taken for name, taken in self.seconds.items() if (ROOT / name.split("::")[0]).exists()}
         self.of_file = defaultdict(list)
         for name in self.seconds:
             self.of_file[name.split("::")[0]].append(name)
@@ -127,23 +128,25 @@ class Record:
         return found
 
     @functools.lru_cache(maxsize=8)  # noqa: B019
-    def contexts(self, path: str) -> tuple[dict[int, set[str]], dict[int, int]]:
-        """Tests by line of a recorded file, and the recorded line of each line of today."""
-        recorded = RECORDED / path
-        if not recorded.exists():
-            return {}, {}
-        by_line = {
-            line: {part for name in names for part in ({name} if name in self.seconds else name.split("|"))}
-            for line, names in self.lines.contexts_by_lineno(str(recorded)).items()
-        }
-        old, new = recorded.read_text().splitlines(), (ROOT / path).read_text().splitlines()
-        blocks = difflib.SequenceMatcher(None, old, new, autojunk=False).get_matching_blocks()
-        return by_line, {b.b + k + 1: b.a + k + 1 for b in blocks for k in range(b.size)}
+    def contexts(self, path: str) -> dict[int, set[str]]:
+        """Tests by the lines of today's file that the recorded ones had, too."""
+        found: dict[int, set[str]] = {}
+        new = (ROOT / path).read_text().splitlines()
+        for tree, data in self.lines:
+            if not (tree / path).exists():
+                continue
+            old, by_line = (tree / path).read_text().splitlines(), data.contexts_by_lineno(str(tree / path))
+            for block in difflib.SequenceMatcher(None, old, new, autojunk=False).get_matching_blocks():
+                for k in range(block.size):
+                    names = by_line.get(block.a + k + 1, ())
+                    split = (({name} if name in self.seconds else name.split("|")) for name in names)
+                    found.setdefault(block.b + k + 1, set()).update(*split)
+        return found
 
     def executed(self, path: str, lines: set[int]) -> set[str]:
         """Contexts that execute one of these lines."""
-        by_line, recorded = self.contexts(path)
-        return {name for line in lines for name in by_line.get(recorded.get(line, 0), ())}
+        by_line = self.contexts(path)
+        return {name for line in lines for name in by_line.get(line, ())}
 
     def tests(self, mutant: Mutant) -> list[str]:
         """Those that execute its line, or use what it made; for what is made at import, those that run what uses it."""
@@ -152,7 +155,8 @@ class Record:
         if path.startswith(COMPILED):
             found = self.executed(CALLERS, _function_lines(CALLERS))
         elif isinstance(outer[-1], ast.FunctionDef):
-            found = self.executed(path, inner)
+            known = inner & set(self.contexts(path))  # of a line that is new: the function's
+            found = self.executed(path, known or set(range(outer[-1].lineno, outer[-1].end_lineno + 1)))
         else:
             names = {one.id for one in ast.walk(outer[0]) if isinstance(one, ast.Name)} | {
                 getattr(outer[0], "name", "")
