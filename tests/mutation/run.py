@@ -278,9 +278,9 @@ def _run_tests(tree: Path, names: list[str], seconds: dict[str, float], scratch:
     os._exit(pytest.main([*options, *files], plugins=[_Chosen(names, seconds, scratch / "told")]))
 
 
-def tried(asked: tuple[Mutant, list[str], dict[str, float]]) -> Outcome:
+def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
     """Put a mutant into this process's copy of the repository and run its tests."""
-    mutant, names, taken = asked
+    mutant, names, taken, budget = asked
     tree = _own_tree()
     outcome, started, spent = Outcome(mutant), time.monotonic(), 0.0
     path = tree / mutant.path
@@ -292,7 +292,7 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float]]) -> Outcome:
             part = []
             for name in names[first:last]:
                 spent += taken[name]
-                part += [name] if spent < BUDGET or not first else []
+                part += [name] if spent < budget or not first else []
             if part and not outcome.killer:
                 outcome.killer = passed(tree, part, taken)
                 outcome.tests += len(part)
@@ -326,22 +326,24 @@ def main() -> None:
     drawing.add_argument("--seed", type=int, required=True)
     drawing.add_argument("--rooms", default="", help="only these, with commas between them")
     drawing.add_argument("--workers", type=int, default=1)
+    drawing.add_argument("--budget", type=float, default=BUDGET, help="seconds of a processor for a mutant's tests")
     asked = parser.parse_args()
     WORK.mkdir(exist_ok=True)
     if asked.doing == "record":
         record(asked.tests)
         return
     known, rooms = Record(), tuple(filter(None, asked.rooms.split(",")))
-    report(list(draw(ROOT, asked.count, asked.seed, rooms)), known, asked.workers, WORK / f"drawn-{asked.seed}.json")
+    mutants = list(draw(ROOT, asked.count, asked.seed, rooms))
+    report(mutants, known, asked.workers, asked.budget, WORK / f"drawn-{asked.seed}.json")
 
 
-def report(mutants: list[Mutant], known: Record, workers: int, kept: Path) -> None:
+def report(mutants: list[Mutant], known: Record, workers: int, budget: float, kept: Path) -> None:
     """Try all, say each survivor at once and what each room kept in the end."""
     tests = {mutant: known.tests(mutant) for mutant in mutants}
     taken = known.seconds
     outcomes: list[Outcome] = []
     with ProcessPoolExecutor(workers, mp_context=get_context("fork")) as pool:
-        for outcome in pool.map(tried, [(mutant, tests[mutant], taken) for mutant in mutants]):
+        for outcome in pool.map(tried, [(mutant, tests[mutant], taken, budget) for mutant in mutants]):
             outcomes.append(outcome)
             said(outcome)
             print(f"{len(outcomes)} of {len(mutants)}", end="\r", file=sys.stderr, flush=True)
@@ -349,7 +351,9 @@ def report(mutants: list[Mutant], known: Record, workers: int, kept: Path) -> No
         names = sorted({outcome.killer.split(" (ended")[0] for outcome in outcomes} & set(taken))
         failing = {name for name, fails in zip(names, pool.map(_alone, names), strict=True) if fails}
         again = [outcome for outcome in outcomes if outcome.killer.split(" (ended")[0] in failing]
-        left = [(one.mutant, [name for name in tests[one.mutant] if name not in failing], taken) for one in again]
+        left = [
+            (one.mutant, [name for name in tests[one.mutant] if name not in failing], taken, budget) for one in again
+        ]
         outcomes = [outcome for outcome in outcomes if outcome not in again]
         for outcome in pool.map(tried, left):
             outcomes.append(outcome)
