@@ -24,10 +24,22 @@ TRAIN = [
     "tooth-friction",
 ]  # fmt: skip
 OVER_FACE = ["gear-mesh-power-loss", "flank-surface", "load-distribution"]
+GRID = {
+    "tip_amounts": ["12 um", "18 um"], "tip_lengths": ["3 mm"], "crownings": ["3 um"], "end_amounts": ["6 um"],
+    "end_lengths": ["2 mm"],
+}  # fmt: skip
 #: Cases of ``cases/``, or of the folder ``small`` beside this file, with what makes them cheap; by the name of the run.
 RUNS = {
     "blankenship_singh": ("blankenship_singh", {"transmissibility.I.frequencies": 60}),
+    "body_modes": ("thin_rim", {"results": ["body-modes"], "accuracy.tolerance": 0.2}),
+    "contact_lines": ("litvin_combined", {"results": ["contact-lines"], "tooth_contact.positions": 40}),
     "cornell_test_gear": ("cornell_test_gear", COARSE),
+    "design_chart": (
+        "lin_design_chart",
+        {"dynamics.speeds": ["9000 rpm"], "dynamics.chart": {"amounts": [1.0], "lengths": [0.6, 1.1]}},
+    ),
+    "flank_design": ("helical_flank_design", {**ROUGH, "flank_design.positions": 8, "flank_design.grid": GRID}),
+    "flank_generation": ("litvin_combined", {"results": ["flank-generation"], "tooth_contact.positions": 40}),
     "four_square_dynamics": ("four_square_dynamics", {}),
     "four_square_minimum_excitation": ("four_square_minimum_excitation", {}),
     "gearbox_misaligned": ("gearbox_misaligned", ROUGH),
@@ -36,6 +48,7 @@ RUNS = {
     "lin_table1": ("lin_table1", COARSE),
     "litvin_localised": ("litvin_localised", {}),
     "litvin_profile_angle": ("litvin_profile_angle", {}),
+    "loading_spectrum": ("small/loading_spectrum", {}),
     "mark_minimum_excitation": ("mark_minimum_excitation", {}),
     "mark_tip_relief": ("mark_tip_relief", {}),
     "measured_flanks": ("measured_flanks", {"accuracy.tolerance": 0.2}),
@@ -45,7 +58,17 @@ RUNS = {
     "planets_in_ring_gear": ("planets_in_ring_gear", COARSE),
     "rating_helical": ("rating_helical", {}),
     "rating_spur": ("rating_spur", {}),
+    "relief_chart": (
+        "lin_tip_relief",
+        {"results": ["relief-chart", "relief-curves"], "design.chart": {"lengths": [0.7]}, "pair.I.loads": ["4445 N"]},
+    ),
+    "ring_check": ("ring_gear", {"results": ["tooth-geometry-check", "geometry"]}),
     "ring_gear": ("ring_gear", COARSE),
+    "robustness": (
+        "robust_pair",
+        {"robustness.draws": 24, "robustness.reliefs": {"draws": 20}, "accuracy.tolerance": 0.1},
+    ),
+    "root_stress_study": ("root_stress_population", {"study.samples": 3, "accuracy": {"tolerance": 0.1}}),
     "spur_misaligned": ("spur_misaligned", {"accuracy.tolerance": 0.2}),
     "surface_and_loss": ("surface_and_loss", COARSE),
     "surface_over_the_face": ("surface_and_loss", {"results": OVER_FACE, "gear.pinion.face_width": "4 mm", **ROUGH}),

@@ -37,7 +37,9 @@ def check_any(table):
         name = column.name
         if name.endswith("_error") and name not in {"tangential_error", "radial_error"}:
             assert (known >= 0.0).all(), f"{table.name}.{name}: an error below zero"
-        if name.startswith(("S_H", "S_F", "life", "hertz_pressure", "half_width", "frequency", "mesh_stiffness")):
+        if not name.endswith(("_rank", "_share")) and name.startswith(
+            ("S_H", "S_F", "life", "hertz_pressure", "half_width", "frequency", "mesh_stiffness")
+        ):
             assert (known >= 0.0).all(), f"{table.name}.{name}: below zero"
         if name.startswith(("share_", "printed_share", "energy_")) or name == "share":
             assert ((known >= -1e-9) & (known <= 1.3)).all(), f"{table.name}.{name}: no share"
@@ -207,6 +209,7 @@ OF_TABLES = {
 }  # fmt: skip
 
 
+@pytest.mark.dear("flank_design")
 @pytest.mark.parametrize("name", small_net.RUNS)
 def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
     found = small_net.computed(name)

@@ -3,6 +3,7 @@
     python tests/mutation/run.py record               once, some 20 minutes: which test executes which line of fegear
     python tests/mutation/run.py record tests/unit    again those of a folder or file, after tests were added
     python tests/mutation/run.py draw 200 --seed 1    200 wrong lines, each in turn, against the tests that execute it
+    python tests/mutation/run.py holes                lines of functions that no ordinary test executes, by room and file
 
 Every mutant is put into a copy of the repository. The tests that execute its line run nearest and cheapest first until
 one fails. A test that takes 15 times as long as usual has failed: it may never end. A line that no test executes
@@ -25,7 +26,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
@@ -35,7 +36,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 WORK = ROOT / ".mutation"
 sys.path.insert(0, str(HERE))
-from mutants import Mutant, draw  # noqa: E402
+from mutants import Mutant, draw, mutants_of, room_of  # noqa: E402
 
 #: Tests of the first rounds: most mutants end there, and few files are collected for them.
 ROUNDS = (15, 120, 10**6)
@@ -321,6 +322,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     doing = parser.add_subparsers(dest="doing", required=True)
     doing.add_parser("record").add_argument("tests", nargs="*")
+    doing.add_parser("holes")
     drawing = doing.add_parser("draw")
     drawing.add_argument("count", type=int)
     drawing.add_argument("--seed", type=int, required=True)
@@ -332,9 +334,32 @@ def main() -> None:
     if asked.doing == "record":
         record(asked.tests)
         return
+    if asked.doing == "holes":
+        holes(Record())
+        return
     known, rooms = Record(), tuple(filter(None, asked.rooms.split(",")))
     mutants = list(draw(ROOT, asked.count, asked.seed, rooms))
     report(mutants, known, asked.workers, asked.budget, WORK / f"drawn-{asked.seed}.json")
+
+
+def holes(known: Record) -> None:
+    """Lines of functions that could be wrong and that no ordinary test executes."""
+    whole, missed = Counter(), defaultdict(list)
+    for path in sorted((ROOT / "fegear").rglob("*.py")):
+        name, source = path.relative_to(ROOT).as_posix(), path.read_bytes()
+        tree, contexts = ast.parse(source), known.contexts(name)
+        for line in sorted({one.line for one in mutants_of(name, source)}):
+            inner, outer = _statements(tree, line)
+            if isinstance(outer[-1], ast.FunctionDef) and not name.startswith(COMPILED):
+                whole[room_of(name)] += 1
+                tests = {test for at in inner for test in contexts.get(at, ())}
+                if not any(test in known.seconds or test.endswith("::*") for test in tests):
+                    missed[name].append(line)
+    for name, lines in sorted(missed.items(), key=lambda item: -len(item[1])):
+        print(f"{name}: {', '.join(map(str, lines))}")
+    for room, count in sorted(whole.items()):
+        left = sum(len(lines) for name, lines in missed.items() if room_of(name) == room)
+        print(f"{room:12} {left:5} of {count:5} lines are executed by no ordinary test")
 
 
 def report(mutants: list[Mutant], known: Record, workers: int, budget: float, kept: Path) -> None:
