@@ -3,7 +3,7 @@
     python tests/mutation/run.py record               once, some 20 minutes: which test executes which line of fegear
     python tests/mutation/run.py record tests/unit    again those of a folder or file, after tests were added
     python tests/mutation/run.py draw 200 --seed 1    200 wrong lines, each in turn, against the tests that execute it
-    python tests/mutation/run.py holes                lines of functions that no ordinary test executes, by room and file
+    python tests/mutation/run.py holes                lines of functions that no ordinary test executes
 
 Every mutant is put into a copy of the repository. The tests that execute its line run nearest and cheapest first until
 one fails. A test that takes 15 times as long as usual has failed: it may never end. A line that no test executes
