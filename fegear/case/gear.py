@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.base.errors import InputError
+from fegear.base.errors import GeometryError, InputError
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.part import (
@@ -389,9 +390,32 @@ class GearPart(Part):
             self.profile_shift, self.thickness_allowance / module, tip, self.tip_radius_rounding / module,
             self.tip_chamfer / module, self.helix_angle or 0.0,
         )  # fmt: skip
-        if self.cutter is not None:
-            return InternalTooth(self.teeth, self.cutter.build(module), self.pressure_angle, *shape)
+        if (cutter := self.cutter) is not None:
+            return self._cut(
+                cutter.teeth,
+                lambda z0: InternalTooth(self.teeth, cutter.build(module, z0), self.pressure_angle, *shape),
+            )
         return Tooth(self.teeth, self.rack.build(self.pressure_angle), *shape)
+
+    def _cut(self, given: int | None, made: Callable[[int], InternalTooth]) -> InternalTooth:
+        """The tooth that a cutter makes; the largest cutter that clears where none is given, and in refusals."""
+        from fegear.geometry.internal_interference import largest_cutter
+
+        if given is None:
+            found = largest_cutter(made, self.teeth)
+            if found is not None:
+                return found
+            given = max(self.teeth // 2, 5)
+        try:
+            return made(given)
+        except GeometryError as error:
+            if error.key not in ("tip_radius", "cutter.teeth"):
+                raise
+            found = largest_cutter(made, self.teeth)
+            if found is None:
+                raise
+            remedy = f"set cutter.teeth = {found.cutter.teeth}, the largest cutter that clears; or {error.remedy}"
+            raise GeometryError(error.key, error.value, error.rule, remedy) from None
 
     def _held_radius(self, root_radius: float) -> float:
         """Where the body is held [m]; refuses a rim that reaches beyond the gear's centre."""

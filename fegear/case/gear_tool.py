@@ -71,7 +71,11 @@ class RackPart(Part):
 class CutterPart(Part):
     """``cutter = { teeth, profile_shift, addendum, tip_radius }``, lengths in modules."""
 
-    teeth: int = Field(description="Number of teeth of the cutter, at least three fewer than the gear has.")
+    teeth: int | None = Field(
+        default=None,
+        description="Number of teeth of the cutter, at least three fewer than the gear has. Default: the largest that "
+        "trims no tip of the gear, for a ring whose tool is not known.",
+    )
     profile_shift: Number = Field(
         default=0.0, description="Profile shift coefficient x_0 of the cutter in its present state of sharpening."
     )
@@ -93,8 +97,8 @@ class CutterPart(Part):
             raise refuse("contradicts addendum", "give either addendum or root_diameter", key="root_diameter")
         return self
 
-    def build(self, module: float) -> PinionCutter:
-        """Make the cutter of a gear of this module [m]."""
+    def build(self, module: float, teeth: int) -> PinionCutter:
+        """Make the cutter of a gear of this module [m] with so many teeth."""
         addendum = 1.25 if self.addendum is None else self.addendum
         root = math.nan if self.root_diameter is None else 0.5 * self.root_diameter / module
-        return PinionCutter(self.teeth, self.profile_shift, addendum, root, self.tip_radius)
+        return PinionCutter(teeth, self.profile_shift, addendum, root, self.tip_radius)

@@ -18,6 +18,7 @@ from fegear.geometry.curves import Arc, Curve
 from fegear.geometry.internal_tooth import InternalTooth, leaving_margin
 from fegear.geometry.involute import inv
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.tooth import Tooth
 
 #: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet, and of a
 #: tip's chamfer or rounding.
@@ -141,12 +142,12 @@ class ClearingTips(NamedTuple):
     ring: float | None
 
 
-def clearing_tips(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> ClearingTips | None:
+def clearing_tips(planet: Tooth, ring: InternalTooth, distance: float) -> ClearingTips | None:
     """The shortest cut of one tip, or of both where one does not do, with which no material meets.
 
     Parameters
     ----------
-    planet : InvoluteTooth
+    planet : Tooth
     ring : InternalTooth
     distance : float
         Between the axes [modules].
@@ -157,10 +158,10 @@ def clearing_tips(planet: InvoluteTooth, ring: InternalTooth, distance: float) -
         None where no tip circle that leaves an active flank does.
     """
 
-    def room(one: InvoluteTooth, other: InternalTooth) -> float:
+    def room(one: Tooth, other: InternalTooth) -> float:
         return min(check.margin for check in internal_checks(one, other, distance) if check.refused)
 
-    def cut_ring(one: InvoluteTooth) -> float | None:
+    def cut_ring(one: Tooth) -> float | None:
         return _shortest_cut(lambda r: room(one, replace(ring, tip_radius=r)), ring.tip_radius, ring.form_radius)
 
     def cut_planet(other: InternalTooth) -> float | None:
@@ -200,6 +201,31 @@ def _shortest_cut(room: Callable[[float], float], tip: float, limit: float) -> f
         middle = 0.5 * (near + far)
         near, far = (near, middle) if clears(middle) else (middle, far)
     return far
+
+
+def largest_cutter(made: Callable[[int], InternalTooth], teeth: int) -> InternalTooth | None:
+    """The ring gear as the largest cutter makes it that trims none of its tips, fed straight across the axis too.
+
+    Parameters
+    ----------
+    made : callable
+        The ring gear by the number of teeth of its cutter; raises `GeometryError` where that cannot make it.
+    teeth : int
+        Of the ring gear.
+
+    Returns
+    -------
+    InternalTooth or None
+        None where no cutter of five teeth or more does.
+    """
+    for count in range(teeth - 3, 4, -1):
+        try:
+            ring = made(count)
+        except GeometryError:
+            continue
+        if radial_room(TipCorner(*ring.cutter_tip_corner), count, ring, ring.generating_distance) >= 0.0:
+            return ring
+    return None
 
 
 def _tip_corner(tooth: InvoluteTooth) -> TipCorner:

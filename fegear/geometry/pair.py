@@ -24,6 +24,7 @@ from fegear.base.shown import shown, shows
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
+from fegear.geometry.tooth import Tooth
 
 Member = Literal["driver", "driven"]
 
@@ -158,6 +159,8 @@ class GearPair:
         from fegear.geometry.internal_interference import clearing_tips
 
         planet, ring = sorted((self.driver, self.driven), key=lambda gear: gear.tooth.internal)
+        if not isinstance(planet.tooth, Tooth) or not isinstance(ring.tooth, InternalTooth):
+            return ""
         tips = clearing_tips(planet.tooth, ring.tooth, self.centre_distance / ring.module)
         if tips is None:
             return ""

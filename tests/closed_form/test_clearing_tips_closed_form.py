@@ -85,3 +85,26 @@ def test_polygons_at_that_tip_are_clear_and_beyond_it_meet(z1, z3):
     longer = [replace(one, tip_radius=0.5 * (one.tip_radius + own.tip_radius))
               for one, own in zip(clear, (planet, ring), strict=True)]  # fmt: skip
     assert by_polygons.rolled(*longer, distance) > by_polygons.MEETS
+
+
+def ring(**cutter):
+    return {"results": ["geometry"],
+            "gear": {"r": {"teeth": 50, "module": "2 mm", "internal": True, "cutter": cutter}}}  # fmt: skip
+
+
+def test_a_ring_of_an_unknown_tool_is_made_by_its_root_circle_and_fillet_radius():
+    found = fegear.run(ring(root_diameter="105 mm", tip_radius=0.2), progress=False)
+    tooth = found.scene.gears["r"].tooth
+    assert 2.0 * tooth.root_radius * 2.0 == pytest.approx(105.0)
+    assert any(f"assumed default: {tooth.cutter.teeth} teeth" in one for one in found.remarks)
+    by_polygons = polygons()
+    sharp = by_polygons.cutter_side(tooth)
+    assert by_polygons.pulled(sharp, tooth, tooth.generating_distance) < by_polygons.MEETS
+
+
+def test_a_cutter_of_too_few_teeth_is_refused_with_the_largest_that_clears():
+    with pytest.raises(InputError) as error:
+        fegear.run(ring(teeth=20), progress=False)
+    teeth = int(re.search(r"set cutter.teeth = (\d+), the largest cutter that clears", str(error.value))[1])
+    assert teeth > 20
+    fegear.run(ring(teeth=teeth), progress=False)

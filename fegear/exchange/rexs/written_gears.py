@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fegear.case.relief import EndReliefPart
     from fegear.exchange.rexs.written import Part, Written
     from fegear.geometry.gear import Gear
+from fegear.geometry.internal_tooth import InternalTooth
 
 #: Keys of a gear and of its tables that are written, or have no meaning outside fegear.
 _GEAR = frozenset(
@@ -102,8 +103,8 @@ def _flank(written: Written, gear: Gear, part: GearPart, name: str) -> Part:
 
 
 def _tool(written: Written, gear: Gear, part: GearPart, flanks: list[Part]) -> None:
-    if part.cutter is not None:
-        cutter = part.cutter.build(gear.module)
+    if part.cutter is not None and isinstance(gear.tooth, InternalTooth):
+        cutter = gear.tooth.cutter
         made = written.part("cutter_wheel_tool").say(
             "number", number_of_teeth=float(cutter.teeth), addendum_modification_coefficient=cutter.profile_shift,
             addendum_coefficient_reference_profile=cutter.addendum, tip_radius_factor=cutter.tip_radius,

@@ -23,6 +23,7 @@ from fegear.engine.table import Column, Table
 from fegear.geometry.checks import interference, tip_thickness
 from fegear.geometry.gear import Gear
 from fegear.geometry.inspection import OverBalls, over_balls, touching_ball, usual_ball, usual_span
+from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.pair import MEMBERS, GearPair, active_profile, specific_sliding
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.body_section import body_figures
@@ -120,7 +121,19 @@ def drawing_of(scene: Scene) -> Drawing:
     members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
     balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
     ground = {name: amounts for name in scene.gears if (amounts := ground_off(scene.case.gear[name]))}
-    return Drawing(scene.gears, scene.pairs, members, balls, ground, assumed_bodies(scene))
+    return Drawing(scene.gears, scene.pairs, members, balls, ground, (*assumed_cutters(scene), *assumed_bodies(scene)))
+
+
+def assumed_cutters(scene: Scene) -> tuple[str, ...]:
+    """Sentences on ring gears whose cutter the case leaves open."""
+    return tuple(
+        f"Gear {name}: cutter.teeth is not given; assumed default: {gear.tooth.cutter.teeth} teeth, the largest cutter "
+        "that trims no tip of the ring. It makes the fillet, not the flanks."
+        for name, gear in scene.gears.items()
+        if isinstance(gear.tooth, InternalTooth)
+        and (part := scene.case.gear[name].cutter) is not None
+        and part.teeth is None
+    )
 
 
 def assumed_bodies(scene: Scene) -> tuple[str, ...]:
