@@ -212,6 +212,17 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     )  # fmt: skip
 
 
+def check_formulas(scene: Scene, name: str) -> None:
+    """Refuse a pair that ISO 6336 does not rate, before anything is computed."""
+    from fegear.formulas.iso6336.safety import rate_pair
+
+    asked = pair_to_rate(scene, name)
+    try:
+        rate_pair(asked.conditions)
+    except InputError as error:
+        raise at(f"pair.{name}", error) from None
+
+
 def _stands_still(scene: Scene, name: str, gear: str) -> bool:
     """Whether a gear of a pair is the ring of a planetary set that is held."""
     found = set_of_pair(scene.case, name)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.fem.plane.gear import GearInfluence
@@ -175,6 +176,29 @@ def contact_fits(pair: GearPair, x: Array, half_width: Array) -> NDArray[np.bool
         room = np.minimum(r**2 - low**2, high**2 - r**2) / (2.0 * gear.base_radius)
         fits &= flank_holds(half_width / gear.module, room / gear.module)
     return fits
+
+
+#: Positions over the path at which contacts are tried.
+_TRIED = 101
+
+
+def refuse_wide_contacts(pair: GearPair, line_load: float, key: str) -> None:
+    """Refuse a line load [N/m] under which no contact of a single tooth pair fits on its flanks.
+
+    Raises
+    ------
+    InputError
+        About `key`.
+    """
+    x = np.linspace(pair.x_start, pair.x_end, _TRIED)
+    value, remedy = f"{line_load * 1e-3:.6g} N/mm", "check load and face_width, or remove crosscheck"
+    try:
+        width = contact_half_width(pair, x, line_load)
+    except InputError as error:
+        raise InputError(key, value, f"{error.key} = {error.value} {error.rule}", remedy) from None
+    if not contact_fits(pair, x, width).any():
+        rule = f"gives contacts of {width.min() * 1e3:.4g} mm half-width at least, wider than the flanks"
+        raise InputError(key, value, rule, remedy)
 
 
 def pair_reference(

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, error_column, tiled
@@ -112,22 +111,11 @@ def _pair_check(scene: Scene, name: str) -> PairCheck:
 
 
 def _check(scene: Scene, _subject: str) -> None:
-    """Refuse loads under which no contact of a single tooth pair fits on its flanks."""
-    from fegear.contact.compared.crosscheck import contact_fits, contact_half_width
+    from fegear.contact.compared.crosscheck import refuse_wide_contacts
 
     for name in _pairs(scene):
         check = _pair_check(scene, name)
-        pair = check.pair
-        x = np.linspace(pair.x_start, pair.x_end, check.positions)
-        remedy = "check load and face_width, or remove crosscheck"
-        try:
-            width = contact_half_width(pair, x, check.line_load)
-        except InputError as error:
-            rule = f"{error.key} = {error.value} {error.rule}"
-            raise InputError(f"pair.{name}.load", f"{check.line_load * 1e-3:.6g} N/mm", rule, remedy) from None
-        if not contact_fits(pair, x, width).any():
-            rule = f"gives contacts of {width.min() * 1e3:.4g} mm half-width at least, wider than the flanks"
-            raise InputError(f"pair.{name}.load", f"{check.line_load * 1e-3:.6g} N/mm", rule, remedy)
+        refuse_wide_contacts(check.pair, check.line_load, f"pair.{name}.load")
 
 
 def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:

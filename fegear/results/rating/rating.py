@@ -133,25 +133,13 @@ def _inputs(scene: Scene, name: str) -> RatingInputs:
 
 
 def _check(scene: Scene, name: str) -> None:
-    from fegear.case.built.rated_pair import check_pair_to_rate
+    from fegear.case.built.rated_pair import check_formulas, check_pair_to_rate
 
     check_pair_to_rate(scene, name)
     if "computed" in scene.case.rating.beside and _wide(scene, name):
         check_flanks_to_load(scene, name)
     if len(rated_pairs(scene)) == 1:
-        _check_formulas(scene, name)
-
-
-def _check_formulas(scene: Scene, name: str) -> None:
-    """Refuse the only pair where ISO 6336 does not rate it; of several each says so by itself."""
-    from fegear.case.built.rated_pair import pair_to_rate
-    from fegear.formulas.iso6336.safety import rate_pair
-
-    asked = pair_to_rate(scene, name)
-    try:
-        rate_pair(rated(asked), given(asked))
-    except InputError as error:
-        raise at(f"pair.{name}", error) from None
+        check_formulas(scene, name)
 
 
 def _wide(scene: Scene, name: str) -> bool:
