@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 #: Characters of one piece, and of all pieces of a message: a text of half that length with every character escaped.
 PIECE, _MOST = 100_000, 4 * LARGEST
-#: For so long messages are acted on before connections are read again, and for so long they are at most [s].
+#: For so long messages are acted on before connections are read again, and for so long they are [s].
 _SPELL, _REST = 0.03, 0.02
 #: For so long messages that wait are acted on when the window is closed [s].
 _FAREWELL = 3.0
@@ -135,9 +135,8 @@ class Messages:
             begun = time.monotonic()
             while self._waiting:
                 self._act_on_next()
-                spent = time.monotonic() - begun
-                if spent > _SPELL or not self._waiting:  # what has come meanwhile is read, and joins what waits
-                    await asyncio.sleep(min(spent, _REST))
+                if time.monotonic() - begun > _SPELL or not self._waiting:  # what has come is read, and joins the rest
+                    await asyncio.sleep(_REST)
                     begun = time.monotonic()
         finally:
             self._is_acting = False
