@@ -115,6 +115,10 @@ class PinErrorsPart(Part):
     )
 
 
+#: Harmonics whose phases are listed where the case gives no number.
+PHASED_HARMONICS = 12
+
+
 class PlanetaryPart(Part):
     """A planetary set: one sun, equal planets, one ring, one carrier."""
 
@@ -166,8 +170,10 @@ class PlanetaryPart(Part):
     damping_ratio: Annotated[Number, Field(ge=0.0, lt=1.0)] = Field(
         default=0.03, description="Damping ratio of every mode, for vibration."
     )
-    harmonics: Annotated[int, Field(ge=1, le=200)] = Field(
-        default=12, description="Harmonics of the mesh frequency that are counted."
+    harmonics: Annotated[int, Field(ge=1, le=200)] | None = Field(
+        default=None,
+        description="Harmonics of the mesh frequency that are counted. Default: 12; in `planet-vibration` as "
+        "many as the tolerance requires, at most 200.",
     )
 
     @model_validator(mode="after")

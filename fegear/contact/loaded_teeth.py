@@ -37,6 +37,10 @@ HARMONICS = 64
 POSITIONS = 200
 #: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
 MOST_CYCLES = 10_000
+#: Positions nearer to each other than this share of their usual distance are the two sides of a jump.
+_BESIDE_JUMP = 1e-3
+#: Of a pressure, what is left of its digits where nothing else is uncertain.
+_DIGITS = 1e-9
 #: What may change with an effect that is neglected.
 Answer = Literal["transmission error", "load on a tooth pair", "root tension", "mean transmission error", "K_Hbeta"]
 
@@ -312,11 +316,29 @@ class LoadHistory:
 
     @property
     def largest_pressure_error(self) -> float | None:
-        """Estimated, by itself or by the load's [Pa]; never zero, for what Hertz neglects is not estimated."""
+        """Estimated, by itself or by the load's and by the distance of the positions [Pa]; what Hertz neglects is not.
+
+        Where one pair carries the whole load, its load is exact, and only the positions are left.
+        """
         if self.largest:
             return self.largest.pressure_error
-        relative = self.largest_share_error
-        return 0.5 * relative * self.largest_hertz_pressure if relative else None
+        if self.load_error is None:
+            return None
+        at, pressure = self.hardest_pressed, self._smooth_pressure
+        load = self.found.load[at, self.at]
+        by_load = 0.5 * self.load_error[at, self.at] / load * pressure[at] if load > 0.0 else 0.0
+        return float(max(by_load + self._between_positions(at, pressure), _DIGITS * pressure[at]))
+
+    def _between_positions(self, at: int, pressure: Array) -> float:
+        """How far the parabola through the largest value and its neighbours rises above it; nothing at a jump [Pa]."""
+        x = self.found.x
+        if not 0 < at < x.size - 1:
+            return 0.0
+        (a, b), (down, up) = np.diff(x[at - 1 : at + 2]), np.diff(pressure[at - 1 : at + 2])
+        if min(a, b) < _BESIDE_JUMP * max(a, b):  # both sides of a jump are positions
+            return 0.0
+        slope, bend = (down / a * b + up / b * a) / (a + b), (up / b - down / a) / (0.5 * (a + b))
+        return float(0.5 * slope**2 / -bend) if bend < 0.0 else 0.0
 
 
 @dataclass(frozen=True)

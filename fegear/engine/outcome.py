@@ -14,6 +14,7 @@ How results show themselves in a notebook: plain tables of HTML.
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field, replace
 from html import escape
@@ -99,6 +100,8 @@ class Outcome(Alike):
         Sentences that the user should read.
     figures : tuple of Figure or DeferredFigure
         What can be drawn.
+    sharper_by : str
+        What makes the estimated errors of its values smaller: key and verb of a remedy.
     """
 
     data: object = None
@@ -107,11 +110,24 @@ class Outcome(Alike):
     settings: Mapping[str, object] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     figures: tuple[Figure | DeferredFigure, ...] = ()
+    sharper_by: str = "reduce accuracy.tolerance"
 
     def __post_init__(self) -> None:
-        """Raise errors that are below what the digits of their numbers are worth."""
+        """Raise errors that are below what the digits of their numbers are worth; note those that are large."""
         object.__setattr__(self, "values", with_least_errors(self.values))
+        object.__setattr__(self, "remarks", tuple(dict.fromkeys((*self.remarks, *self._rough_values))))
         object.__setattr__(self, "tables", tuple(with_least_error_columns(table) for table in self.tables))
+
+    @property
+    def _rough_values(self) -> tuple[str, ...]:
+        """One note for all values whose estimated error exceeds a fifth of them."""
+        rough = [value for value in self.values if _is_rough(value, self.values)]
+        if not rough:
+            return ()
+        shown = [f"{one.name} ({one.value:.4g} +- {one.error:.2g} {one.unit}".rstrip() + ")" for one in rough[:_NAMED]]
+        more = f" and {len(rough) - _NAMED} more" if len(rough) > _NAMED else ""
+        return (f"{', '.join(shown)}{more}: estimated error above {_ROUGH:.0%} of the value".replace("%", " %")
+                + f"; {self.sharper_by}.",)  # fmt: skip
 
 
 class HasName(Protocol):
@@ -172,6 +188,18 @@ class Named(tuple[T, ...]):
 #: Of the largest number in its unit beside it: differences of what is as large keep no digits below. Two processors
 #: differ by up to 3e-9 in a history of root stress.
 ROUND_OFF = 1e-8
+
+
+#: Estimated errors above this part of their value are noted, and of so many values the names.
+_ROUGH, _NAMED = 0.2, 3
+
+
+def _is_rough(value: Value, beside: Iterable[Value]) -> bool:
+    """Whether an estimated error is a large part of its value, and more than digits of the values beside it."""
+    if not value.si_error or not math.isfinite(value.si) or not math.isfinite(value.si_error):
+        return False
+    largest = max(abs(one.si) for one in beside if one.unit == value.unit and math.isfinite(one.si))
+    return value.si_error > _ROUGH * abs(value.si) and value.si_error > 10.0 * ROUND_OFF * largest
 
 
 def error_columns(table: Table) -> dict[str, str]:

@@ -197,7 +197,7 @@ class FormulaRootStress:
         """None: a formula knows the largest stress alone."""
         return None
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (the interface)
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:  # noqa: ARG002
         """Not a number [1/m]: a formula does not know how far it is off."""
         return np.full(np.shape(np.atleast_1d(radius_q)), math.nan)
 

@@ -39,8 +39,8 @@ class RootStressInfluence(Protocol):
     def fillet_curve(self, side: Side) -> FilletCurve | None:
         """How the largest stress is found between the points of a fillet; None where they are all that is known."""
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:
-        """Estimated error of the largest stress of a fillet under the tooth's own load, (Q,) [1/m]; NaN if unknown."""
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:
+        """Estimated error of the largest stress of a fillet of tooth k, (Q,) [1/m]; NaN if unknown."""
 
 
 class GearCompliance(RootStressInfluence, Protocol):
@@ -117,7 +117,7 @@ class OneTooth:
         """Unknown."""
         return None
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (the interface)
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:  # noqa: ARG002
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 

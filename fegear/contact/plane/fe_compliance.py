@@ -132,10 +132,10 @@ class FiniteElementCompliance:
         """That of the solution."""
         return self.influence.fine.fillet_curve(side, self.influence.gear.module)
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:
-        """What the finite elements leave in the largest stress of a fillet under the tooth's own load [1/m]."""
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:
+        """Estimated error of the largest stress of a fillet of tooth k under a load on tooth 0 [1/m]."""
         known = self.influence
-        return known.root_stress_error(0, side, np.clip(radius_q, known.lowest_radius, known.highest_radius))
+        return known.root_stress_error(k, side, np.clip(radius_q, known.lowest_radius, known.highest_radius))
 
     def describe(self) -> str:
         """Return what it includes."""
@@ -280,7 +280,7 @@ class ToothTable:
         """Unknown."""
         return None
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (the interface)
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:  # noqa: ARG002
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 

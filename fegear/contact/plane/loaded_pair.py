@@ -22,7 +22,8 @@ from fegear.contact.loaded_teeth import (
 )
 from fegear.contact.plane.compliance import RootStressInfluence
 from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.pair_history import PairHistory, pair_history
+from fegear.contact.plane.independent_errors import independent_errors
+from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
 from fegear.contact.plane.shifted_compliance import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
 from fegear.contact.plane.transmission_error import (
@@ -88,11 +89,18 @@ class LoadedPair:
         return self.loads.index(self.nominal)
 
     def history(self) -> LoadHistory:
-        """See `LoadedTeeth`; the error of the loads is the change by the shifted compliances."""
+        """See `LoadedTeeth`.
+
+        The error of the loads is the change by the shifted compliances; where these cancel no less than that by the
+        part of their errors which every tooth pair has by itself.
+        """
         e = self.engagement
-        found = pair_history(e, self.loads, POSITIONS)
+        path = self.pair.x_start, self.pair.x_end
+        found, apart = pair_history_with(
+            e, self.loads, POSITIONS, 0, lambda state: independent_errors(state, self.shifted, path).load
+        )
         shifts = [load_shift(found, pair_history(other, self.loads, POSITIONS)) for other in self.shifted]
-        error = np.sum(shifts, axis=0) if shifts else None
+        error = np.maximum(np.sum(shifts, axis=0), apart) if shifts else None
         where = ", outside which tip corners touch" if e.corner_contact else ""
         return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS)
 

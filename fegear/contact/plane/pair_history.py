@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
-from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import BESIDE
 
 
@@ -65,6 +65,21 @@ def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, 
     cycle : int
         Which pair, when there are spacing errors: the one that is pair 0 in that base pitch.
     """
+    return pair_history_with(engagement, load, positions, cycle, lambda state: state.loads)[0]
+
+
+def pair_history_with(
+    engagement: Engagement, load: ArrayLike, positions: int, cycle: int, more: Callable[[Loaded], Array]
+) -> tuple[PairHistory, Array]:
+    """`pair_history`, and what else is known of the pair's loads, shape (P, L).
+
+    Parameters
+    ----------
+    engagement, load, positions, cycle
+        As for `pair_history`.
+    more : callable
+        ``more(loaded)`` -> that of all pairs at the roll positions of a state, shape (n, P, L).
+    """
     pair, pitch = engagement.pair, engagement.pair.base_pitch
     before, after = 0.0, 0.0
     if engagement.corner_contact:
@@ -89,18 +104,20 @@ def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, 
         )
         picked.append((np.flatnonzero(rows), part, index[rows]))
     shape = (x.size, loads.size)
-    w, u, te = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    w, u, te, further = (np.zeros(shape) for _ in range(4))
     for rows, part, which in picked:
         at = np.arange(rows.size)
         w[rows], u[rows] = part.loads[which, at], part.deflection[which, at]
         te[rows] = part.transmission_error
+        further[rows] = more(part)[which, at]
     pressure = engagement.compliance.pressure(w, grid.contacts.relative_radius[here][:, None])
     touched = np.flatnonzero((w > 0.0).any(axis=1))
     keep = slice(max(touched[0] - 1, 0), touched[-1] + 2) if touched.size else slice(0, 0)
     if not engagement.corner_contact:
         keep = slice(0, x.size)
     roll = grid.contacts.roll_driver[here]
-    return PairHistory(x[keep], roll[keep], w[keep], (w / loads)[keep], u[keep], pressure[keep], te[keep])
+    found = PairHistory(x[keep], roll[keep], w[keep], (w / loads)[keep], u[keep], pressure[keep], te[keep])
+    return found, further[keep]
 
 
 #: A local maximum of the samples may lead to the largest value of a stress where it lacks no more than this part of it.

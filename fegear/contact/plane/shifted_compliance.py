@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.fourier import fourier_series
+from fegear.contact.fourier import FourierSeries, effective_error, fourier_series
 from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
 from fegear.contact.plane.transmission_error import TransmissionError, mean_secant_stiffness
@@ -101,9 +102,9 @@ class ShiftedCompliance:
         """As the base."""
         return self.base.fillet_curve(side)
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension") -> Array:
+    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:
         """As the base."""
-        return self.base.root_stress_error(radius_q, side)
+        return self.base.root_stress_error(radius_q, side, k)
 
     def describe(self) -> str:
         """As the base, shifted."""
@@ -141,27 +142,36 @@ def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
 
 
 def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement]) -> TransmissionErrorShift | None:
-    """Solve again at the same quadrature points with each compliance off by its error; None where none states one."""
+    """Solve again at the same quadrature points with each compliance off by its error; None where none states one.
+
+    What would cancel where a whole flank is softer alike is added: the same numbers with each error changing its sign
+    along the flank, as far as one place's error is its own (`independent_errors`).
+    """
     if not shifted:
         return None
-    found = []
-    for engagement in shifted:
+    values = te.values
+    pair = shifted[0].pair
+    uneven = independent_errors(te.loaded, shifted, (pair.x_start, pair.x_end)).transmission_error
+    amplitude = np.zeros_like(te.series.amplitude)
+    mean = peak_to_peak = effective = stiffness = 0.0
+    for engagement, along in zip(shifted, uneven, strict=True):
         other = solve_again(engagement, te.loaded)
-        values = other.transmission_error[:, 0]
-        again = replace(te, loaded=other, series=fourier_series(te.points, values, te.series.amplitude.size))
-        found.append(
-            (
-                abs(again.mean - te.mean),
-                abs(again.peak_to_peak - te.peak_to_peak),
-                abs(again.effective_error - te.effective_error),
-                np.abs(again.series.amplitude - te.series.amplitude),
-                abs(mean_secant_stiffness(again) - mean_secant_stiffness(te)),
-            )
-        )
-    return TransmissionErrorShift(
-        sum(f[0] for f in found), sum(f[1] for f in found), sum(f[2] for f in found),
-        np.sum([f[3] for f in found], axis=0), sum(f[4] for f in found),
-    )  # fmt: skip
+        again = replace(te, loaded=other, series=_series(te, other.transmission_error[:, 0]))
+        bent = _series(te, values + along[:, 0])
+        mean += abs(again.mean - te.mean) + float(abs(bent.mean - te.mean))
+        peak_to_peak += abs(again.peak_to_peak - te.peak_to_peak)
+        peak_to_peak += abs(float(np.ptp(values + along[:, 0])) - te.peak_to_peak)
+        effective += abs(again.effective_error - te.effective_error)
+        effective += abs(float(effective_error(bent)) - te.effective_error)
+        stiffness += abs(mean_secant_stiffness(again) - mean_secant_stiffness(te))
+        # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
+        for series in (again.series, bent):
+            amplitude += 2.0 * np.abs(series.coefficients - te.series.coefficients)[1:]
+    return TransmissionErrorShift(mean, peak_to_peak, effective, amplitude, stiffness)
+
+
+def _series(te: TransmissionError, values: Array) -> FourierSeries:
+    return fourier_series(te.points, values, te.series.amplitude.size)
 
 
 def load_shift(history: PairHistory, other: PairHistory) -> Array:

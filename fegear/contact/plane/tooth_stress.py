@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, first_of_largest
 from fegear.base.shown import shown, shows
-from fegear.contact.plane.compliance import RootStressInfluence, Side
+from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_stress
 from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.pair_history import refined_peaks
 from fegear.contact.plane.root_stress_history import RootStressHistory, root_stress_history
 from fegear.contact.plane.shifted_compliance import solve_again
@@ -116,10 +117,13 @@ class LoadedStates(NamedTuple):
         unless teeth differ by their spacing errors.
     shifted : list of list of Loaded
         The same with one compliance each off by its error.
+    apart : list of ndarray, shape (n, P, L)
+        What the errors of single tooth pairs change in the loads of the state [N] (`independent_errors`).
     """
 
     rows: list[Loaded]
     shifted: list[list[Loaded]]
+    apart: list[Array]
 
 
 def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[float], x: ArrayLike) -> LoadedStates:
@@ -137,14 +141,20 @@ def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[
     """
     grid = e.grid(x)
     teeth = grid.contacts.number.size + 2
+    path = e.pair.x_start, e.pair.x_end
+
+    def apart(state: Loaded) -> Array:
+        return independent_errors(state, shifted, path).load if shifted else np.zeros_like(state.loads)
+
     if not (e.driver_spacing.size or e.driven_spacing.size):
         state = e.solve(grid, loads)
         again = [solve_again(other, state) for other in shifted]
-        return LoadedStates([state] * teeth, [again] * teeth)
+        return LoadedStates([state] * teeth, [again] * teeth, [apart(state)] * teeth)
     # The tooth of interest carries pair number j in base pitch number j.
     first = int(grid.contacts.number[0]) - 1
     rows = [e.solve(grid, loads, first + row) for row in range(teeth)]
-    return LoadedStates(rows, [[solve_again(other, state) for other in shifted] for state in rows])
+    each = [[solve_again(other, state) for other in shifted] for state in rows]
+    return LoadedStates(rows, each, [apart(state) for state in rows])
 
 
 def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Sequence[RootStressInfluence]]) -> Array:
@@ -221,9 +231,11 @@ def tooth_stress(
     sides: tuple[Side, ...] = ("tension", "compression") if knows_both else ("tension",)
     known: dict[int, list[Array]] = {}
     parts: list[list[Array]] = []
-    for row, (state, shifted) in enumerate(zip(*states, strict=True)):
+    for row, (state, shifted, apart) in enumerate(zip(*states, strict=True)):
         if id(state) not in known:
-            histories = [_with_error(e, state, shifted, member, side, source, estimates=estimates) for side in sides]
+            histories = [
+                _with_error(e, state, shifted, apart, member, side, source, estimates=estimates) for side in sides
+            ]
             known[id(state)] = [histories[0][0].x, *(a for one, off in histories for a in (one.stress, off))]
         parts.append([values[row] for values in known[id(state)]])
     x, *stresses = (np.concatenate(one) for one in zip(*parts, strict=True))
@@ -247,6 +259,7 @@ def _with_error(
     e: Engagement,
     state: Loaded,
     shifted: Sequence[Loaded],
+    apart: Array,
     member: Member,
     side: Side,
     source: RootStressInfluence | None,
@@ -261,26 +274,54 @@ def _with_error(
     off = np.zeros_like(found.stress)
     for again in shifted:
         off += np.abs(root_stress_history(e, again, member, side, 1, source, within).stress - found.stress)
-    off[1:-1] += _own_error(e, member, side, state, source)
-    # where a tooth carries next to nothing its stress comes from its neighbours, and is as exact as theirs
-    return found, np.maximum(off, _share_left(e, member, side, source) * np.abs(found.stress))
+    by_load, by_source = _by_each_load(e, member, side, state, apart, source)
+    return found, np.hypot(np.maximum(off, by_load), by_source)
 
 
-def _share_left(e: Engagement, member: Member, side: Side, source: RootStressInfluence | None) -> float:
-    """What the source leaves in the largest stress of a fillet under a tooth's own load, as a share; 0 if not known."""
-    stress = source or e.compliance.source(member)
-    few = np.linspace(e.pair.radius(e.pair.x_start, member), e.pair.radius(e.pair.x_end, member), 9)
-    own = stress.root_stress(0, few, side)
-    share = 0.0 if own is None else float(np.max(stress.root_stress_error(few, side)) / np.max(np.abs(own)))
-    return share if np.isfinite(share) else 0.0
+def _by_each_load(
+    e: Engagement, member: Member, side: Side, state: Loaded, apart: Array, source: RootStressInfluence | None
+) -> tuple[Array, Array]:
+    """Errors of the stress of each tooth by that of every load that it feels, shape (n + 2, P, L) each [Pa].
 
+    A tooth that carries next to nothing is stressed by its neighbours' loads; the sum may pass through zero where its
+    parts, and their errors, do not.
 
-def _own_error(e: Engagement, member: Member, side: Side, state: Loaded, source: RootStressInfluence | None) -> Array:
-    """What the source leaves in the stress of each tooth's own load, shape (n, P, L) [Pa]."""
-    stress = source or e.compliance.source(member)
-    contacts = state.grid.contacts
+    Parameters
+    ----------
+    apart : ndarray, shape (n, P, L)
+        Errors of the loads that pairs have by themselves [N].
+
+    Returns
+    -------
+    by_load, by_source : ndarray
+        Root of the sum of squares of what errors of the loads change, and of what the source leaves in the stress per
+        load; not a number where it does not know its own error.
+    """
+    stress, contacts = source or e.compliance.source(member), state.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     few = np.linspace(radius.min(), radius.max(), 9)
-    usual = stress.root_stress_error(few, side)
-    per_load = np.interp(radius, few, usual)
-    return np.asarray(per_load[:, :, None] * state.loads / e.compliance.face_width)
+    n, face = radius.shape[0], e.compliance.face_width
+    reach = min(stress.reach, n + 1) if e.compliance.coupling else 0
+    towards_load = 1 if member == "driver" else -1  # as `superposed_stress` has it
+    sizes: dict[int, Array] = {}
+    left: dict[int, Array] = {}
+    share: float | Array = 0.0
+    for k in sorted(range(-reach, reach + 1), key=abs):
+        kernel = stress.root_stress(k, few, side)
+        if kernel is not None:
+            curve = stress.fillet_curve(side)
+            # a tooth's own below the contact: at it stress is what the contact itself leaves
+            size = np.abs(largest_stress(curve, kernel, side, few)) if k == 0 else np.abs(kernel).max(axis=0)
+            error = stress.root_stress_error(few, side, k)
+            share = share if k else error.max() / size.max()
+            # nothing is more exact of a neighbour than of the tooth itself, should their differences vanish by chance
+            sizes[k] = np.interp(radius, few, size)[:, :, None] / face
+            left[k] = np.interp(radius, few, np.maximum(error, share * size if k else 0.0))[:, :, None] / face
+    by_load, by_source = (np.zeros((n + 2, *state.loads.shape[1:])) for _ in range(2))
+    for tooth in range(-1, n + 1):
+        for other in range(n):
+            k = towards_load * (tooth - other)
+            if k in sizes:
+                by_load[tooth + 1] += (apart[other] * sizes[k][other]) ** 2
+                by_source[tooth + 1] += (state.loads[other] * left[k][other]) ** 2
+    return np.sqrt(by_load), np.sqrt(by_source)

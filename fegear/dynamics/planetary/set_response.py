@@ -24,9 +24,21 @@ from fegear.dynamics.planetary.set_modes import SetModes, set_modes
 _SAMPLES = 512
 
 
-def looked_at(harmonics: int) -> int:
-    """Harmonics that tell what those that count leave out: low speeds meet resonances with high ones."""
-    return max(2 * harmonics, min(8 * harmonics, 128))
+#: Harmonics that count, where their number follows a tolerance: each more than is looked at costs its share of time.
+_LADDER = (12, 25, 50, 100, 200)
+#: Harmonics that are looked at for them.
+_MOST_LOOKED_AT = 256
+
+
+def looked_at(harmonics: int | None) -> int:
+    """Harmonics that tell what those that count leave out: low speeds meet resonances with high ones.
+
+    Parameters
+    ----------
+    harmonics : int or None
+        That count; None where they will follow a tolerance.
+    """
+    return _MOST_LOOKED_AT if harmonics is None else max(2 * harmonics, min(8 * harmonics, 128))
 
 
 @dataclass(frozen=True)
@@ -44,8 +56,8 @@ class LinearSet:
     error : ndarray, complex, shape (2, planets, looked_at)
         Harmonics 1.. of each mesh's static transmission error under the mean force, with its phase [m]: those that
         count, and more that tell what is missing.
-    harmonics : int
-        That count.
+    harmonics : int or None
+        That count; None where they follow a tolerance (`enough_harmonics`), and all that are looked at count.
     stiffness_error : (float, float)
         Estimated errors of the stiffnesses, as shares of them.
     amplitude_error : ndarray, shape (2, looked_at)
@@ -57,7 +69,7 @@ class LinearSet:
     modes: SetModes
     damping_ratio: float
     error: Complex
-    harmonics: int
+    harmonics: int | None
     stiffness_error: tuple[float, float] = (0.0, 0.0)
     amplitude_error: Array = field(default_factory=lambda: np.zeros((2, 1)))
 
@@ -86,7 +98,7 @@ class LinearSet:
 
 
 def linear_set(
-    meshed: MeshedSet, damping_ratio: float, harmonics: int,
+    meshed: MeshedSet, damping_ratio: float, harmonics: int | None,
     exactness: tuple[tuple[float, Array], tuple[float, Array]] | None = None,
 ) -> LinearSet:  # fmt: skip
     """The set about its mean load.
@@ -95,8 +107,8 @@ def linear_set(
     ----------
     meshed : MeshedSet
     damping_ratio : float
-    harmonics : int
-        Of the mesh frequency that count.
+    harmonics : int or None
+        Of the mesh frequency that count; None where they will follow a tolerance.
     exactness : pair of (float, ndarray of shape (looked_at,)), optional
         Estimated errors of the stiffness of each mesh and of the amplitudes of its transmission error, as shares.
 
@@ -195,6 +207,31 @@ class ForcedResponse:
         return np.asarray(2.0 * np.sqrt((np.abs(own) ** 2).sum(axis=1)))
 
 
+def enough_harmonics(linear: LinearSet, mesh_frequency: ArrayLike, tolerance: float) -> LinearSet:
+    """The set with as many harmonics as leave the largest dynamic forces at all speeds within a tolerance.
+
+    Parameters
+    ----------
+    linear : LinearSet
+        Whose harmonics are not given.
+    mesh_frequency : array_like
+        [Hz].
+    tolerance : float
+        Of the largest force at each speed.
+    """
+    frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
+    every = _response(linear, frequency, linear.error.shape[2])
+    for count in _LADDER:
+        missing = np.abs(_first(every, count).largest_force - every.largest_force)
+        if (missing <= tolerance * every.largest_force).all():
+            break
+    return replace(linear, harmonics=count)
+
+
+def _first(response: ForcedResponse, count: int) -> ForcedResponse:
+    return replace(response, coordinate=response.coordinate[:, :count], dynamic=response.dynamic[:, :count])
+
+
 def forced_response(linear: LinearSet, mesh_frequency: ArrayLike) -> ForcedResponse:
     """Steady vibration at mesh frequencies [Hz].
 
@@ -209,8 +246,9 @@ def forced_response(linear: LinearSet, mesh_frequency: ArrayLike) -> ForcedRespo
     frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if not np.all(frequency > 0.0):
         raise RangeError("speed", float(frequency.min()), "must be positive", "at standstill the static answer holds")
-    own = _response(linear, frequency, linear.harmonics)
-    others = [_response(one, frequency, linear.harmonics) for one in linear.shifted]
+    count = linear.harmonics or linear.error.shape[2]
+    own = _response(linear, frequency, count)
+    others = [_response(one, frequency, count) for one in linear.shifted]
     return replace(own, others=(*others, _response(linear, frequency, linear.error.shape[2])))
 
 

@@ -16,15 +16,22 @@ from fegear.fem.plane.influence import SIDES, Influence, Side
 #: What errors are estimated of.
 QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
 #: Part of the difference from elements one order lower, on the same mesh with wider pressures, that is taken for the
-#: error: of c_0 and of neighbours (to whose small errors wider pressures add what meshes do not), for elements of each
-#: order; learned from random gears and rings (docs/numerics.md).
-_SHARE, _NEIGHBOUR_SHARE = {2: 0.1, 3: 0.25, 4: 1.3}, {2: 0.5, 3: 2.0, 4: 5.0}
+#: error of c_0, for elements of each order; learned from random gears and rings (docs/numerics.md).
+_SHARE = {2: 0.1, 3: 0.25, 4: 1.3}
+#: The fewer edges a pressure covers, the farther the lower order lags behind the higher one: of fourth order the part
+#: falls with this power of the number of edges below the wider half-width where that is smaller than this number.
+_RESOLVED, _RESOLVED_POWER = 3.3, 0.9
+#: Neighbours err by the width of the pressures above all, which both orders share: this times what half the width
+#: changes, and a part of what elements one order lower do.
+_WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
 #: Root stress of the lower order lags behind the more, the shorter the edges: the part is this over the number of edges
 #: along the fillet, and no more than all of it; no less than the other, for both orders have the edges' own curves.
 _STRESS_SHARE, _LEAST_STRESS_SHARE = 5.0, 0.2
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
+#: Of neighbours, whose errors by the width of the pressures grow steadily toward the flank's ends.
+_USUAL_NEIGHBOUR = 0.9
 #: Relative errors of root stress are of no less than this share of its largest over the flank: on a rim that bends as a
 #: whole the tension of a tooth may pass through zero.
 _LEAST_STRESS = 0.1
@@ -108,11 +115,21 @@ class Estimate:
 
     def _self_estimate(self, difference: Array) -> Array:
         usual = _root_mean_square(self._self_at_samples[1][:_SAMPLES])
-        return _SHARE[self.fine.flank.order] * np.maximum(difference, _USUAL * usual)
+        return self._self_share * np.maximum(difference, _USUAL * usual)
+
+    @property
+    def _self_share(self) -> float:
+        share = _SHARE[self.fine.flank.order]
+        if self.fine.flank.order < 4:
+            return share
+        edges = self.patch / float(np.diff(self.fine.flank.arc).max())
+        return share * min(edges / _RESOLVED, 1.0) ** _RESOLVED_POWER
 
     def _neighbour_difference(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         value = self.fine.neighbour(k, p, q, self.patch)
-        return value, np.abs(value - self.coarse.neighbour(k, p, q, self.coarse_patch))
+        of_width = np.abs(value - self.fine.neighbour(k, p, q, 0.5 * self.patch))
+        of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch))
+        return value, _WIDTH_SHARE * of_width + _NEIGHBOUR_SHARE[self.fine.flank.order] * of_order
 
     def _neighbour_at_samples(self, k: int) -> Array:
         if k not in self._neighbours:
@@ -121,7 +138,7 @@ class Estimate:
 
     def _neighbour_estimate(self, k: int, difference: Array) -> Array:
         usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
-        return _NEIGHBOUR_SHARE[self.fine.flank.order] * np.maximum(difference, _USUAL * usual)
+        return np.asarray(np.maximum(difference, _USUAL_NEIGHBOUR * usual))
 
     def _stress_difference(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         value, place = self.fine.largest_root_stress(k, side, radius, half_width)
@@ -139,12 +156,13 @@ class Estimate:
             at: _root_mean_square((off / _stress_scale(largest))[:_SAMPLES])
             for at, (largest, off) in self._stress_at_samples(k).items()
         }
-        # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
-        # its difference vanish by chance.
-        least = _USUAL * (max(usual.values()) if side == "compression" else usual[side])
+        # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
+        least = _USUAL * max(usual.values())
         edges = self.fine.fillets["tension"].arc.size / self.fine.flank.order
         share = np.clip(_STRESS_SHARE / edges, _LEAST_STRESS_SHARE, 1.0)
-        return np.asarray(share * np.maximum(difference, least * np.abs(value)))
+        # Stress of a neighbour passes through zero along the flank, and its error does not.
+        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(self._stress_at_samples(k)[side][0]).max())
+        return np.asarray(share * np.maximum(difference, least * size))
 
     @cached_property
     def _neighbours(self) -> dict[int, Array]:

@@ -141,20 +141,20 @@ class GearInfluence:
         modulus, m = self.gear.material.young_modulus, self.gear.module
         return {key: value / (modulus if key == "c_self" else m) for key, value in found.items()}
 
-    def contact(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array]:
-        """`self_compliance` and its estimated error as the approach of a true contact [m^2/N], shape (P,) each.
+    def contact(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array, Array]:
+        """`self_compliance`, its estimated error, and how much less a true contact gives way, shape (P,) each [m^2/N].
 
-        That of the mesh (`self_error`), and beside the tip by how much a contact gives way less than under Hertz's
-        pressure (`Influence.contact`).
+        The error is that of the mesh (`self_error`). Beside the tip a contact gives way less than under Hertz's
+        pressure, which c_0 is for (`Influence.contact`); how much depends on the mating flank.
         """
         r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
         if self.estimate is None:
-            value = self.fine.self_compliance(r, self.settings.patch_half_width, b)
+            value, less = self.fine.contact(r, self.settings.patch_half_width, b)
             error = np.full(value.shape, np.nan)
         else:
-            value, error, shift = self.estimate.contact(r, b)
-            error = error + shift
-        return value / self.gear.material.young_modulus, error / self.gear.material.young_modulus
+            value, error, less = self.estimate.contact(r, b)
+        modulus = self.gear.material.young_modulus
+        return value / modulus, error / modulus, less / modulus
 
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
         """Estimated error of `self_compliance` [m^2/N]: what the elements' last order and wider pressures change."""

@@ -46,6 +46,9 @@ class StiffnessTable:
     c_next: Array = shown(
         "um.mm/N", "deflection of the tooth after it (which the loaded flank faces)", label="compliance", table="flank"
     )
+    c_self_reduction: Array = shown(
+        "um.mm/N", "reduction of c_self by contact with a mating flank near the tip; not applied to c_self",
+        table="flank")  # fmt: skip
     half_width: Array = shown(
         "mm", "half-width of the contact that c_self is for", name="contact_half_width", table="flank"
     )
@@ -120,10 +123,11 @@ def stiffness_table(
 def _columns(known: GearInfluence, r: Array, b: Array) -> dict[str, Array]:
     """Every column over some of the load positions, and each error as ``error_of_<column>``."""
     module = known.gear.module
-    c_self, c_self_error = known.contact(r, b)
+    c_self, c_self_error, less = known.contact(r, b)
     c_next, c_neighbour_error = known.neighbour_with_error(1, r, r)
     found = {
         "c_self": c_self,
+        "c_self_reduction": less,
         "c_prev": np.diagonal(known.neighbour(-1, r, r)),
         "c_next": np.diagonal(c_next),
         "error_of_c_self": c_self_error,

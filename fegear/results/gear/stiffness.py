@@ -69,7 +69,7 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
         known, at = t.influence, np.array([gear.pitch_radius])
         b = np.interp(gear.pitch_radius, t.radius[np.argsort(t.radius)], t.half_width[np.argsort(t.radius)])
         for key, (c, off), meaning in (
-            ("c_self", known.contact(at, b), "self compliance"),
+            ("c_self", known.contact(at, b)[:2], "self compliance"),
             ("c_prev", known.neighbour_with_error(-1, at, at), "tooth before"),
             ("c_next", known.neighbour_with_error(1, at, at), "tooth after"),
         ):

@@ -13,7 +13,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
-from fegear.case.planetary import MESHES, set_pair
+from fegear.case.planetary import MESHES, PHASED_HARMONICS, set_pair
 from fegear.dynamics.planetary.kinematics import axial_forces
 from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
 from fegear.dynamics.planetary.phases import phasing
@@ -188,7 +188,7 @@ class LoadInputs:
 def _load_inputs(scene: Scene, name: str) -> LoadInputs:
     part, asked = planetary_part(scene, name), set_inputs(scene, name)
     tilting = axial_forces(asked.found, asked.run, asked.base_twist).tilting
-    return LoadInputs(pin_errors(part), phasing(asked.found, part.harmonics), tilting, name)
+    return LoadInputs(pin_errors(part), phasing(asked.found, part.harmonics or PHASED_HARMONICS), tilting, name)
 
 
 def _compute(inputs: LoadInputs, upstream: Upstream, _work: Work) -> PlanetLoads:

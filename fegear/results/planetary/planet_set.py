@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.shown import declared
 from fegear.case.built.planetary import planetary_part, ring_checks, set_inputs
+from fegear.case.planetary import PHASED_HARMONICS
 from fegear.dynamics.planetary.kinematics import axial_forces, passing, sidebands
 from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_set import CENTRALS
@@ -58,7 +59,8 @@ def planetary_sets(scene: Scene) -> tuple[str, ...]:
 def _inputs(scene: Scene, name: str) -> PlanetSetInputs:
     part = planetary_part(scene, name)
     return PlanetSetInputs(
-        set_inputs(scene, name), part.harmonics, ring_checks(scene, name), scene.gears[part.planet].module
+        set_inputs(scene, name), part.harmonics or PHASED_HARMONICS, ring_checks(scene, name),
+        scene.gears[part.planet].module,
     )  # fmt: skip
 
 

@@ -52,7 +52,9 @@ class VibrationInputs:
     teeth_per_turn : float
         Mesh cycles per turn of the driving member.
     damping_ratio : float
-    harmonics : int
+    harmonics : int or None
+        None where they follow the tolerance.
+    tolerance : float
     driving, name : str
     bodies : tuple of (str, float, float, str)
         Member, mass [kg], inertia [kg m^2] and where they come from.
@@ -61,7 +63,8 @@ class VibrationInputs:
     speeds: Array
     teeth_per_turn: float
     damping_ratio: float
-    harmonics: int
+    harmonics: int | None
+    tolerance: float
     driving: str
     name: str
     bodies: tuple[tuple[str, float, float, str], ...] = ()
@@ -71,8 +74,8 @@ def _inputs(scene: Scene, name: str) -> VibrationInputs:
     part, run = planetary_part(scene, name), set_inputs(scene, name).run
     speeds = np.zeros(0) if part.speeds is None else part.speeds.array
     per_turn = run.mesh_frequency * 2.0 * math.pi / abs(run.speed[run.input])
-    bodies = body_masses(scene, name)
-    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.harmonics, part.input, name, bodies)
+    bodies, tolerance = body_masses(scene, name), scene.case.accuracy.tolerance
+    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.harmonics, tolerance, part.input, name, bodies)
 
 
 def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearSet:
@@ -190,10 +193,13 @@ def check_vibration(scene: Scene, name: str) -> None:
 
 
 def _vibration(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> ForcedResponse:
-    from fegear.dynamics.planetary.set_response import forced_response
+    from fegear.dynamics.planetary.set_response import enough_harmonics, forced_response
 
     linear = cast("LinearSet", upstream[Task("planet-modes", inputs.name)])
-    return forced_response(linear, inputs.speeds * inputs.teeth_per_turn / (2.0 * math.pi))
+    frequency = inputs.speeds * inputs.teeth_per_turn / (2.0 * math.pi)
+    if inputs.harmonics is None:
+        linear = enough_harmonics(linear, frequency, inputs.tolerance)
+    return forced_response(linear, frequency)
 
 
 def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome:
@@ -224,8 +230,18 @@ def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome
             f"Set {name}: at {inputs.speeds[low] * 30.0 / math.pi:.5g} rpm the linear mesh force falls to "
             f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; planet-motion has it."
         )
+    few = inputs.harmonics is not None and inputs.harmonics < 200
+    sharper_by = f"increase planetary.{name}.harmonics" if few else "reduce accuracy.tolerance"
     table = Table(f"planet_vibration_{name}", tuple(columns), f"Vibration of set {name} over speed")
-    return Outcome(data, (table,), values, {}, tuple(remarks), (_figure(name, data, inputs),))
+    return Outcome(
+        data,
+        (table,),
+        values,
+        {"harmonics": data.dynamic.shape[1]},
+        tuple(remarks),
+        (_figure(name, data, inputs),),
+        sharper_by,
+    )
 
 
 def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:

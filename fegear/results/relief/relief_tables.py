@@ -194,7 +194,9 @@ def relief_values(name: str, design: ReliefDesign) -> list[Value]:
         error = design.left if label == "designed" else None if shape is None else design.ground[shape].objective_error
         values += [
             value_of(t, "peak_to_peak", name, error, name=f"te_peak_to_peak.{key}", meaning=f"{label}, design load"),
-            value_of(t, "effective_error", name, name=f"te_effective.{key}", meaning=f"A_e, {label}, design load"),
+            value_of(
+                t, "effective_error", name, error, name=f"te_effective.{key}", meaning=f"A_e, {label}, design load"
+            ),
         ]
     te = design.te["designed"]
     values += [

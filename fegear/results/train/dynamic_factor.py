@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.train import MotionInputs, backlash_of, motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, columns_of, drawn
+from fegear.engine.declared import column_of, columns_of, drawn, error_column
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
 from fegear.engine.outcome import Outcome, Value
@@ -20,6 +20,7 @@ from fegear.engine.table import Table
 from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.dynamics.train.charts import SpeedChart
     from fegear.dynamics.train.tooth_force import Pull
@@ -108,15 +109,17 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
     parting = motion.contact_loss and found.in_time
     zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
     of_body = f"of {found.speed_of}"
+    factor = column_of(chart, "dynamic_factor")
     table = Table(
         f"dynamic_factor_{name}",
         (
             column_of(chart, "speeds", meaning=of_body),
-            column_of(chart, "dynamic_factor"),
+            factor,
             column_of(chart, "apart", further=zero),
             column_of(chart, "behind", further=zero),
             *columns_of(chart, "periods", "mesh_force_factor", "kinds", "median", "upper", "measured"),
             *(columns_of(chart, "multiplier") if found.in_time else ()),
+            *((error_column(factor, _errors(chart, motion.tolerance)),) if found.in_time else ()),
         ),
         f"Dynamic factor of mesh {name} over speed",
     )
@@ -124,7 +127,6 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
     worst, where = held.worst
     at = int(np.argmax(held.dynamic_factor))
     repeats = held.kinds[at] == "periodic"
-    # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
     error = motion.tolerance * worst if found.in_time and repeats else None
     sample = "" if repeats else f"; largest of {held.measured[at]} periods of a motion that does not repeat"
     over = "over the speeds" if held is chart else "over the speeds at which the motion does not grow without bound"
@@ -143,6 +145,13 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
         )
     figures = (_figure(name, held, found.speed_of),) if held.speeds.size > 1 else ()
     return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
+
+
+def _errors(chart: SpeedChart, tolerance: float) -> Array:
+    """Estimated errors of dynamic factors of motions in time; not a number where a motion does not repeat."""
+    # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
+    repeats = np.array([kind == "periodic" for kind in chart.kinds])
+    return np.where(repeats, tolerance * chart.dynamic_factor, np.nan)
 
 
 def _check(scene: Scene, name: str) -> None:

@@ -1,0 +1,276 @@
+"""Random cases, and how the errors that a tolerance states of them compare with the true ones.
+
+The truth of plane teeth is a solution whose edges are a quarter to a tenth as long, whose pressures are a third as
+wide and whose edges grow in another way: what two levels of the ladder have in common it does not share.
+
+Run by hand it prints a table of ratios:
+
+python tests/helpers/true_errors.py KIND SEED COUNT [TOLERANCE ...]
+"""
+
+import argparse
+import math
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fegear.base.errors import FegearError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import build_scene
+from fegear.engine.outcome import error_columns
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.results.catalogue import STAGES
+
+#: Level 2 of the ladder and finer; no setting stands in the ratio to the others that it has there.
+TRUTH = {
+    "root_edge_length": 0.022, "root_fraction": 0.045, "flank_edge_length": 0.016, "tip_edge_length": 0.0015,
+    "junction_edge_length": 0.0004, "back_edge_length": 0.13, "growth": 0.16, "tip_growth": 0.11, "side_growth": 0.22,
+    "body_fraction": 0.6, "rim_fraction": 0.19, "corner_distance": 0.0031, "patch_half_width": 0.08, "order": 4,
+}  # fmt: skip
+TOLERANCES = (1e-2, 1e-3, 1e-4)
+#: Of its largest value, what the truth is taken to be off at most.
+_ROUGH = 2e-5
+KINDS = ("gear", "ring", "pair", "internal pair", "body", "wide pair")
+EFFECTS = {"neighbour_coupling": True, "hertz": "load-dependent"}
+
+
+def rack(rng, long=False):
+    """A rack of a random gear, and its pressure angle [deg]; long teeth reach a contact ratio of 2."""
+    angle = 20.0 if long else float(rng.choice([20.0, 20.0, 14.5, 17.5, 22.5, 25.0]))
+    addendum = round(rng.uniform(0.8, 1.2), 3) if not long else round(rng.uniform(1.2, 1.35), 3)
+    clearance = round(rng.uniform(0.2, 0.4), 3)
+    dedendum = addendum + clearance
+    full = (math.pi / 4 - dedendum * math.tan(math.radians(angle))) * math.cos(math.radians(angle))
+    full /= 1.0 - math.sin(math.radians(angle))
+    tip = round(float(rng.uniform(0.3, 0.95)) * min(full, 0.4), 4)
+    return {"addendum": addendum, "dedendum": round(dedendum, 3), "tip_radius": tip}, f"{angle} deg"
+
+
+def external(rng, face="20 mm", most=200, long=False):
+    """Keys of an external gear of module 3 mm."""
+    tool, angle = rack(rng, long)
+    z = round(math.exp(rng.uniform(math.log(40 if long else 12), math.log(most))))
+    shift = 0.0 if long else round(rng.uniform(-0.2, 0.6), 3)
+    root = 1.5 * z + 3.0 * (shift - tool["dedendum"])
+    found = {
+        "teeth": z, "module": "3 mm", "pressure_angle": angle, "profile_shift": shift, "rack": tool,
+        "bore_radius": f"{rng.uniform(0.3, 0.9) * root:.4f} mm", "face_width": face,
+        "material": {"poisson_ratio": round(rng.uniform(0.25, 0.4), 3)},
+        "plane": str(rng.choice(["strain", "stress"])),
+    }  # fmt: skip
+    if rng.random() < 0.25:
+        found["tip_radius_rounding"] = "0.15 mm"
+    return found
+
+
+def internal(rng, face="20 mm"):
+    """Keys of a ring gear of module 3 mm."""
+    z, shift = int(rng.integers(40, 130)), round(rng.uniform(-0.4, 0.5), 3)
+    return {
+        "internal": True, "teeth": z, "module": "3 mm", "profile_shift": shift, "face_width": face,
+        "cutter": {"teeth": int(rng.integers(14, 30)), "profile_shift": round(rng.uniform(-0.2, 0.3), 3),
+                   "addendum": 1.25, "tip_radius": round(rng.uniform(0.1, 0.3), 3)},
+        "tip_diameter": f"{3.0 * (z - 2.0 * shift - 2.0 * rng.uniform(0.6, 0.95)):.4f} mm",
+        "rim_thickness": f"{3.0 * rng.uniform(1.5, 8.0):.4f} mm",
+    }  # fmt: skip
+
+
+def drawn(kind, rng):
+    """A case of one kind, which may prove impossible."""
+    if kind in ("gear", "ring"):
+        gear = external(rng) if kind == "gear" else internal(rng)
+        return {"results": ["stiffness"], "gear": {"a": gear}, "stiffness": {"positions": 31}}
+    if kind == "body":
+        gear = external(rng, "12 mm", 40) | {"bore_radius": "5 mm"}
+        gear["body"] = {"rim_thickness": "7 mm", "web_thickness": "5 mm", "hub_radius": "9 mm"}
+        gear.pop("plane")
+        return {
+            "results": ["stiffness"], "gear": {"a": gear},
+            "stiffness": {"positions": 4, "face_positions": 3, "contact_half_width": "0.09 mm"},
+        }  # fmt: skip
+    results = ["load-sharing", "transmission-error", "root-stress-history"]
+    if kind == "internal pair":
+        planet, ring = external(rng, most=40), internal(rng)
+        ring |= {"pressure_angle": planet["pressure_angle"], "profile_shift": -planet["profile_shift"]}
+        ring["tip_diameter"] = f"{3.0 * (ring['teeth'] - 1.5):.4f} mm"
+        ring["thickness_allowance"] = "90 um"
+        gears = {"a": planet, "b": ring}
+    else:
+        long = kind == "pair" and rng.random() < 0.25
+        first = external(rng, long=long)
+        second = external(rng, long=long) | {key: first[key] for key in ("rack", "pressure_angle")}
+        gears = {"a": first, "b": second}
+    for gear in gears.values():
+        if rng.random() < 0.5 and not gear.get("internal"):
+            gear["relief"] = {"tip": {"amount": f"{rng.uniform(2.0, 25.0):.2f} um", "length": "2 mm"}}
+        if kind == "wide pair":
+            gear |= {"normal_module": gear.pop("module"), "helix_angle": "12 deg", "teeth": min(gear["teeth"], 40),
+                     "bore_radius": "9 mm", "face_width": "12 mm"}  # fmt: skip
+            gear.pop("plane")
+    if kind == "wide pair":
+        gears["a"]["hand"], gears["b"]["hand"] = "right", "left"
+        results = ["load-distribution", "transmission-error", "root-stress-history"]
+    load = 10.0 ** rng.uniform(2.9, 4.1)
+    return {
+        "results": results, "gear": gears,
+        "pair": {"I": {"driver": "a", "driven": "b", "loads": [f"{load:.1f} N"], "load": f"{load:.1f} N"}},
+        "effects": {**EFFECTS, "relief": True, "corner_contact": bool(rng.random() < 0.5)},
+    }  # fmt: skip
+
+
+def possible(kind, count, seed):
+    """So many cases of one kind that fegear plans; what cannot exist is drawn again."""
+    rng = np.random.default_rng([seed, KINDS.index(kind)])
+    found = []
+    while len(found) < count:
+        case = drawn(kind, rng)
+        try:
+            scene_of(case, {"tolerance": 1e-2})
+        except FegearError:
+            continue
+        found.append(case)
+    return found
+
+
+def scene_of(case, accuracy):
+    """The scene of a case with such an accuracy, and its plan."""
+    scene = build_scene({**case, "accuracy": accuracy}, "errors", Path())
+    return scene, make_plan(scene, STAGES)
+
+
+def answers(case, accuracy):
+    """Numbers of a case by what they are: places (in their unit), values, stated errors."""
+    scene, plan = scene_of(case, accuracy)
+    results = run_plan(scene, plan, cache=SolutionCache())
+    found = {}
+    for outcome in results.outcomes.values():
+        for table in outcome.tables:
+            place = next((c.si for c in table.columns if c.name in ("radius", "x", "n", "t")), None)
+            for name, error in error_columns(table).items():
+                column, off = table.column(name), table.column(error)
+                if column.si.dtype.kind == "f" and place is not None:
+                    where = place
+                    if "face_position" in {c.name for c in table.columns}:
+                        where = place + 1e3 * table.column("face_position").si
+                    found[f"{table.name.split('_')[0]}...{name}", table.name] = (where, column.si, off.si)
+        for value in outcome.values:
+            key = value.name.rpartition(".")[2].rstrip("0123456789")
+            error = np.nan if value.si_error is None else value.si_error
+            found[f"value {key}", value.name] = (np.zeros(1), np.array([value.si]), np.array([error]))
+    return found
+
+
+@dataclass
+class Judged:
+    """A quantity of one case: true and stated errors at the places that both solutions have."""
+
+    what: str
+    name: str
+    size: np.ndarray
+    true: np.ndarray
+    stated: np.ndarray
+    rough: np.ndarray
+
+    @property
+    def worst(self):
+        """Largest true error over the stated one, less what the truth itself may be off."""
+        known = np.isfinite(self.stated) & np.isfinite(self.true)
+        over = np.maximum(np.abs(self.true) - self.rough, 0.0)[known] / np.maximum(self.stated[known], 1e-300)
+        return float(over.max(initial=0.0))
+
+    @property
+    def beyond(self):
+        """Part of the places at which the true error is beyond 1.5 times the stated one."""
+        known = np.isfinite(self.stated) & np.isfinite(self.true)
+        over = np.maximum(np.abs(self.true) - self.rough, 0.0)[known] > 1.5 * self.stated[known]
+        return float(over.mean()) if over.size else 0.0
+
+    @property
+    def generous(self):
+        """Stated over true error, the median over the places; not a number where the truth cannot tell."""
+        known = np.isfinite(self.stated) & (np.abs(self.true) > self.rough) & (self.stated > 0.0)
+        return float(np.median(self.stated[known] / np.abs(self.true[known]))) if known.any() else np.nan
+
+    @property
+    def generous_rms(self):
+        """The same of both errors' root mean squares: no crossing enters."""
+        known = np.isfinite(self.stated) & np.isfinite(self.true)
+        if not known.any():
+            return np.nan
+        true = np.sqrt(np.mean(self.true[known] ** 2))
+        rough = np.sqrt(np.mean(self.rough[known] ** 2))
+        return float(np.sqrt(np.mean(self.stated[known] ** 2)) / true) if true > rough else np.nan
+
+
+def judged(found, truth):
+    """Every quantity of a solution beside the truth."""
+    every = []
+    for (what, name), (place, value, stated) in found.items():
+        if (what, name) not in truth:
+            continue
+        at, exact, rough = truth[what, name]
+        mine, theirs = np.round(place, 12), np.round(at, 12)
+        both, i, j = np.intersect1d(mine, theirs, return_indices=True)
+        if not both.size:
+            continue
+        # What the truth's own elements may be off: its error also has what no elements tell, of contacts beside tips.
+        small = np.minimum(np.nan_to_num(rough[j], nan=0.0), _ROUGH * np.abs(exact).max(initial=0.0))
+        every.append(Judged(what, name, np.abs(exact[j]), value[i] - exact[j], stated[i], small))
+    return every
+
+
+def table(kind, seed, count, tolerances):
+    """Judge random cases of a kind, and print by quantity what is worst."""
+    seconds = {}
+    every = {tolerance: [] for tolerance in tolerances}
+    for number, case in enumerate(possible(kind, count, seed)):
+        began = time.process_time()
+        try:
+            truth = answers(case, truth_of(kind))
+        except FegearError as why:
+            print(f"case {number}: {why}", file=sys.stderr)
+            continue
+        seconds["truth"] = seconds.get("truth", 0.0) + time.process_time() - began
+        for tolerance in tolerances:
+            began = time.process_time()
+            every[tolerance].append((number, judged(answers(case, {"tolerance": tolerance}), truth)))
+            seconds[tolerance] = seconds.get(tolerance, 0.0) + time.process_time() - began
+    print({key: round(value, 1) for key, value in seconds.items()})
+    for tolerance, cases in every.items():
+        print(f"-- {kind}, seed {seed}, tolerance {tolerance:g}")
+        by = {}
+        for number, several in cases:
+            for one in several:
+                by.setdefault(one.what, []).append((number, one))
+        heads = ("worst", "case", "beyond", "median", "rms", "most", "lacking")
+        print(f"{'quantity':36}" + "".join(f"{head:>8}" for head in heads))
+        for what, several in sorted(by.items()):
+            worst = max(several, key=lambda one: one[1].worst)
+            beyond = np.mean([one.beyond for _, one in several])
+            generous = np.array([one.generous for _, one in several])
+            rms = np.array([one.generous_rms for _, one in several])
+            lacking = sum(not np.isfinite(one.stated).any() for _, one in several)
+            ratios = [np.nan] * 3
+            if np.isfinite(rms).any():
+                ratios = [np.nanmedian(generous), np.nanmedian(rms), np.nanmax(rms)]
+            numbers = (worst[1].worst, worst[0], beyond, *ratios, lacking)
+            print(f"{what:36}" + "".join(f"{number:8.3g}" for number in numbers))
+
+
+def truth_of(kind):
+    """Accuracy of the truth."""
+    return {"tolerance": 1e-4} if kind in ("body", "wide pair") else {"tolerance": 1e-6, **TRUTH}
+
+
+if __name__ == "__main__":
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("kind", choices=KINDS)
+    options.add_argument("seed", type=int)
+    options.add_argument("count", type=int)
+    options.add_argument("tolerances", type=float, nargs="*", default=TOLERANCES)
+    given = options.parse_args()
+    table(given.kind, given.seed, given.count, tuple(given.tolerances))
