@@ -156,10 +156,8 @@ def kept():
 
 
 def differences(old, new):
-    """What differs, in words."""
-    said = [f"{name} is lost" for name in old if name not in new] + [
-        f"{name} is new" for name in new if name not in old
-    ]
+    """What differs, in words; what is new besides is no difference."""
+    said = [f"{name} is lost" for name in old if name not in new]
     for name in old:
         if name in new and not _same(name, old[name], new[name]):
             said.append(f"{name}: {old[name]} was kept, {new[name]} is found")
