@@ -165,14 +165,14 @@ def differences(old, new):
 
 
 def _same(name, old, new):
-    """Whether two summaries say the same numbers; errors, which are estimates, to a hundredth."""
+    """Whether two summaries say the same numbers; errors, which are estimates, to a half."""
     if len(old) != len(new):
         return False
     of_value = name.startswith("value ")
     size = 0.0 if of_value else max((abs(one) for one in (*old[1:], *new[1:])), default=0.0)
     for place, (one, other) in enumerate(zip(old, new, strict=True)):
         error = "_error" in name or (of_value and place == 1)
-        loose, least = (1e-2, 1e-4) if error else (NOISE, 1e-6)
+        loose, least = (0.5, 1e-4) if error else (NOISE, 1e-6)
         if one != other and not abs(one - other) <= loose * max(size, abs(one), least):
             return False
     return True
