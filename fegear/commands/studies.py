@@ -63,7 +63,12 @@ def cost(
 
     voice = Voice(quiet, as_json)
     try:
-        studied = asked(read_scene(case, overrides or ()))
+        scene = read_scene(case, overrides or ())
+        if not scene.gears:
+            voice.say("Cost study: the case describes no gears, so there is no mesh, formula or tolerance to choose.")
+            voice.tell({"configurations": 0, "quantities": []})
+            return
+        studied = asked(scene)
         target = out or default_folder(case.stem, "_cost")
         ladder = ladder_of(studied, quick=quick)
         quantities = ", ".join(q.name for q in studied.quantities)

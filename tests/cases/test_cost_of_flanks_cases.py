@@ -132,6 +132,9 @@ def test_a_study_is_of_the_face_or_of_the_plane():
     with pytest.raises(InputError, match="loaded over its face, and is studied without"):
         over_face(CASE, 'cost.quantities=["te-mean", "c_0"]')
     with pytest.raises(InputError, match=r"effects\.hertz"):
-        over_face(CASE, 'effects.hertz="none"')
+        over_face(CASE, 'effects.hertz="none"', 'cost.pair="I"')
+    instead = asked(read_scene(CASE, ['effects.hertz="none"']))
+    assert not instead.over_face
+    assert "effects.hertz" in instead.notes[0]
     with pytest.raises(InputError, match="must be a pair of spur gears"):
         over_face(CASE, 'results=["stiffness"]', 'cost.pair="I"', 'cost.quantities=["tooth-force"]')

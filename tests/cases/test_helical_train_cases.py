@@ -214,6 +214,9 @@ def test_unknown_pairs_are_named():
 
 def test_the_cost_of_teeth_over_their_face_is_not_studied():
     with pytest.raises(InputError, match="pair first is loaded over its face"):
-        asked(read_scene(CASE, COARSE))
+        asked(read_scene(CASE, [*COARSE, 'cost.quantities=["dynamic-factor"]']))
+    found = asked(read_scene(CASE, COARSE))  # at rest instead, and said
+    assert not {quantity.name for quantity in found.quantities} & {"dynamic-factor", "tooth-force"}
+    assert "pair first is loaded over its face" in found.notes[0]
     scene = read_scene(CASE, [*COARSE, 'cost.quantities=["te-peak-to-peak"]'])
     assert asked(scene).pairs == ("second",)
