@@ -24,6 +24,8 @@ LIBRARIES = 0.2
 
 #: One speed in time: linear, with contact loss, each further period until the motion repeats, friction of one mesh.
 _LINEAR, _LOSS, _PERIOD, _FRICTION = 0.008, 0.03, 0.4, 0.06
+#: One speed of a train with contact loss and a shaft or mesh without damping, where many of the motions never settle.
+_ENDLESS = 0.7
 
 
 def constant(seconds: float) -> Forecast:
@@ -78,7 +80,17 @@ def seconds_per_speed(scene: Scene) -> float:
     """Seconds of the steady motion at one speed."""
     effects, (meshes, _) = scene.case.effects, sizes(scene)
     each = (_LOSS if effects.contact_loss else _LINEAR) * (1.0 + _PERIOD * (periods(scene) - 1))
-    return each + (_FRICTION * meshes if effects.friction else 0.0)
+    endless = _ENDLESS if effects.contact_loss and has_undamped(scene) else 0.0
+    return each + endless + (_FRICTION * meshes if effects.friction else 0.0)
+
+
+def has_undamped(scene: Scene) -> bool:
+    """Whether an elastic shaft or a mesh of the train has no damping."""
+    train = scene.case.train
+    if train is None:
+        return False
+    shafts = any(not (part.rigid or part.damping or part.damping_ratio) for part in train.shaft.values())
+    return shafts or any(not (part.damping or part.damping_ratio) for part in train.mesh.values())
 
 
 RING = (

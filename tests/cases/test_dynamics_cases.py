@@ -301,6 +301,25 @@ def test_a_motion_that_never_repeats_is_a_sample_without_an_error():
     assert "1000 periods" in largest.meaning
 
 
+@pytest.mark.dear
+def test_a_train_whose_shafts_damp_nothing_is_not_settled_and_the_keys_that_would_settle_it_are_named(monkeypatch):
+    """Each such speed took 60,000 periods; the row shows what was seen, as the note does."""
+    monkeypatch.setattr("fegear.dynamics.motion.effort.ENDLESS_EFFORT", 60_000)
+    shafts = [f"train.shaft.{name}.damping_ratio=0" for name in ("input", "output")]
+    tables, _, results = run("lin_dynamic_factor", "dynamics.speeds=['10000 rpm', '12000 rpm']", *shafts)
+    table = tables["dynamic_factor_I"]
+    assert table["motion"].tolist() == ["periodic", "not settled"]
+    assert table["smallest_factor"][0] == table["dynamic_factor"][0]
+    assert table["smallest_factor"][1] < table["median_factor"][1] < table["dynamic_factor"][1]
+    (said,) = [remark for remark in results.remarks if "not settled" in remark]
+    seen = f"{table['smallest_factor'][1]:.4g} to {table['dynamic_factor'][1]:.4g} of mesh I"
+    assert seen in said
+    assert "at 1 of 2 speeds: 12000 rpm" in said
+    assert "train.shaft.input.damping_ratio, train.shaft.output.damping_ratio (" in said
+    assert "train.mesh" not in said
+    assert not [remark for remark in results.remarks if "does not repeat at" in remark]
+
+
 def test_the_body_that_speeds_refer_to_is_named_and_the_order_of_tables_means_nothing_then(tmp_path):
     """Read from the other end, a line of the spectrum went from 288.6 to 1298.3 N: the first was the reference."""
     text = (CASES / "two_stage_gearbox.toml").read_text()

@@ -121,3 +121,20 @@ def test_seconds_are_within_a_factor_of_three():
     off = [row for row in rows if not 1.0 / 3.0 < float(row[-1]) < 3.0]
     assert not [row for row in off if row[1] == "all"]
     assert len(off) <= 0.05 * len(rows), off
+
+
+def test_shafts_without_damping_are_counted_where_teeth_part():
+    """A motion that never settles takes the most effort, which damping or teeth that never part save."""
+    shafts = [f"train.shaft.{name}.damping_ratio=0" for name in ("input", "output")]
+
+    def seconds(*overrides: str) -> float:
+        scene, plan = planned("lin_dynamic_factor", *overrides)
+        steps = zip(plan.steps, forecast_seconds(scene, plan), strict=True)
+        (found,) = [each for step, each in steps if step.task.stage == "motion"]
+        return found
+
+    damped, bare = seconds(), seconds(*shafts)
+    assert bare > 5.0 * damped
+    assert seconds(shafts[0]) == bare
+    kept = "effects.contact_loss=false"
+    assert seconds(kept) == seconds(kept, *shafts)

@@ -432,13 +432,13 @@ def test_a_median_is_a_force_that_occurs(cornell_discs):
 
 
 @pytest.mark.dear
-def test_teeth_that_throw_each_other_ever_further_are_unsettled_and_a_stable_motion_beside_them_is_named():
+def test_teeth_that_throw_each_other_ever_further_are_not_settled_and_a_stable_motion_beside_them_is_named():
     """Damping 0.01 at 2.007 natural frequencies: the reference's largest force grows as long as it is followed."""
     depth, zeta, ratio = 0.45, 0.01, 2.007
     seen, _, _ = oscillator(depth, zeta, ratio, 1.0, 0.0, 10_000, 400, parts=True)
     assert seen.max() > 5.0 * seen[:1000].max() > 500.0
     state = steady_state(two_discs(depth, zeta, ratio, parting=True), tolerance=1e-5)
-    assert state.kind == "unsettled"
+    assert state.kind == "not settled"
     # how far both have come hangs on the last bit
     assert state.tooth_force[0] / 500.0 > 2.0 * seen[:1000].max()
     (beside,) = state.coexisting

@@ -175,7 +175,9 @@ def test_a_dynamic_factor_over_too_few_speeds_says_where_peaks_may_be_missed():
     speeds, factor = np.linspace(100.0, 500.0, 5), np.array([1.0, 1.05, 1.5, 1.52, 1.5])
     none = np.zeros(5)
     whole = np.ones(5, dtype=int)
-    chart = SpeedChart(speeds, factor, factor, none, none, whole, ("periodic",) * 5, factor, factor, whole, none)
+    chart = SpeedChart(
+        speeds, factor, factor, none, none, whole, ("periodic",) * 5, factor, factor, whole, none, factor
+    )
     figure = _factor_figure("I", chart, "motor")
     assert "From 1909.86 to 2864.79 rpm it changes by 43%" in figure.caption
     assert all(item.marked for item in figure.panels[0].items)

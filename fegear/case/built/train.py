@@ -278,6 +278,7 @@ def steady_motions(
     asked: MotionInputs, data: GearTrain, progress: Callable[[float], None] | None = None
 ) -> tuple[SteadyState, ...]:
     """Steady motions over the speeds, in increasing order of speed, each started as the direction says."""
+    from fegear.dynamics.motion.effort import of_one
     from fegear.dynamics.motion.steady_state import steady_state
 
     speeds = asked.speeds / data.speed_ratio
@@ -286,8 +287,9 @@ def steady_motions(
     states: list[SteadyState] = []
     model = motion_model(asked, data, float(order[0]))
     for number, speed in enumerate(order):
+        within = of_one(progress, number, order.size)
         model = motion_model(asked, data, float(speed)) if asked.friction else model.at_speed(float(speed))
-        state = steady_state(model, start=start, tolerance=asked.tolerance)
+        state = steady_state(model, start=start, tolerance=asked.tolerance, progress=within)
         states.append(state)
         if asked.direction in ("up", "down"):
             start = (state.x, state.v)

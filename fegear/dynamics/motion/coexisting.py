@@ -19,6 +19,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, RangeError
+from fegear.dynamics.motion.effort import Effort
 from fegear.dynamics.motion.motion import Passage, propagate, starting_state
 from fegear.dynamics.motion.motion_model import Moving, Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, close, moving
@@ -144,13 +145,17 @@ class Window:
         return np.asarray(np.mean(self.states, axis=0))
 
 
-def follow(packed: Packed, x: Array, v: Array, periods: int, step: float, *, peaks: bool) -> Window:
-    """Integrate over a number of periods, one by one."""
+def follow(
+    packed: Packed, x: Array, v: Array, periods: int, step: float, *, peaks: bool, effort: Effort | None = None
+) -> Window:
+    """Integrate over a number of periods, one by one; what it takes is counted as spent."""
     use = moving(packed)
     states, passages = [], []
     for _ in range(periods):
         passage = propagate(packed, x, v, packed.period, tolerance=step, peaks=peaks)
         x, v = passage.x, passage.v
+        if effort is not None:
+            effort.spend(passage.steps * packed.size)
         states.append(np.concatenate([x, v])[use])
         if peaks:
             passages.append(passage)

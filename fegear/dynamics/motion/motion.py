@@ -29,7 +29,7 @@ class Passage:
     """What came of integrating over a while: end state, largest forces, time apart and on the back flanks.
 
     Forces [N], times in shares of the whole; `tooth_force` is the largest force on one tooth pair of each gear pair.
-    `steps`: record of the Taylor polynomials, if asked for.
+    `steps`: how many it took; `polynomials`: record of the Taylor polynomials, if asked for.
     """
 
     x: Array
@@ -37,6 +37,7 @@ class Passage:
     tangent: Array
     status: NDArray[np.int8]
     changes: int
+    steps: int
     largest: Array
     smallest: Array
     tooth_force: Array
@@ -117,9 +118,9 @@ def propagate(
     of_mesh = np.array([found.tooth[packed.mesh_of == m].max() for m in range(packed.damping.size)])
     unit, steps = packed.force_unit, found.steps
     return Passage(
-        found.x[:, 0].copy(), found.v[:, 0].copy(), tangent, active, found.changes, found.high * unit,
-        found.low * unit, of_mesh * unit, found.apart / duration, found.behind / duration, found.times[: steps + 1],
-        found.polynomials[:steps], found.contact[:steps],
+        found.x[:, 0].copy(), found.v[:, 0].copy(), tangent, active, found.changes, int(found.steps),
+        found.high * unit, found.low * unit, of_mesh * unit, found.apart / duration, found.behind / duration,
+        found.times[: steps + 1], found.polynomials[:steps], found.contact[:steps],
     )  # fmt: skip
 
 

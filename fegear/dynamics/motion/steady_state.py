@@ -9,8 +9,8 @@ reported. What comes near none is followed until it spreads no further, and meas
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from fegear.dynamics.motion.coexisting import (
     recurrences,
     stable_motions,
 )
+from fegear.dynamics.motion.effort import Effort, effort_for
 from fegear.dynamics.motion.motion import Trajectory, propagate, starting_state
 from fegear.dynamics.motion.motion_model import Moving, Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, close, leads_to, leap, moving
@@ -56,8 +57,8 @@ class SteadyState:
         What moves.
     kind : str
         "periodic", "quasi-periodic", "chaotic", "long-period" (comes back, but after more than 32 periods),
-        "unsettled" (a transient that had not died after 60,000 periods, a chaotic motion that still spread after
-        12,000), or "growing" (without bound: forces are infinite).
+        "not settled" (still changing when the effort of `motion.effort` was spent, or after 60,000 periods, a chaotic
+        motion after 12,000), or "growing" (without bound: forces are infinite).
     periods : int
         Periods of the excitation after which the motion repeats; 0 if it does not.
     multipliers : ndarray, complex
@@ -84,6 +85,8 @@ class SteadyState:
         Change of the spread of a motion that does not repeat from its last window to the measured periods, as a share.
     coexisting : tuple of SteadyState
         Stable motions that repeat and exist at this speed with one that does not (those that were found, not all).
+    followed : int
+        Periods of excitation that a motion which does not repeat was followed before it was measured.
     """
 
     model: Moving
@@ -103,6 +106,7 @@ class SteadyState:
     per_period: Array
     drift: float = 0.0
     coexisting: tuple[SteadyState, ...] = ()
+    followed: int = 0
 
     @property
     def multiplier(self) -> float:
@@ -163,6 +167,7 @@ def steady_state(
     tolerance: float = 1e-6,
     settling: int = SETTLING,
     measured: int = MEASURED,
+    progress: Callable[[float], None] | None = None,
 ) -> SteadyState:
     """Find the steady motion that a start leads to.
 
@@ -178,7 +183,10 @@ def steady_state(
     settling : int
         Periods integrated before Newton (when contact is lost).
     measured : int
-        Periods over which a motion that does not repeat is measured.
+        Periods over which a motion that does not repeat is measured; fewer of one that is not settled, if they are
+        long.
+    progress : callable, optional
+        Told the share of the most effort that is spent, while a motion takes long.
 
     Raises
     ------
@@ -217,7 +225,7 @@ def steady_state(
             return found
         run += periods
         periods = run
-    return _wander(packed, x, v, step, measured)
+    return _wander(packed, x, v, step, measured, effort_for(packed, passage.steps * packed.size, progress))
 
 
 def _linear(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
@@ -313,10 +321,10 @@ def _periodic(orbit: Orbit) -> SteadyState:
     )  # fmt: skip
 
 
-def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> SteadyState:
-    """Follow a motion that came to no orbit until it settles or stays as it is, and measure it."""
+def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int, effort: Effort) -> SteadyState:
+    """Follow a motion that came to no orbit until it settles, stays as it is or the effort is spent, and measure it."""
     rate = growth(packed, x, v, step)
-    window = follow(packed, x, v, WINDOW, step, peaks=False)
+    window = follow(packed, x, v, WINDOW, step, peaks=False, effort=effort)
     run, sample = WINDOW, None
     while sample is None and run < (CHAOTIC_PATIENCE if rate > CHAOTIC_GROWTH else PATIENCE):
         if not _bounded(packed, window):
@@ -325,7 +333,9 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> S
         if found is not None:
             return found
         length = min(2 * window.states.shape[0], LONGEST_WINDOW)
-        before, window = window, follow(packed, x, v, length, step, peaks=False)
+        if length > effort.left:  # a shorter window than the one before says nothing of a drift
+            break
+        before, window = window, follow(packed, x, v, length, step, peaks=False, effort=effort)
         run += length
         chaotic = rate > CHAOTIC_GROWTH
         if drifting(before, window, chaotic=chaotic):
@@ -339,16 +349,17 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> S
         if chaotic and drifting(window, sample, chaotic=True):
             window, sample = sample, None
             run += measured
-    kind = "unsettled" if sample is None else _kind(rate)
+    kind = "not settled" if sample is None else _kind(rate)
     if sample is None:
-        sample = follow(packed, window.x, window.v, measured, step, peaks=True)
+        # what is still on its way is shown, not measured: not longer than it was followed
+        sample = follow(packed, window.x, window.v, min(measured, run), step, peaks=True)
     if not _bounded(packed, sample):
         return _growing(packed, rate)
     if kind != "chaotic":
         found, _, _ = _settled(packed, sample.states, sample.x, sample.v, step)
         if found is not None:
             return found
-    return _measured(packed, kind, rate, window, sample, step)
+    return replace(_measured(packed, kind, rate, window, sample, step), followed=run)
 
 
 def _kind(rate: float) -> str:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shows
+from fegear.dynamics.motion.effort import of_one
 from fegear.dynamics.motion.motion_model import MotionParts
 from fegear.dynamics.motion.steady_state import SteadyState, steady_state
 from fegear.dynamics.planetary.set_response import LinearSet, forced_response
@@ -226,7 +227,9 @@ def set_sweep(
     start: str | tuple[Array, Array] = direction if direction in ("static", "rest") else "static"
     states: list[SteadyState] = []
     for number, frequency in enumerate(order):
-        state = steady_state(replace(run, mesh_frequency=float(frequency)), start=start, tolerance=tolerance)
+        within = of_one(progress, number, order.size)
+        at_frequency = replace(run, mesh_frequency=float(frequency))
+        state = steady_state(at_frequency, start=start, tolerance=tolerance, progress=within)
         states.append(state)
         if direction in ("up", "down"):
             start = (state.x, state.v)

@@ -39,7 +39,7 @@ class SpeedChart:
     behind: Array = shown("", "share of the time on the back flanks", name="backside_fraction")
     periods: NDArray[np.int64] = shown("", "periods of excitation after which the motion repeats; 0 if it does not")
     kinds: tuple[str, ...] = shown(
-        "", "periodic (and stable), quasi-periodic, chaotic, long-period, unsettled, or growing without bound",
+        "", "periodic (and stable), quasi-periodic, chaotic, long-period, not settled, or growing without bound",
         name="motion",
     )  # fmt: skip
     median: Array = shown("", "dynamic factor that half of the periods do not exceed", name="median_factor")
@@ -49,6 +49,9 @@ class SpeedChart:
     )
     multiplier: Array = shown(
         "", "growth of a small disturbance over one period of excitation; above 1 in a motion that grows"
+    )
+    lower: Array = shown(
+        "", "dynamic factor that every measured period reaches: the smallest of theirs", name="smallest_factor"
     )
 
     @classmethod
@@ -66,6 +69,7 @@ class SpeedChart:
             np.array([s.quantile(0.99)[mesh] for s in states]) / mean,
             np.array([s.measured for s in states], dtype=np.int64),
             np.array([s.multiplier for s in states]),
+            np.array([s.quantile(0.0)[mesh] for s in states]) / mean,
         )
 
     @classmethod
@@ -75,7 +79,7 @@ class SpeedChart:
         kinds = ("periodic",) * speeds.size
         return cls(
             speeds, dynamic_factor, mesh_force_factor, none, none.copy(), one, kinds, dynamic_factor, dynamic_factor,
-            one.copy(), np.full(speeds.size, np.nan),
+            one.copy(), np.full(speeds.size, np.nan), dynamic_factor,
         )  # fmt: skip
 
     @property

@@ -118,6 +118,8 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
             column_of(chart, "apart", further=zero),
             column_of(chart, "behind", further=zero),
             *columns_of(chart, "periods", "mesh_force_factor", "kinds", "median", "upper", "measured"),
+            # the other end of what is seen of a motion that is still on its way
+            *(columns_of(chart, "lower") if "not settled" in chart.kinds else ()),
             *(columns_of(chart, "multiplier") if found.in_time else ()),
             *((error_column(factor, _errors(chart, motion.tolerance)),) if found.in_time else ()),
         ),
@@ -185,7 +187,10 @@ def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     if lost:
         panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
     worst, where = chart.worst
-    step = np.abs(np.diff(chart.dynamic_factor)) / np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
+    smaller = np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
+    changed = np.abs(np.diff(chart.dynamic_factor))
+    # teeth that fly apart may carry nothing while they are looked at
+    step = np.divide(changed, smaller, out=np.zeros_like(changed), where=smaller > 0.0)
     at = int(np.argmax(step))
     coarse = (
         f" From {speed[at]:.6g} to {speed[at + 1]:.6g} rpm it changes by {step[at]:.0%}: peaks between neighbouring "

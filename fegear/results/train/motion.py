@@ -137,7 +137,8 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
             "mesh stiffness feeds it more than damping takes. Give the meshes damping, let teeth part "
             "(effects.contact_loss), or avoid these speeds."
         )
-    odd = [state for state in states if state.kind not in ("periodic", "growing")]
+    odd = [state for state in states if state.kind not in ("periodic", "growing", "not settled")]
+    moving = [state for state in states if state.kind == "not settled"]
     if odd:
         where = ", ".join(f"{rpm(s)} {s.kind}" for s in odd)
         said.append(
@@ -145,16 +146,16 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
             f"of {odd[0].measured} periods, a sample without a tolerance: more periods find larger ones. See the "
             "quantiles in the table."
         )
-    spreading = [f"{rpm(s)} ({s.drift:+.0%})" for s in odd if s.kind == "unsettled"]
-    if spreading:
+    if moving:
+        seen = "; ".join(f"{rpm(s)} after {s.followed:,} periods, {_range(data, s)}" for s in moving)
         said.append(
-            f"The motion still spread from one window of periods to the next when it was given up: "
-            f"{', '.join(spreading)}. Its largest force depends on how long one waits."
+            f"The motion is not settled at {len(moving)} of {len(states)} speeds: {seen}. That is the smallest and the "
+            f"largest of the last {_span(moving)} periods; others come if one waits longer. {_settling(data)}"
         )
     beside = [
         f"{rpm(s)} of {other.periods} {'period' if other.periods == 1 else 'periods'}, dynamic factor "
         + ", ".join(f"{f:.5g} of mesh {name}" for name, f in zip(data.names, _factors(data, other), strict=True) if f)
-        for s in odd
+        for s in (*odd, *moving)
         for other in s.coexisting
     ]  # fmt: skip
     if beside:
@@ -165,6 +166,35 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     return said
 
 
+def _range(data: GearTrain, state: SteadyState) -> str:
+    """Dynamic factors that were seen, mesh by mesh, from the smallest of a period to the largest."""
+    least = state.quantile(0.0)
+    each = zip(data.names, least, state.tooth_force, data.forces, strict=True)
+    ranges = [f"{low / mean:.4g} to {high / mean:.4g} of mesh {name}" for name, low, high, mean in each if mean > 0.0]
+    return "dynamic factor " + ", ".join(ranges)
+
+
+def _span(states: list[SteadyState]) -> str:
+    """Over how many periods the motions were looked at: one number, or from the smallest to the largest."""
+    counts = sorted({state.measured for state in states})
+    return f"{counts[0]:,}" if len(counts) == 1 else f"{counts[0]:,} to {counts[-1]:,}"
+
+
+def _settling(data: GearTrain) -> str:
+    """The keys of the damping that such a motion wants: those that are zero, or the shafts' where none is."""
+    bare = undamped(data)
+    if bare:
+        keys = ", ".join(f"{key}.damping_ratio" for key in bare)
+        return f"Without damping there vibrations do not die away; {keys} (0.01 to 0.1) would settle it."
+    return "More damping (damping_ratio of the shafts and meshes of the train) would settle it."
+
+
+def undamped(data: GearTrain) -> list[str]:
+    """Shafts and meshes of the train that have no damping, by their keys."""
+    shafts = [f"train.shaft.{s.name}" for s in data.train.shafts if s.damping == 0.0 and math.isfinite(s.stiffness)]
+    return shafts + [f"train.mesh.{mesh.name}" for mesh in data.train.meshes if mesh.damping == 0.0]
+
+
 def _factors(data: GearTrain, state: SteadyState) -> list[float]:
     """Largest tooth force of each mesh over its mean force; zero for meshes that carry nothing."""
     return [
@@ -173,7 +203,7 @@ def _factors(data: GearTrain, state: SteadyState) -> list[float]:
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
-    """One steady motion for each speed; one that does not repeat takes ten times as long, which cannot be foreseen."""
+    """One steady motion for each speed; one that does not repeat takes longer, which only damping foretells."""
     speeds = int(scene.case.dynamics.speed_values.size)
     settings = {"speeds": speeds, "periods": forecasts.periods(scene), "tolerance": scene.case.dynamics.tolerance}
     off = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
