@@ -109,6 +109,19 @@ def digest_of(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
+def digest_of_file(path: Path) -> str | None:
+    """SHA-256 of the content of an ordinary file; None where a path leads to none, or to one that cannot be read."""
+    if not leads_to(path, stat.S_ISREG):  # some devices act on being opened
+        return None
+    try:
+        with open(path, "rb", opener=_at_once) as file:
+            if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                return hashlib.file_digest(file, "sha256").hexdigest()
+    except (OSError, ValueError):
+        pass
+    return None
+
+
 def _data(path: Path, key: str) -> bytes:
     """The bytes of an ordinary file: a pipe or a device may never end, or never begin."""
     try:

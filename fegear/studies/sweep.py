@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import copy
-import hashlib
 import itertools
 import math
 import re
@@ -22,6 +21,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene, read_document, set_key, typed_value
+from fegear.case.text_file import digest_of_file
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
@@ -237,13 +237,8 @@ def point_content(point: Mapping[str, Any]) -> object:
             for value in item:
                 yield from texts(value)
 
-    files = {}
-    for text in sorted(set(texts(document))):
-        try:
-            files[text] = hashlib.sha256((folder / text).read_bytes()).hexdigest()
-        except (OSError, ValueError):  # most texts are no names of files
-            continue
-    return [document, files]
+    digests = {text: digest_of_file(folder / text) for text in sorted(set(texts(document)))}
+    return [document, {text: digest for text, digest in digests.items() if digest}]  # most texts name no files
 
 
 def _point(found: Mapping[str, Any]) -> Point:

@@ -9,7 +9,9 @@ import contextlib
 import json
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fegear.base.errors import FegearError
+from fegear.base.errors import FegearError, InputError
+from fegear.case.json_file import read_json
+from fegear.case.text_file import write_file
 from fegear.engine.plan import make_plan
 from fegear.engine.stage import Task
 from fegear.output.numbers import plain_number, pretty_unit
@@ -50,6 +52,8 @@ PICTURES = {
     "set-te": Picture("Transmission error of the set", "planet-load-sharing", "planet_load_sharing_", 2, of="set"),
     "set-forces": Picture("Forces across the axis", "planet-load-sharing", "planet_forces_", of="set"),
 }
+#: What may be shown of the stress inside the teeth.
+MEASURES = ("mises", "tension", "pressure", "none")
 #: What it shows where nobody has chosen: of plane pairs, of those with a width, and of planetary sets.
 USUAL, USUAL_WIDE = ("te", "sharing", "root", "harmonics"), ("te", "line-load", "root", "harmonics")
 USUAL_SET = ("planet-loads", "set-te", "set-forces")
@@ -156,7 +160,7 @@ class View(NamedTuple):
     pictures : tuple of str
         Names of `PICTURES`; none for the usual ones.
     measure : str
-        Of the stress inside the teeth: ``mises``, ``tension``, ``pressure`` or ``none``.
+        Of the stress inside the teeth, one of `MEASURES`.
     folded : bool
         Whether the form is out of the way.
     report : bool
@@ -175,7 +179,9 @@ class View(NamedTuple):
         """The same with what a page says; what is none of its values stays."""
         new = {name: told[name] for name in self._fields if isinstance(told.get(name), type(getattr(View(), name)))}
         if isinstance(told.get("pictures"), list):
-            new["pictures"] = tuple(one for one in told["pictures"] if one in PICTURES)
+            new["pictures"] = tuple(one for one in told["pictures"] if isinstance(one, str) and one in PICTURES)
+        if new.get("measure") not in MEASURES:
+            new.pop("measure", None)
         return self._replace(**new)
 
 
@@ -190,18 +196,17 @@ def told_of_view(view: View) -> dict[str, Any]:
 
 def read_view(case: Path | None) -> View:
     """How the page of a case file, or of cases without one, was left; the usual view where nothing is known."""
-    with contextlib.suppress(OSError, ValueError):
-        found = json.loads(_place(case).read_text("utf-8"))
-        return View().changed(found) if isinstance(found, dict) else View()
+    with contextlib.suppress(InputError):
+        return View().changed(read_json(_place(case), "view"))
     return View()
 
 
 def keep_view(case: Path | None, view: View) -> None:
     """Keep it for the next time; a folder that cannot be written to keeps nothing."""
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(OSError, InputError):
         place = _place(case)
         place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_text(json.dumps(view._asdict()), "utf-8")
+        write_file(place, json.dumps(view._asdict()).encode(), "view")
 
 
 def _place(case: Path | None) -> Path:

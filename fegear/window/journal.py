@@ -150,6 +150,8 @@ def left_behind(path: Path | None) -> list[Left]:
     found: list[tuple[float, Left]] = []
     for place in journal_folder().glob(f"{stem_of(path)}*.json"):
         try:
+            if not place.is_file():  # what is written into a pipe nobody may wait for
+                continue
             with place.open(encoding="utf-8") as file:
                 if not (_lock(file) and _is_still(file, place)):
                     continue
@@ -252,7 +254,7 @@ def sweep() -> list[Path]:
     gone = []
     for folder in sorted(Path(tempfile.gettempdir()).glob(f"{_PREFIX}*")):
         with contextlib.suppress(OSError):  # somebody else's, gone meanwhile, or held: then it is in use
-            if folder.is_symlink() or folder.stat().st_uid != os.getuid():
+            if folder.is_symlink() or folder.stat().st_uid != os.getuid() or not (folder / _HELD).is_file():
                 continue
             with (folder / _HELD).open("rb") as held:
                 fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)

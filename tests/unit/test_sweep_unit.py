@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import threading
 import time
 
 import in_process
@@ -267,6 +268,19 @@ def test_a_changed_file_that_the_case_names_is_computed_anew(tmp_path):
         keys.append(point_content(point))
     assert keys[0] != keys[1] != keys[2]
     assert point_content({**point, "document": {**point["document"], "title": "y"}}) == keys[2]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_a_text_of_the_case_that_names_a_pipe_or_a_device_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "file").write_text("x")
+    document = {"load": "pipe", "more": ["/dev/zero", "/dev/tty", ".", "", "\0", "x" * 5000, {"a": "file"}]}
+    found = []
+    point = {"document": document, "name": "x", "folder": str(tmp_path)}
+    thread = threading.Thread(target=lambda: found.append(point_content(point)), daemon=True)
+    thread.start()
+    thread.join(10.0)
+    assert [files.keys() for _, files in found] == [{"file"}]
 
 
 def test_sweeps_work_from_python_too(case):
