@@ -28,15 +28,20 @@ from fegear.window.journal import HALF, HALVES
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
 
-#: Characters of one piece, and of all pieces of a message: a text of half that length with every character escaped.
-PIECE, _MOST = 100_000, 4 * LARGEST
+#: Characters of one piece, and of all pieces of a message: a text with every character escaped.
+PIECE, _MOST = 100_000, 7 * LARGEST
 #: For so long messages are acted on before connections are read again, and for so long they are [s].
 _SPELL, _REST = 0.03, 0.02
 #: For so long messages that wait are acted on when the window is closed [s].
 _FAREWELL = 3.0
-#: Messages that come in pieces at the same time.
+#: Messages that come in pieces at the same time from one page.
 _OPEN = 8
 _NOT_TAKEN = "What this page has sent could not be read, and is not taken: change it once more, or load the page again."
+#: What is said where somebody puts in more than a case may have.
+TOO_LONG = (
+    f"Not put in: the text would have more than {LARGEST} characters, which is the most that the window takes; "
+    "put tables into files of their own, or use fegear run."
+)
 _GONE = "The form has been made anew since, for another page changed the case: what was typed last is not taken."
 #: What is said with each kind of event, and what each part of it must be.
 EVENTS: dict[str, dict[str, type]] = {
@@ -171,9 +176,11 @@ class Messages:
             return
         name, count, at, text = (said.get(key) for key in ("name", "count", "at", "text"))
         place = (client.id, str(name)[:60])
-        begun = self._pieces.pop(place, [])
+        self._pieces = {place: begun for place, begun in self._pieces.items() if place[0] in Client.instances}
+        begun = self._pieces.pop(place, []) if at != 0 else []  # said again from the first: its connection was lost
+        open_now = sum(of == client.id and one != name for of, one in self._pieces)
         fits = isinstance(at, int) and isinstance(count, int) and isinstance(text, str) and at == len(begun) < count
-        if not fits or sum(map(len, begun)) + len(str(text)) > _MOST or len(self._pieces) >= _OPEN:
+        if not fits or sum(map(len, begun)) + len(str(text)) > _MOST or open_now >= _OPEN:
             refuse(client, _NOT_TAKEN)
             return
         begun.append(str(text))

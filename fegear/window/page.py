@@ -24,7 +24,7 @@ from fegear.window.document import LARGEST
 from fegear.window.glance import told_of_view
 from fegear.window.inputs import Inputs
 from fegear.window.journal import left_behind
-from fegear.window.messages import PIECE, Messages, checked
+from fegear.window.messages import PIECE, TOO_LONG, Messages, checked, refuse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -110,6 +110,7 @@ class Page:
         ):  # fmt: skip
             ui.on(kind, partial(self._said, kind, do))
         ui.on("untaken", self._too_long)
+        ui.on("unwritten", lambda: refuse(self._client, TOO_LONG))
         ui.on("save", lambda: self._bar.save() if self._bar is not None else None)
         ui.on("view", lambda event: bench.see_otherwise(event.args if isinstance(event.args, dict) else {}))
         parts = json.dumps({"piece": PIECE, "most": LARGEST})

@@ -152,6 +152,28 @@ def test_half_a_character_is_refused_in_words_and_nothing_else_is_lost(served):
     served.end()
 
 
+def test_a_long_text_is_said_again_from_its_first_piece_and_what_others_have_begun_keeps_nobody_from_it(served):
+    """A page says it again whose connection was lost; eight texts that were never ended had kept all others out."""
+    long = TEXT.replace("5 kN", "6 kN") + "# µ\n" * 60_000
+    with window_page.Page(served.address) as begun, window_page.Page(served.address, begun.cookie) as page:
+        for i in range(8):
+            told = {"client_id": begun.client, "name": f"n{i}", "count": 2, "at": 0, "text": "{"}
+            begun.send(f"42{json.dumps(['piece', told])}")
+        begun.say("load", {"pair": "I", "key": "load", "text": "5.5 kN", "moving": False})
+        page.until(lambda: served.kept() == [TEXT.replace("5 kN", "5.5 kN")])  # all of them are there
+        name = {"count": 3, "name": "n"}
+        said = json.dumps(page.event("update:value", long, page.element(type="textarea")))
+        size = len(said) // 3 + 1
+        pieces = [
+            name | {"client_id": page.client, "at": at, "text": said[at * size : (at + 1) * size]} for at in range(3)
+        ]
+        for piece in (*pieces[:2], *pieces):
+            page.send(f"42{json.dumps(['piece', piece])}")
+        page.until(lambda: long in served.kept())
+        assert not any("could not be read" in one for one in page.heard)
+    served.end()
+
+
 @pytest.mark.dear
 @pytest.mark.parametrize("moving", [False, True])
 def test_a_flood_of_changes_from_two_pages_is_taken_and_the_pages_stay(served, moving):
@@ -216,6 +238,7 @@ SAID = {
     "sight": {"tasks": ["load-sharing of I"]},
     "view": {"pictures": ["te"], "measure": "mises", "folded": False, "report": False, "middle": ""},
     "untaken": {},
+    "unwritten": {},
     "save": {},
 }
 
