@@ -37,6 +37,22 @@ def test_units_are_not_mixed_and_pure_numbers_stand_alone():
     assert found[2].si_error == pytest.approx(1e3 * ROUND_OFF)
 
 
+def test_a_value_that_is_zero_has_no_share_of_itself():
+    """What a designed relief leaves is nothing but digits: its error is judged by what no relief leaves."""
+    before, left = value("te_peak_to_peak.none", 20e-6, 4e-10), value("te_peak_to_peak.designed", 4e-20, 4e-10)
+    share = value("surface_share", 0.0, 0.0025, "")
+    assert Outcome(values=(before, left, share)).remarks == ()
+
+
+def test_a_large_error_of_a_value_beside_larger_ones_is_noted():
+    swing, dead, small = value("swing", 1e-6, 0.3e-6), value("dead", 0.0, 5e-6), value("small", 1e-9, 1e-9)
+    (said,) = Outcome(values=(value("mean", 20e-6, 1e-9), swing, dead, small), sharper_by="increase n").remarks
+    assert said == (
+        "swing (1 +- 0.3 um), dead (0 +- 5 um), small (0.001 +- 0.001 um): estimated error above 20 % of the value; "
+        "increase n."
+    )
+
+
 def test_columns_of_errors_count_the_largest_of_their_unit():
     x, stress = np.linspace(0.0, 1.0, 4), np.array([0.0, 1e8, 2.4e8, 0.0])
     columns = (
