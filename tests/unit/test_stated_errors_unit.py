@@ -5,6 +5,7 @@ import pytest
 
 from fegear.engine.outcome import ROUND_OFF, Outcome, Value
 from fegear.engine.table import Column, Table
+from fegear.results.gear.stiffness import tolerance_remarks
 
 
 def value(name, si, error, unit="um"):
@@ -71,3 +72,10 @@ def test_exact_unknown_and_large_columns_stay(errors):
     columns = (Column("a", np.array([1.0, 3.0]), "N"), Column("a_error", np.array(errors), "N"))
     table = Table("t", columns)
     assert Outcome(tables=(table,)).tables[0] is table
+
+
+@pytest.mark.parametrize("last_bits", [0.0, 3e-16, 1e-12])
+def test_of_equal_errors_the_first_place_is_named_whatever_the_last_bits_say(last_bits):
+    relative, radius = np.array([0.06, 0.06 + last_bits, 0.01]), np.array([19e-3, 20e-3, 21e-3])
+    (said,) = tolerance_remarks("Gear a", "c_self", relative, radius, 0.02, "radii")
+    assert "at radius 19 mm; at 33% of the radii" in said

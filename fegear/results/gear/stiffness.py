@@ -84,7 +84,7 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
 
 def tolerance_remarks(who: str, label: str, relative: Array, radius: Array, tolerance: float, of: str) -> list[str]:
     """Where the estimated relative errors of a quantity over the radius [m] miss the tolerance, if anywhere."""
-    i = int(np.argmax(relative))
+    i = int(first_of_largest(relative))
     said = (
         f"{who}: the estimated error of {label} reaches {relative[i]:.1e} (tolerance {tolerance:.0e}), at radius "
         f"{radius[i] * 1e3:.6g} mm; at {np.mean(relative <= tolerance):.0%} of the {of} it is within the tolerance."
