@@ -101,7 +101,7 @@ class Outcome(Alike):
     figures : tuple of Figure or DeferredFigure
         What can be drawn.
     sharper_by : str
-        What makes the estimated errors of its values smaller: key and verb of a remedy.
+        What makes the estimated errors of its values smaller: key and verb of a remedy; empty where nothing does.
     """
 
     data: object = None
@@ -121,7 +121,7 @@ class Outcome(Alike):
     @property
     def _rough_values(self) -> tuple[str, ...]:
         """One note for all values whose estimated error exceeds a fifth of them."""
-        rough = [value for value in self.values if _is_rough(value, self.values)]
+        rough = [value for value in self.values if _is_rough(value, self.values)] if self.sharper_by else []
         if not rough:
             return ()
         shown = [f"{one.name} ({one.value:.4g} +- {one.error:.2g} {one.unit}".rstrip() + ")" for one in rough[:_NAMED]]
@@ -195,8 +195,11 @@ _ROUGH, _NAMED = 0.2, 3
 
 
 def _is_rough(value: Value, beside: Iterable[Value]) -> bool:
-    """Whether an estimated error is a large part of its value, and more than digits of the values beside it."""
-    if not value.si_error or not math.isfinite(value.si) or not math.isfinite(value.si_error):
+    """Whether an estimated error is a large part of its value, and more than digits of the values beside it.
+
+    A value of exactly zero has no part: its error says all.
+    """
+    if not value.si_error or not value.si or not math.isfinite(value.si) or not math.isfinite(value.si_error):
         return False
     largest = max(abs(one.si) for one in beside if one.unit == value.unit and math.isfinite(one.si))
     if abs(value.si) <= (ROUND_OFF * largest if value.unit else 0.0):

@@ -78,7 +78,7 @@ def test_every_effect_changes_an_answer_and_every_kernel_counts_somewhere():
         found = study(effect)
         assert any(abs(pair.share) > 1e-9 for pair in found.changes()), effect
         seen |= set(found.with_it.kernels) | set(found.without.kernels)
-    assert seen == set(KERNELS)
+    assert seen == set(KERNELS) - {"neglected effects"}  # which effect studies do not size
 
 
 def test_the_linearised_train_moves_nothing_in_time():

@@ -279,7 +279,7 @@ def test_a_sweep_is_shown_as_map_curves_and_lines_through_all_its_values(browser
     browser.open(folder / "report.html")
     assert browser.complaints == []
     rows = list(csv.DictReader((folder / "tables" / "sweep.csv").open(encoding="utf-8")))
-    ratio = [float(row["I.contact_ratio"]) for row in rows]
+    ratio = [float(row["I.contact_ratio"] or math.nan) for row in rows]
     expected = [[None if math.isnan(v) else v for v in ratio[k::3]] for k in range(3)]
 
     def digits(rows: list) -> list:  # as many as the table has

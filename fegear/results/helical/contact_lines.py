@@ -111,7 +111,7 @@ def _present(data: ContactLinesData, asked: ContactLinesInputs) -> Outcome:
     if pair.pinion.helix_angle == 0.0:
         remarks.append(f"Pair {name}: lines of a spur gear are parallel to its axis, so that u1 and u2 do not exist.")
     figures = contact_lines_figures(name, data.pair, data.lines, length)
-    return Outcome(data, tables, values, {"positions": asked.positions}, tuple(remarks), figures)
+    return Outcome(data, tables, values, {"positions": asked.positions}, tuple(remarks), figures, sharper_by="")
 
 
 #: Width of a line drawn on a tooth in space, over the face width, and its height above the flank, over its width.
