@@ -141,11 +141,11 @@ def export_gears(
 
 
 def _found(results: Side) -> Found:
-    """What a run found, for a REXS model: numbers that are known, and of tables the columns of numbers."""
+    """What a run found, for a REXS model: numbers that are known, and of tables the columns of such and of names."""
     from fegear.exchange.rexs.written import Found
 
     tables = {
-        name: {one.name: one.si for one in table.columns if one.si.dtype.kind == "f" and np.isfinite(one.si).all()}
+        name: {one.name: one.si for one in table.columns if one.si.dtype.kind != "f" or bool(np.isfinite(one.si).all())}
         for name, table in results.tables.items()
     }
     return Found({name: value.si for name, value in results.values.items() if np.isfinite(value.si)}, tables)

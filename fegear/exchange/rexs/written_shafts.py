@@ -163,7 +163,10 @@ def write_shaft_results(written: Written, shafts: Mapping[str, Part], tables: Ma
         for kind, _, roles in written.relations
         if kind == "side" and "inner_part" in dict(roles)
     }
-    rows = zip(*(columns[key] for key in ("shaft", "bearing", "force_axial", "force_x", "force_y")), strict=True)
+    wanted = ("shaft", "bearing", "force_axial", "force_x", "force_y")
+    if not all(key in columns for key in wanted):  # a table that was changed since
+        return
+    rows = zip(*(columns[key] for key in wanted), strict=True)
     for shaft_name, bearing, along, x, y in rows:
         if (seat := seats.get((str(shaft_name), str(bearing)))) is not None:
             seat.say(
