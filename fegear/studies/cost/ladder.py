@@ -11,7 +11,9 @@ import math
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
+from fegear.case.accuracy import AccuracyPart
 from fegear.case.built.solid_influence import seconds_of_solid_gear
+from fegear.case.built.tooth_influence import settings_for
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
@@ -223,7 +225,7 @@ class Configuration:
         if self.family == "tolerance":
             return f"accuracy = {{ tolerance = {self.tolerance:g} }}"
         if self.family in ("ring", "scikit-fem") and self.settings is not None:
-            usual = asdict(MeshSettings())
+            usual = asdict(settings_for(AccuracyPart().tolerance))  # what the line would mean without them
             own = {k: v for k, v in asdict(self.settings).items() if v != usual[k]} or {"order": self.settings.order}
             keys = (f'{k} = "{v}"' if isinstance(v, str) else f"{k} = {v:.6g}" for k, v in own.items())
             return "accuracy = { " + ", ".join(keys) + " }"
