@@ -552,7 +552,8 @@ def test_names_of_any_length_leave_the_page_its_width(browser, serve, tmp_path):
 def test_more_than_a_case_may_have_is_not_put_in_and_said_at_once(browser, serve, tmp_path):
     """A browser lays such a text out for half a minute: the page was not heard meanwhile, and lost its connection."""
     served = opened(browser, serve, tmp_path)
-    browser.click("[...document.querySelectorAll('.q-tab')].find(one => one.textContent.trim() === 'Text')")
+    tab = "[...document.querySelectorAll('.q-tab')].find(one => one.textContent.trim() === '{}')"
+    browser.click(tab.format("Text"))
     browser.until("document.querySelector('textarea') !== null")
     browser.run("document.querySelector('textarea').focus()")
     browser("Input.insertText", text="#" * 4_000_000)
@@ -562,7 +563,8 @@ def test_more_than_a_case_may_have_is_not_put_in_and_said_at_once(browser, serve
     assert browser.run("document.querySelector('textarea').value") == TEXT
     browser.run("document.querySelector('textarea').select()")
     browser("Input.insertText", text=TEXT.replace("5 kN", "7 kN"))  # and what is short enough is
-    browser.until(f"{field('pair.I.load')}.value === '7 kN'")
+    browser.click(tab.format("Form"))
+    browser.until(f"{field('pair.I.load')}?.value === '7 kN'")
     served.end()
 
 
