@@ -33,6 +33,8 @@ def random_pairs(count, seed, helix=0.0):
             )  # fmt: skip
             wheel = Gear(ring, 4e-3, 4e-3 * (ring.root_radius + 3.0), 40e-3, hand=hand)
             pair = GearPair(planet, wheel) if rng.random() < 0.5 else GearPair(wheel, planet)
+            if any(check.margin < 0.0 for check in pair.internal_checks):
+                continue  # such a pair can be drawn, but its path of contact is not that of the formulas
             if 1.05 < pair.contact_ratio < 1.95 and pair.internal:
                 found.append(pair)
         except FegearError:

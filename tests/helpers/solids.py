@@ -46,8 +46,10 @@ def of_gear(gear):
         if (holes := body.holes) is not None:
             (low, high), around = body.web, 2.0 * math.pi * np.arange(holes.count) / holes.count + 0.3
             one = math.pi * holes.radius**2 * (high - low)
-            for x in holes.circle_radius * np.cos(around):
-                far = 0.25 * holes.radius**2 + (high - low) ** 2 / 12.0 + (0.5 * (low + high)) ** 2 + x**2
+            for x, y in holes.circle_radius * np.stack([np.cos(around), np.sin(around)], axis=1):
+                # across the axis on average over all directions, which one or two holes tell apart
+                off = 0.5 * (x**2 + y**2)
+                far = 0.25 * holes.radius**2 + (high - low) ** 2 / 12.0 + (0.5 * (low + high)) ** 2 + off
                 spin = 0.5 * holes.radius**2 + holes.circle_radius**2
                 found -= one * np.array([1.0, spin, 0.5 * (low + high), far])
     return gear.material.density * found
