@@ -46,9 +46,6 @@ class StiffnessTable:
     c_next: Array = shown(
         "um.mm/N", "deflection of the tooth after it (which the loaded flank faces)", label="compliance", table="flank"
     )
-    c_self_reduction: Array = shown(
-        "um.mm/N", "reduction of c_self by contact with a mating flank near the tip; not applied to c_self",
-        table="flank")  # fmt: skip
     half_width: Array = shown(
         "mm", "half-width of the contact that c_self is for", name="contact_half_width", table="flank"
     )
@@ -62,6 +59,9 @@ class StiffnessTable:
     root_compression: Array = shown("MPa.mm/N", "most negative tangential stress of the other fillet", table="flank")
     root_compression_radius: Array = shown("mm", "where it sits", table="flank")
     root_compression_angle: Array = shown("deg", "the same on the other fillet")
+    c_self_reduction: Array = shown(
+        "um.mm/N", "reduction of c_self by contact with a mating flank near the tip; not applied to c_self"
+    )
 
 
 def stiffness_table(

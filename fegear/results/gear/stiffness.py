@@ -57,7 +57,7 @@ def _table(name: str, t: StiffnessTable) -> Table:
     columns = (
         *columns_of(t, table="flank"), *compliance_errors(t),
         *(error_column(column_of(t, key), t.errors[key]) for key in _SIDES),
-        *columns_of(t, "root_tension_angle", "root_compression_angle"),
+        *columns_of(t, "root_tension_angle", "root_compression_angle", "c_self_reduction"),
     )  # fmt: skip
     return Table(f"stiffness_{name}", columns, f"Compliance and root stress of gear {name}")
 
