@@ -184,7 +184,11 @@ def _powers(of: NDArray[np.complex128], highest: int) -> NDArray[np.complex128]:
     return found
 
 
-def effective_error(series: FourierSeries, harmonics: int = 12) -> Array:
+#: Harmonics of the effective error in its source.
+EFFECTIVE_HARMONICS = 12
+
+
+def effective_error(series: FourierSeries, harmonics: int = EFFECTIVE_HARMONICS) -> Array:
     """A_e = A_1 + sqrt(sum_i A_i^2), i = 1..12, of a transmission error [m] (NASA TM-89901).
 
     Parameters

@@ -301,10 +301,15 @@ class LoadHistory:
 
     @property
     def largest_load_error(self) -> float | None:
-        """Estimated [N]."""
+        """Estimated [N], that of the distance of the positions included; no pair bears more than the whole load."""
         if self.largest:
             return self.largest.share_error * self.largest_load / self.largest.share
-        return None if self.load_error is None else float(self.load_error[self.most_loaded, self.at])
+        if self.load_error is None:
+            return None
+        at, load = self.most_loaded, self.found.load[:, self.at]
+        whole = load[at] / self.found.share[at, self.at] if load[at] > 0.0 else 0.0
+        between = min(_between_positions(self.found.x, load, at), max(float(whole - load[at]), 0.0))
+        return float(self.load_error[at, self.at]) + between
 
     @property
     def largest_share_error(self) -> float | None:
@@ -327,18 +332,37 @@ class LoadHistory:
         at, pressure = self.hardest_pressed, self._smooth_pressure
         load = self.found.load[at, self.at]
         by_load = 0.5 * self.load_error[at, self.at] / load * pressure[at] if load > 0.0 else 0.0
-        return float(max(by_load + self._between_positions(at, pressure), _DIGITS * pressure[at]))
+        between = _between_positions(self.found.x, pressure, at)
+        return float(max(by_load + between, _DIGITS * pressure[at]))
 
-    def _between_positions(self, at: int, pressure: Array) -> float:
-        """How far the parabola through the largest value and its neighbours rises above it; nothing at a jump [Pa]."""
-        x = self.found.x
-        if not 0 < at < x.size - 1:
-            return 0.0
-        (a, b), (down, up) = np.diff(x[at - 1 : at + 2]), np.diff(pressure[at - 1 : at + 2])
-        if min(a, b) < _BESIDE_JUMP * max(a, b):  # both sides of a jump are positions
-            return 0.0
-        slope, bend = (down / a * b + up / b * a) / (a + b), (up / b - down / a) / (0.5 * (a + b))
-        return float(0.5 * slope**2 / -bend) if bend < 0.0 else 0.0
+
+def _between_positions(x: Array, values: Array, at: int) -> float:
+    """How far a curve may rise above its largest value between the positions; nothing at a jump.
+
+    The parabola through the largest value and its neighbours, as far as it meets the next values too. It does not
+    where a relieved pair comes into contact, which is at no position: from both sides straight lines then lead to the
+    peak.
+    """
+    if not 0 < at < x.size - 1:
+        return 0.0
+    (a, b), (down, up) = np.diff(x[at - 1 : at + 2]), np.diff(values[at - 1 : at + 2])
+    if min(a, b) < _BESIDE_JUMP * max(a, b):  # both sides of a jump are positions
+        return 0.0
+    slope, bend = (down / a * b + up / b * a) / (a + b), (up / b - down / a) / (0.5 * (a + b))
+    smooth = 0.5 * slope**2 / -bend if bend < 0.0 else 0.0
+    missed = kink = 0.0
+    for step in (-1, 1):
+        beyond = at + 2 * step
+        if not 0 <= beyond < x.size or abs(x[beyond] - x[at + step]) < _BESIDE_JUMP * min(a, b):
+            continue
+        to = x[beyond] - x[at]
+        missed = max(missed, abs(float(values[at] + slope * to + 0.5 * bend * to**2 - values[beyond])))
+        cell, fall = abs(x[at + step] - x[at]), float(values[at] - values[at + step])
+        rise = float((values[at] - values[at - step]) / abs(x[at] - x[at - step]))
+        back = float((values[at + step] - values[beyond]) / abs(x[at + step] - x[beyond]))
+        if rise + back > 0.0:
+            kink = max(kink, rise * float(np.clip((back * cell - fall) / (rise + back), 0.0, cell)))
+    return float(max(smooth, min(kink, smooth + missed)))
 
 
 @dataclass(frozen=True)

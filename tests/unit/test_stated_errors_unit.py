@@ -1,8 +1,11 @@
 """No stated error is below what another processor gives."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from fegear.case.accuracy import AccuracyPart
 from fegear.engine.outcome import ROUND_OFF, Outcome, Value
 from fegear.engine.table import Column, Table
 from fegear.results.gear.stiffness import tolerance_remarks
@@ -79,3 +82,24 @@ def test_of_equal_errors_the_first_place_is_named_whatever_the_last_bits_say(las
     relative, radius = np.array([0.06, 0.06 + last_bits, 0.01]), np.array([19e-3, 20e-3, 21e-3])
     (said,) = tolerance_remarks("Gear a", "c_self", relative, radius, 0.02, "radii")
     assert "at radius 19 mm; at 33% of the radii" in said
+
+
+def test_values_whose_error_exceeds_a_fifth_of_them_are_noted_once_with_a_key_that_exists():
+    given = (value("exact", 7.0, 1.39, "N"), value("a", 7.0, 1.41, "N"), value("b", -1e-3, 1.0, "N"))
+    outcome = Outcome(values=given, remarks=("Another.",))
+    said = "a (7 +- 1.4 N), b (-0.001 +- 1 N): estimated error above 20 % of the value; reduce accuracy.tolerance."
+    assert outcome.remarks == ("Another.", said)
+    assert replace(outcome).remarks == outcome.remarks
+    assert "tolerance" in AccuracyPart.model_fields
+
+
+def test_the_note_on_rough_values_names_three_of_them_and_the_remedy_of_the_result():
+    given = tuple(value(f"v{i}", 1.0, 0.5, "") for i in range(5))
+    (note,) = Outcome(values=given, sharper_by="increase planetary.P.harmonics").remarks
+    assert note.startswith("v0 (1 +- 0.5), v1 (1 +- 0.5), v2 (1 +- 0.5) and 2 more: ")
+    assert note.endswith("; increase planetary.P.harmonics.")
+
+
+@pytest.mark.parametrize("error", [None, 0.0, np.nan, 1e-10])
+def test_errors_that_are_unknown_or_digits_of_what_stands_beside_them_are_not_noted(error):
+    assert Outcome(values=(value("a", 0.0, error), value("b", 1e-2, 1e-9))).remarks == ()

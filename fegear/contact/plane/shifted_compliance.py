@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.fourier import FourierSeries, effective_error, fourier_series
+from fegear.contact.fourier import EFFECTIVE_HARMONICS, FourierSeries, effective_error, fourier_series
 from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.independent_errors import independent_errors
@@ -167,7 +167,27 @@ def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement
         # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
         for series in (again.series, bent):
             amplitude += 2.0 * np.abs(series.coefficients - te.series.coefficients)[1:]
+    amplitude = _no_less_than_beside(amplitude)
+    effective = max(effective, _of_effective(te.series.amplitude, amplitude))
     return TransmissionErrorShift(mean, peak_to_peak, effective, amplitude, stiffness)
+
+
+def _no_less_than_beside(error: Array) -> Array:
+    """Errors of harmonics, shape (N,), none below the root mean square of it and those beside it.
+
+    What a change of the flank's ends adds to one harmonic may cancel, and does not in the next, whose phases differ.
+    """
+    square = np.pad(error**2, 1, mode="edge")
+    return np.maximum(error, np.sqrt((square[:-2] + square[1:-1] + square[2:]) / 3.0))
+
+
+def _of_effective(amplitude: Array, error: Array) -> float:
+    """Error of A_e by those of its amplitudes, as if each had its own: their changes may cancel in it by chance."""
+    a, off = amplitude[:EFFECTIVE_HARMONICS], error[:EFFECTIVE_HARMONICS]
+    size = float(np.sqrt(np.sum(a**2)))
+    slope = a / size if size > 0.0 else np.zeros_like(a)
+    slope[:1] += 1.0
+    return float(np.sqrt(np.sum((slope * off) ** 2)))
 
 
 def _series(te: TransmissionError, values: Array) -> FourierSeries:

@@ -24,9 +24,11 @@ _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
 #: Neighbours err by the width of the pressures above all, which both orders share: this times what half the width
 #: changes, and a part of what elements one order lower do.
 _WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
-#: Root stress of the lower order lags behind the more, the shorter the edges: the part is this over the number of edges
-#: along the fillet, and no more than all of it; no less than the other, for both orders have the edges' own curves.
-_STRESS_SHARE, _LEAST_STRESS_SHARE = 5.0, 0.2
+#: Root stress of the lower order lags behind the more, the shorter the edges: the part is the square of this over the
+#: number of edges that the fillet would have if all were as long as along most of it (those that are graded toward its
+#: ends tell nothing of where stress is largest), and no more than all of it; no less than the other, for both orders
+#: have the edges' own curves.
+_STRESS_EDGES, _LEAST_STRESS_SHARE = 5.0, 0.2
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
@@ -152,17 +154,23 @@ class Estimate:
         return self._stresses[k]
 
     def _stress_estimate(self, k: int, side: Side, value: Array, difference: Array) -> Array:
-        usual = {
-            at: _root_mean_square((off / _stress_scale(largest))[:_SAMPLES])
-            for at, (largest, off) in self._stress_at_samples(k).items()
-        }
+        share = self._stress_share
+        known = self._stress_at_samples(k)
+        if k:
+            # Stress of a neighbour passes through zero along the flank and on one of its fillets nearly vanishes; its
+            # error does neither, and is no share of it.
+            return np.asarray(share * np.maximum(difference, _USUAL * _root_mean_square(known[side][1][:_SAMPLES])))
         # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
-        least = _USUAL * max(usual.values())
-        edges = self.fine.fillets["tension"].arc.size / self.fine.flank.order
-        share = np.clip(_STRESS_SHARE / edges, _LEAST_STRESS_SHARE, 1.0)
-        # Stress of a neighbour passes through zero along the flank, and its error does not.
-        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(self._stress_at_samples(k)[side][0]).max())
+        usual = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in known.values()]
+        least = _USUAL * max(usual)
+        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(known[side][0]).max())
         return np.asarray(share * np.maximum(difference, least * size))
+
+    @cached_property
+    def _stress_share(self) -> float:
+        edges = np.diff(self.fine.fillets["tension"].arc[:: self.fine.flank.order])
+        alike = edges.sum() ** 2 / (edges**2).sum()
+        return float(np.clip((_STRESS_EDGES / alike) ** 2, _LEAST_STRESS_SHARE, 1.0))
 
     @cached_property
     def _neighbours(self) -> dict[int, Array]:

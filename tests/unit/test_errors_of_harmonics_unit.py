@@ -1,0 +1,29 @@
+"""Errors of harmonics and of the effective error hold where what single shifts change cancels by chance."""
+
+import numpy as np
+import pytest
+
+from fegear.contact.plane.shifted_compliance import _no_less_than_beside, _of_effective
+
+
+def test_a_harmonic_in_which_changes_cancel_has_an_error_as_those_beside_it():
+    error = np.array([4.0, 3.0, 0.0, 3.0, 2.0])
+    found = _no_less_than_beside(error)
+    assert (found >= error).all()
+    assert found[2] == pytest.approx(np.sqrt(6.0))
+    assert _no_less_than_beside(np.full(5, 2.0)) == pytest.approx(np.full(5, 2.0))
+    assert (_no_less_than_beside(np.zeros(5)) == 0.0).all()
+
+
+def test_the_effective_errors_error_is_that_of_its_harmonics():
+    """A_e = A_1 + sqrt(sum A_i^2): by differences, each harmonic off by itself."""
+    rng = np.random.default_rng(5)
+    a, off = rng.uniform(0.1, 1.0, 20), 1e-6 * rng.uniform(0.1, 1.0, 20)
+
+    def effective(amplitude):
+        return amplitude[0] + np.sqrt(np.sum(amplitude[:12] ** 2))
+
+    changes = [effective(a + off * (np.arange(20) == i)) - effective(a) for i in range(20)]
+    assert _of_effective(a, off) == pytest.approx(np.sqrt(np.sum(np.square(changes))), rel=1e-5)
+    assert a[0] > 0.0  # amplitudes are left as they are
+    assert _of_effective(np.zeros(20), off) == pytest.approx(off[0])
