@@ -1,4 +1,4 @@
-"""Errors of root stress from two orders of elements: what counts of the fillet's edges, and of its neighbours' stress."""
+"""Errors of root stress from two orders of elements: what counts of the fillet's edges and its neighbours' stress."""
 
 from types import SimpleNamespace
 
