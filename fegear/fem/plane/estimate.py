@@ -158,8 +158,9 @@ class Estimate:
         known = self._stress_at_samples(k)
         if k:
             # Stress of a neighbour passes through zero along the flank and on one of its fillets nearly vanishes; its
-            # error does neither, and is no share of it.
-            return np.asarray(share * np.maximum(difference, _USUAL * _root_mean_square(known[side][1][:_SAMPLES])))
+            # error does neither, is no share of it, and on neither fillet less than on the other.
+            usual = max(_root_mean_square(off[:_SAMPLES]) for _, off in known.values())
+            return np.asarray(share * np.maximum(difference, _USUAL * usual))
         # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
         usual = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in known.values()]
         least = _USUAL * max(usual)
