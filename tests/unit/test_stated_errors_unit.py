@@ -49,11 +49,11 @@ def test_a_value_that_is_zero_has_no_share_of_itself():
 
 
 def test_a_large_error_of_a_value_beside_larger_ones_is_noted():
-    swing, dead, small = value("swing", 1e-6, 0.3e-6), value("dead", 0.0, 5e-6), value("small", 1e-9, 1e-9)
+    swing, dead, small = value("swing", 1e-6, 0.3e-6), value("dead", 1e-15, 5e-6), value("small", 1e-9, 1e-9)
     (said,) = Outcome(values=(value("mean", 20e-6, 1e-9), swing, dead, small), sharper_by="increase n").remarks
     assert said == (
-        "swing (1 +- 0.3 um), dead (0 +- 5 um), small (0.001 +- 0.001 um): estimated error above 20 % of the value; "
-        "increase n."
+        "swing (1 +- 0.3 um), dead (1e-09 +- 5 um), small (0.001 +- 0.001 um): estimated error above 20 % of the "
+        "value; increase n."
     )
 
 
