@@ -26,9 +26,9 @@ _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
 _WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
 #: Root stress of the lower order lags behind the more, the shorter the edges: the part is the square of this over the
 #: number of edges that the fillet would have if all were as long as along most of it (those that are graded toward its
-#: ends tell nothing of where stress is largest), and no more than all of it; no less than the other, for both orders
+#: ends say nothing about where stress is largest), and no more than all of it; no less than the other, for both orders
 #: have the edges' own curves.
-_STRESS_EDGES, _LEAST_STRESS_SHARE = 5.0, 0.2
+_STRESS_EDGES, _LEAST_STRESS_SHARE = 5.5, 0.24
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
