@@ -162,8 +162,8 @@ class Estimate:
             usual = max(_root_mean_square(off[:_SAMPLES]) for _, off in known.values())
             return np.asarray(share * np.maximum(difference, _USUAL * usual))
         # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
-        usual = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in known.values()]
-        least = _USUAL * max(usual)
+        shares = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in known.values()]
+        least = _USUAL * max(shares)
         size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(known[side][0]).max())
         return np.asarray(share * np.maximum(difference, least * size))
 
