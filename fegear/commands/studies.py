@@ -82,6 +82,8 @@ def cost(
         leave(INTERRUPTED, 130)
     for line in cheapest_lines(results):
         voice.say(line)
+    if results.solvers:
+        voice.say(results.solvers)
     for remark in results.remarks:
         voice.note(remark)
     voice.say(f"Wrote {target} in {results.seconds:.1f} s.")

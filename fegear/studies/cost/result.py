@@ -173,6 +173,8 @@ class CostResults:
     seconds : float
         On the wall, for all.
     remarks : tuple of str
+    solvers : str
+        How many times as long `accuracy.solver = "scikit-fem"` takes, as measured; empty without plane gears.
     """
 
     asked: Asked
@@ -184,6 +186,7 @@ class CostResults:
     planned: int
     seconds: float
     remarks: tuple[str, ...] = field(default=())
+    solvers: str = ""
 
     @property
     def quantities(self) -> tuple[Quantity, ...]:

@@ -94,17 +94,17 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
         if not found.rows:
             raise
         found.remarks.append("Interrupted: only the configurations that were finished are here.")
-    found.remarks.extend([*asked.notes, *_saved_by_condensation(found.rows)])
+    found.remarks.extend(asked.notes)
     whole = {one: len(answered(asked, one)) for one in ladder.configurations}
     done = [one for one, count in whole.items() if sum(row.configuration == one for row in found.rows) == count]
     return CostResults(
         asked, ladder.reference, {name: largest(v) for name, v in found.reference.items()}, found.floors,
         tuple(row for row in found.rows if row.configuration in done), tuple(found.knobs), len(ladder.configurations),
-        time.perf_counter() - started, tuple(found.remarks),
+        time.perf_counter() - started, tuple(found.remarks), _saved_by_condensation(found.rows),
     )  # fmt: skip
 
 
-def _saved_by_condensation(rows: Sequence[Measured]) -> list[str]:
+def _saved_by_condensation(rows: Sequence[Measured]) -> str:
     """What the nested dissection saves beside scikit-fem's own assembly and elimination, on one mesh."""
     for row in rows:
         if row.configuration.family != "scikit-fem" or row.configuration.settings is None:
@@ -114,12 +114,11 @@ def _saved_by_condensation(rows: Sequence[Measured]) -> list[str]:
         same = next((one for one in like if one.configuration.settings == settings), None)
         if same is not None and same.seconds.cpu > 0.0:
             plain, dissected = row.seconds.cpu, same.seconds.cpu
-            remark = (
+            return (
                 f"accuracy.solver: the sector assembled, condensed and solved by scikit-fem takes {plain:.2g} s of CPU "
                 f"time, {plain / dissected:.1f} times the {dissected:.2g} s of nested dissection, for the same numbers."
             )
-            return [remark]
-    return []
+    return ""
 
 
 def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]:
