@@ -20,7 +20,7 @@ from shortened import chosen
 from snippets import execute, runs
 
 from fegear.base.code_version import code_version
-from fegear.base.plain import content_key
+from fegear.base.keys import content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -28,7 +28,7 @@ from mkdocs.structure.files import File
 from shortened import chosen
 
 from fegear.base.code_version import code_version
-from fegear.base.plain import content_key
+from fegear.base.keys import content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

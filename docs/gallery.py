@@ -23,7 +23,7 @@ from pathspec.gitignore import GitIgnoreSpec
 from shortened import chosen
 
 from fegear.base.code_version import code_version
-from fegear.base.plain import content_key
+from fegear.base.keys import content_key
 from fegear.engine.citation import bibliography
 
 if TYPE_CHECKING:

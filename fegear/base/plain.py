@@ -1,4 +1,4 @@
-"""Plain data (numbers, texts, arrays, lists, dictionaries) as bytes and back, and keys made from content.
+"""Plain data (numbers, texts, arrays, lists, dictionaries) as bytes and back.
 
 Everything that fegear keeps on disk between runs goes through here. No code is ever loaded from such a file, floats
 come back bit for bit, and equal data give equal bytes.
@@ -7,12 +7,9 @@ come back bit for bit, and equal data give equal bytes.
 from __future__ import annotations
 
 import copyreg
-import dataclasses
-import hashlib
 import json
 import struct
 from collections.abc import Mapping
-from pathlib import Path
 from types import MappingProxyType
 from typing import TypeVar
 
@@ -22,7 +19,8 @@ from numpy.typing import NDArray
 K = TypeVar("K")
 V = TypeVar("V")
 _ALIGN = 64
-_KINDS = "biufcSU"
+#: Kinds of arrays that are plain data.
+PLAIN_KINDS = "biufcSU"
 
 
 def read_only(content: Mapping[K, V]) -> MappingProxyType[K, V]:
@@ -57,7 +55,7 @@ def pack(value: object) -> bytes:
         if item is None or isinstance(item, (bool, int, float, str)):
             return item
         if isinstance(item, np.ndarray):
-            if item.dtype.kind not in _KINDS:
+            if item.dtype.kind not in PLAIN_KINDS:
                 raise TypeError(f"an array of {item.dtype} is not plain data")
             columns_first = item.flags.f_contiguous and not item.flags.c_contiguous
             order, data = ("F", item.tobytes("F")) if columns_first else ("C", item.tobytes("C"))
@@ -114,51 +112,3 @@ def _array(content: tuple[str, list[int], str, int], body: memoryview) -> NDArra
     count = int(np.prod(shape, dtype=np.int64))
     flat = np.frombuffer(body, kind, count, start) if count else np.empty(0, kind)
     return flat.reshape(shape, order="F" if order == "F" else "C").copy(order="K")
-
-
-def content_key(*parts: object) -> str:
-    """Key of data by what they are: equal content, equal key, in every process and on every machine.
-
-    Parameters
-    ----------
-    *parts : plain data, paths (by name), parts of a case, dataclasses of these
-        Dataclasses count by the fields that count in comparisons.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits (SHA-256).
-
-    Raises
-    ------
-    TypeError
-        If a part is none of these.
-    """
-    text = json.dumps([_canonical(part) for part in parts], separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _canonical(item: object) -> object:
-    if isinstance(item, np.generic):
-        item = item.item()
-    if item is None or isinstance(item, (bool, int, str)):
-        return item
-    if isinstance(item, float):
-        return ["float", (item + 0.0).hex()]  # so that -0.0 is 0.0
-    if isinstance(item, np.ndarray) and item.dtype.kind in _KINDS:
-        digest = hashlib.sha256(np.ascontiguousarray(item).tobytes()).hexdigest()
-        return ["array", item.dtype.str, list(item.shape), digest]
-    if isinstance(item, Path):
-        return ["path", item.as_posix()]
-    if isinstance(item, (list, tuple)):
-        return ["list", *(_canonical(x) for x in item)]
-    if isinstance(item, Mapping):
-        pairs = [[_canonical(k), _canonical(v)] for k, v in item.items()]
-        return ["map", *sorted(pairs, key=lambda pair: json.dumps(pair[0]))]
-    dump = getattr(item, "model_dump", None)
-    if callable(dump):  # a part of a case
-        return ["part", type(item).__qualname__, _canonical(dump())]
-    if dataclasses.is_dataclass(item) and not isinstance(item, type):
-        fields = [[f.name, _canonical(getattr(item, f.name))] for f in dataclasses.fields(item) if f.compare]
-        return ["data", type(item).__qualname__, *fields]
-    raise TypeError(f"{type(item).__name__} has no content key")

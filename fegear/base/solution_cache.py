@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Generic, Literal, NamedTuple, TypeVar
+from typing import Any, Generic, Literal, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
+from fegear.base.keys import Key, call_key, remember_made
 from fegear.base.store import Store, cache_folder
 
+P = ParamSpec("P")
 T = TypeVar("T")
 Source = Literal["computed", "memory", "disk"]
 _SECONDS = struct.Struct("<d")
@@ -103,44 +105,79 @@ class SolutionCache:
         self._sizes: dict[int, int] = {}
         self._total = 0
 
-    def __contains__(self, key: str) -> bool:
+    def __contains__(self, key: str | Key) -> bool:
         """Whether a solution is in memory."""
-        return key in self._memory
+        return (key.digest if isinstance(key, Key) else key) in self._memory
 
     def begin(self) -> None:
         """Start a stretch of work: what is computed in it and used again in it does not count as recalled."""
         self._new.clear()
 
-    def solve(self, key: str, compute: Callable[[], T], codec: Codec[T] | None = None) -> Solution[T]:
-        """Recall a solution, or compute and keep it.
+    def call(self, function: Callable[P, T], *args: P.args, **named: P.kwargs) -> Solution[T]:
+        """Recall what a function answers to arguments, or ask it and keep the answer in memory.
 
         Parameters
         ----------
-        key : str
-            See `fegear.base.plain.content_key`; it holds all that the solution depends on.
+        function : callable
+            Of a module; see `fegear.base.keys.call_key`. What it raises is raised on and nothing is kept.
+        *args, **named
+            All that the answer depends on; see `fegear.base.keys.content_key`.
+        """
+        return self._called(None, function, args, named)
+
+    def call_kept(self, codec: Codec[T], function: Callable[P, T], *args: P.args, **named: P.kwargs) -> Solution[T]:
+        """The same as `call`; where the cache has a disk, answers are kept there too, bound to the code that made them.
+
+        Parameters
+        ----------
+        codec : Codec
+            How answers become bytes.
+        function, *args, **named
+            See `call`.
+        """
+        return self._called(codec, function, args, named)
+
+    def _called(
+        self, codec: Codec[T] | None, function: Callable[..., T], args: tuple[Any, ...], named: dict[str, Any]
+    ) -> Solution[T]:
+        key = call_key(function, args, named)
+        found = self.solve(key, partial(function, *args, **named), codec)
+        if found.source != "memory":
+            remember_made(found.value, key)
+        return found
+
+    def solve(self, key: str | Key, compute: Callable[[], T], codec: Codec[T] | None = None) -> Solution[T]:
+        """Recall a solution, or compute and keep it; what `call` does once it has the key.
+
+        Parameters
+        ----------
+        key : str or Key
+            A text is the same in memory and on disk.
         compute : callable
             What it raises is raised on and nothing is kept.
         codec : Codec, optional
             With it, and where the cache has a disk, solutions are kept there too.
         """
         account = self.shapes if codec else self.solutions
-        self._used.add(key)
-        if key in self._memory:
-            self._memory.move_to_end(key)
-            value, seconds = self._memory[key]
-            if key not in self._new:
+        name = key.digest if isinstance(key, Key) else key
+        self._used.add(name)
+        if name in self._memory:
+            self._memory.move_to_end(name)
+            value, seconds = self._memory[name]
+            if name not in self._new:
                 account.add(0, 1, 0, seconds)
             return Solution(value, seconds, "memory")
         if codec is None or self.disk is None:
             found = self._timed(compute)
         else:
+            on_disk = key.lasting if isinstance(key, Key) else key
             # Of several processes that want the same solution one computes it and the others wait.
-            with self.disk.claim(key):
-                found = _read(self.disk.read(key), codec) or self._computed_and_written(key, compute, codec)
+            with self.disk.claim(on_disk):
+                found = _read(self.disk.read(on_disk), codec) or self._computed_and_written(on_disk, compute, codec)
         account.add(*((1, 0, 0, 0.0) if found.source == "computed" else (0, 1, 1, found.seconds)))
-        self._forget(key)
-        self._memory[key] = found.value, found.seconds
-        self._new.add(key)
+        self._forget(name)
+        self._memory[name] = found.value, found.seconds
+        self._new.add(name)
         while len(self._memory) > self._most:
             self._forget(next(iter(self._memory)))
         return found

@@ -7,17 +7,12 @@ the same bytes whether it was just computed, came over the network or from the s
 from __future__ import annotations
 
 import contextlib
-import functools
-import hashlib
-import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from fegear.base.code_version import code_version
 from fegear.base.errors import InputError
-from fegear.base.plain import content_key
+from fegear.base.keys import function_name, lasting_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
@@ -54,21 +49,6 @@ class Executor:
             )  # fmt: skip
 
 
-def _name(function: Callable[..., object]) -> object:
-    if isinstance(function, functools.partial):
-        return [_name(function.func), function.args, function.keywords]
-    name = f"{function.__module__}.{function.__qualname__}"
-    if "<" in name:
-        raise ValueError(f"map_points needs a function of a module, not {name}, so that other processes can import it")
-    return name if name.startswith("fegear.") else [name, _foreign_code(function.__module__)]
-
-
-def _foreign_code(module: str) -> str:
-    """Digest of the file of a module that is not fegear's, whose version says nothing of it."""
-    place = Path(getattr(sys.modules.get(module), "__file__", None) or "")
-    return hashlib.sha256(place.read_bytes()).hexdigest() if place.suffix == ".py" and place.is_file() else ""
-
-
 def map_points(
     function: Callable[..., object],
     points: Sequence[Any],
@@ -87,7 +67,7 @@ def map_points(
         Of a module (or `functools.partial` of one); takes a point and returns plain data (see
         `fegear.base.plain.pack`).
     points : sequence
-        Anything that can be pickled; with a cache on disk, what `fegear.base.plain.content_key` takes, unless `key` is
+        Anything that can be pickled; with a cache on disk, what `fegear.base.keys.content_key` takes, unless `key` is
         given.
     executor : Executor, optional
         By default processes on this machine.
@@ -116,7 +96,7 @@ def map_points(
         If something is missing that every point needs.
     """
     executor, cache = executor or Executor(), SolutionCache() if cache is None else cache
-    name, store = _name(function), cache.disk
+    name, store = function_name(function), cache.disk
     keys = _keys(name, points, key, store)
     payloads: dict[str, bytes] = {}
     for one in set(keys) if store else ():
@@ -146,7 +126,7 @@ def count_kept(
 ) -> int:
     """How many of the points `map_points` would find on the cache's disk."""
     store = cache.disk
-    return sum(one in store for one in _keys(_name(function), points, key, store)) if store else 0
+    return sum(one in store for one in _keys(function_name(function), points, key, store)) if store else 0
 
 
 def _silent(fraction: float) -> None:
@@ -156,8 +136,7 @@ def _silent(fraction: float) -> None:
 def _keys(name: object, points: Sequence[Any], key: Callable[[Any], object] | None, store: Store | None) -> list[str]:
     if store is None:
         return [str(i) for i in range(len(points))]
-    version = code_version()
-    return [content_key(version, name, key(point) if key else point) for point in points]
+    return [lasting_key([name, key(point) if key else point]) for point in points]
 
 
 def _keep(store: Store, key: str, payload: bytes) -> None:

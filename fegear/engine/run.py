@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 
 from fegear.base.arrays import Alike
 from fegear.base.errors import InputError
-from fegear.base.plain import content_key
+from fegear.base.keys import Key
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import Scene
 from fegear.engine.executor import Executor
@@ -207,7 +207,7 @@ class _Finished(NamedTuple):
 
     data: object
     outcome: Outcome
-    key: str
+    key: Key
     timing: Timing
 
 
@@ -230,9 +230,9 @@ def _refuse_one_name_for_two(done: Mapping[Task, _Finished], task: Task) -> None
                 )  # fmt: skip
 
 
-def key_without_needs(scene: Scene, step: Step) -> str:
+def key_without_needs(scene: Scene, step: Step) -> Key:
     """Under which the result of a task that needs no other is known."""
-    return content_key(step.stage.name, step.inputs(scene), [])
+    return Key.of(step.stage.name, step.inputs(scene), [])
 
 
 def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work) -> _Finished:
@@ -242,7 +242,7 @@ def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work
     stage, subject = step.stage, step.task.subject
     inputs, needs = step.inputs(scene), stage.needs(scene, subject)
     # All that the result reads of the case, and the keys of what it builds on: nothing else changes its numbers.
-    key = content_key(stage.name, inputs, [done[need].key for need in needs])
+    key = Key.of(stage.name, inputs, [done[need].key for need in needs])
     upstream = {need: done[need].data for need in needs}
     solution = work.cache.solve(key, partial(stage.compute, inputs, upstream, work))
     outcome = stage.present(solution.value, inputs)

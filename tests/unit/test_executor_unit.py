@@ -252,7 +252,7 @@ def refused_for_want_of(error: type[Exception], point: float) -> float:
 
 @pytest.mark.parametrize(("error", "kept"), [(OSError, 0), (MemoryError, 0), (Exception, 0), (ValueError, 1)])
 def test_failures_of_the_circumstances_are_not_kept(tmp_path, monkeypatch, error, kept):
-    monkeypatch.setattr("fegear.engine.executor._name", lambda function: "refused")
+    monkeypatch.setattr("fegear.engine.executor.function_name", lambda function: "refused")
     cache, function = SolutionCache(Store(tmp_path)), functools.partial(refused_for_want_of, error)
     (failure,) = map_points(function, [2.0], Executor(here=True), cache)
     assert failure == Failure("FegearError", "could not solve 2.0: the disk is full")

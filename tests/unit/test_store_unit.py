@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from fegear.base import store as store_module
-from fegear.base.plain import content_key, pack, unpack
+from fegear.base.keys import content_key
+from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Account, Codec, SolutionCache, cache_on_disk
 from fegear.base.store import Store, cache_folder
 from fegear.fem.plane.settings import MeshSettings

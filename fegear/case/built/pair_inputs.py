@@ -6,13 +6,13 @@ Where a pair's root stress comes from, as ``pair.NAME.root_stress`` says.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.effects import PLANE_EFFECTS, EffectsPart
+from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
 from fegear.case.part import at
 from fegear.case.relief import ReliefPart, ReliefTablePart
 from fegear.case.text_file import read_columns
@@ -115,6 +115,15 @@ class PairInputs:
     def gears(self) -> tuple[str, str]:
         """Names of driver and driven."""
         return self.flanks[0].gear, self.flanks[1].gear
+
+    @property
+    def at_rest(self) -> PairInputs:
+        """The same of perfect flanks and teeth, under no load but the one that a contact's width is taken at."""
+        driver, driven = (Flanks(None, (), np.empty(0), gear) for gear in self.gears)
+        return replace(
+            self, effects=self.effects.only(AT_REST), flanks=(driver, driven), loads=(), assumed=(),
+            nominal=self.nominal if self.effects.hertz == "linear" else math.nan,
+        )  # fmt: skip
 
 
 def gear_name(scene: Scene, pair: str, member: Member) -> str:

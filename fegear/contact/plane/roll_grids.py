@@ -16,6 +16,7 @@ from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.geometry.pair import GearPair
 
 #: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.
 _KEPT = 8
@@ -64,6 +65,11 @@ class _Shared(NamedTuple):
     found: SharedLoad
 
 
+def _same(one: object, other: object) -> bool:
+    """Whether two fields are the same: gears, texts and numbers by what they are, solutions by being one object."""
+    return one is other or (isinstance(one, (GearPair, str, float)) and one == other)
+
+
 class RollGrids:
     """Contacts and compliances of one pair, of which the grids asked for last are kept.
 
@@ -84,15 +90,14 @@ class RollGrids:
 
     def serves(self, compliance: PairCompliance, corner_contact: bool) -> bool:
         """Whether another pair's grids are these: only its load may be another."""
-        own = self._compliance
-        if corner_contact != self._corner_contact:
-            return False
-        return own is compliance or (
-            compliance.driver is own.driver
-            and compliance.driven is own.driven
-            and (compliance.coupling, compliance.hertz) == (own.coupling, own.hertz)
-            and (compliance.hertz != "linear" or compliance.nominal_load == own.nominal_load)
-            and compliance.pair == own.pair
+        own, of_load = self._compliance, frozenset({"nominal_load"} if compliance.hertz != "linear" else ())
+        return corner_contact == self._corner_contact and (
+            own is compliance
+            or all(
+                _same(getattr(own, one.name), getattr(compliance, one.name))
+                for one in fields(compliance)
+                if one.name not in of_load
+            )
         )
 
     @cached_property

@@ -18,8 +18,7 @@ from typing import Literal
 import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
-from fegear.base.code_version import code_version
-from fegear.base.plain import content_key, pack, unpack
+from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
 from fegear.contact.wide.complementarity import Averages, averages
@@ -143,16 +142,10 @@ def flank_compliance(
     mean = _line_means(lines, b)
     # Apart, so that a changed load has little to find anew, and changed gaps nothing.
     known = cache or SolutionCache()
-    made_of = code_version("contact"), pair, lines, [gears[member].identity for member in MEMBERS]
-    matrix = known.solve(content_key("own", *made_of), lambda: _own(pair, gears, lines), _PLAIN).value
-    matrix = (
-        matrix
-        + known.solve(
-            content_key("widened", *made_of, b, mean), lambda: _widened(pair, gears, lines, b, mean), _PLAIN
-        ).value
-    )
+    own = known.call_kept(_PLAIN, _own, pair, gears, lines).value
+    matrix = own + known.call_kept(_PLAIN, _widened, pair, gears, lines, b, mean).value
     if coupling:
-        matrix += known.solve(content_key("beside", *made_of), lambda: _beside(pair, gears, lines), _PLAIN).value
+        matrix += known.call_kept(_PLAIN, _beside, pair, gears, lines).value
     index = np.arange(lines.x.shape[1])
     matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
     log_slope = sum(gears[m].contact_slope / pair.gear(m).material.young_modulus for m in MEMBERS)

@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
-from fegear.base.code_version import code_version
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
-from fegear.base.plain import content_key
 from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.fourier import Panels
@@ -335,24 +333,8 @@ class FlankPair:
             if self.gears[member].reach == 0 and self.coupling:
                 raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
         if roll is not None:  # places between these, which the next gaps move
-            return self._compliance(load, roll)
-        key = content_key(
-            code_version("contact"), "compliance", self.pair, self.coupling, self.hertz, self.panel,
-            self.positions, self.most_gap, load, [self.gears[member].identity for member in MEMBERS],
-        )  # fmt: skip
-        return self.cache.solve(key, lambda: self._compliance(load, None)).value
-
-    def _compliance(self, load: float, roll: Array | None) -> FlankCompliance:
-        if roll is None:
-            points = self.points
-            roll, weight = points.x, points.weights / points.period
-        else:
-            weight = np.empty(0)
-        lines = contact_lines(self.pair, roll, self.panel * self.pair.driver.module, weight, self.most_gap)
-        with one_thread(with_scipy=False):
-            return flank_compliance(
-                self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz, cache=self.cache
-            )
+            return _compliance(self, load, roll)
+        return self.cache.call(_compliance, self, load).value
 
     def solve(
         self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None
@@ -387,3 +369,16 @@ class FlankPair:
             known, contact = solve_spots(known, apart, loads, self.progress)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)
+
+
+def _compliance(flanks: FlankPair, load: float, roll: Array | None = None) -> FlankCompliance:
+    if roll is None:
+        points = flanks.points
+        roll, weight = points.x, points.weights / points.period
+    else:
+        weight = np.empty(0)
+    lines = contact_lines(flanks.pair, roll, flanks.panel * flanks.pair.driver.module, weight, flanks.most_gap)
+    with one_thread(with_scipy=False):
+        return flank_compliance(
+            flanks.pair, flanks.gears, lines, load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache
+        )

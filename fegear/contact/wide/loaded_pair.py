@@ -12,8 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, first_of_largest
-from fegear.base.code_version import code_version
-from fegear.base.plain import content_key
 from fegear.contact.loaded_teeth import (
     ErrorOverPitch,
     FlankLoad,
@@ -222,18 +220,7 @@ class LoadedWidePair:
     def _mean_without_gaps(self) -> float:
         """Mean transmission error of perfect flanks at the nominal load [m], recalled where it is known."""
         known, flanks = self.over.found.known, self.flanks
-        key = content_key(
-            code_version("contact"), "without gaps", self.pair, known.lines, self.nominal,
-            [flanks.gears[member].identity for member in MEMBERS], flanks.coupling, flanks.hertz, known.spot,
-            known.line_half_width, known.fixed_half_width,
-        )  # fmt: skip
-        count = known.lines.roll.size
-
-        def solve() -> float:
-            perfect = replace(flanks, positions=count).solve([self.nominal], None, known)
-            return float(perfect.mean_transmission_error[0])
-
-        return flanks.cache.solve(key, solve).value
+        return flanks.cache.call(mean_without_gaps, flanks, known, self.nominal).value
 
     def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:  # noqa: ARG002
         """See `LoadedTeeth`; the nominal load alone is what was solved before."""
@@ -269,12 +256,8 @@ class LoadedWidePair:
         """Recalled where it is known: neither gaps nor loads change it."""
         from fegear.contact.wide.root_stress import rooted_lines
 
-        key = content_key(
-            code_version("contact"), "rooted", self.pair, member, found.lines, solution.identity,
-            self.coupling,
-        )  # fmt: skip
-        return self.flanks.cache.solve(
-            key, lambda: rooted_lines(self.pair, member, found.lines, solution, coupling=self.coupling)
+        return self.flanks.cache.call(
+            rooted_lines, self.pair, member, found.lines, solution, coupling=self.coupling
         ).value
 
     def _largest_over_face(
@@ -324,6 +307,12 @@ class LoadedWidePair:
         x = _between(pair.x_start, pair.x_end, along)
         z = _between(found.lines.low, found.lines.high, across)
         return FlankLoad(x, z, np.maximum(found.spread(x, z, _without_edges(found, self.at)), 0.0), True, 0.0)
+
+
+def mean_without_gaps(flanks: FlankPair, known: FlankCompliance, load: float) -> float:
+    """Mean transmission error of perfect flanks under one load [m], whose compliances are known."""
+    perfect = replace(flanks, positions=known.lines.roll.size).solve([load], None, known)
+    return float(perfect.mean_transmission_error[0])
 
 
 def _without_edges(found: LoadedFlanks, case: int) -> Array:

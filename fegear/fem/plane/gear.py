@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -46,8 +46,8 @@ class GearInfluence:
     fine: Influence
     estimate: Estimate | None
     settings: MeshSettings
-    seconds: Mapping[str, float]
-    rounds: tuple[Round, ...] = ()
+    seconds: Mapping[str, float] = field(compare=False)
+    rounds: tuple[Round, ...] = field(default=(), compare=False)
 
     @property
     def coarse(self) -> Influence | None:

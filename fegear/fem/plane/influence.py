@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -112,7 +112,7 @@ class Influence:
     corner_distance: float
     reach: int
     unknowns: int
-    seconds: Mapping[str, float]
+    seconds: Mapping[str, float] = field(compare=False)
     lower: Influence | None = None
     pins: PinForces | None = None
     support: RimSupport | None = None

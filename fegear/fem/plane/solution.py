@@ -1,9 +1,6 @@
 """Solving a gear: with given settings, or as cheaply as a tolerance allows.
 
-Solved tooth shapes by their content, in memory and on disk: where a cache is handed down, none is solved twice.
-
-The key holds all that the solution depends on, the source of this
-package and of the geometry among it, so that a changed program never reads what an older one made.
+Solved tooth shapes are kept in memory and on disk: where a cache is handed down, none is solved twice.
 """
 
 from __future__ import annotations
@@ -12,10 +9,9 @@ import dataclasses
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
-from fegear.base.code_version import code_version
-from fegear.base.plain import content_key, pack, unpack
+from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
 from fegear.fem.plane.estimate import Estimate
@@ -76,23 +72,34 @@ def influence_of_shape(
     support: RimSupport | None = None,
 ) -> Influence:
     """Solve one gear shape (lengths in modules), or recall it from a cache."""
+    known = SolutionCache() if cache is None else cache
+    return known.call_kept(
+        shape_codec(tooth), _solve_shape, tooth, bore_radius, poisson_ratio, plane, settings, reach, two_orders, support
+    ).value
 
-    def solve() -> Influence:
-        return solve_influence(
-            tooth,
-            mesh_sector(tooth, bore_radius, settings),
-            poisson_ratio,
-            plane,
-            order=settings.order,
-            reach=reach,
-            corner_distance=settings.corner_distance,
-            two_orders=two_orders,
-            support=support,
-            solver=settings.solver,
-        )
 
-    what = (bore_radius, poisson_ratio, plane, settings, reach, two_orders, support)
-    return solve() if cache is None else known_or_solved(cache, tooth, what, solve)
+def _solve_shape(
+    tooth: InvoluteTooth,
+    bore_radius: float,
+    poisson_ratio: float,
+    plane: Plane,
+    settings: MeshSettings,
+    reach: int,
+    two_orders: bool,
+    support: RimSupport | None,
+) -> Influence:
+    return solve_influence(
+        tooth,
+        mesh_sector(tooth, bore_radius, settings),
+        poisson_ratio,
+        plane,
+        order=settings.order,
+        reach=reach,
+        corner_distance=settings.corner_distance,
+        two_orders=two_orders,
+        support=support,
+        solver=settings.solver,
+    )
 
 
 def solve_gear(
@@ -138,6 +145,7 @@ def solve_gear(
     """
     started = time.perf_counter()
     settings = settings or MeshSettings()
+    cache = SolutionCache() if cache is None else cache
     say = progress or (lambda _stage: None)
     shape = _shape(gear)
     coarser = coarser or settings.refined(LEVEL_RATIO)
@@ -145,15 +153,10 @@ def solve_gear(
         say("influence functions on the given mesh")
         _, _, nu, plane = shape
         order, closest = settings.order, settings.corner_distance
-        fine = known_or_solved(
-            cache or SolutionCache(),
-            gear.tooth,
-            (mesh, nu, plane, order, reach, closest, estimate_error, settings.solver),
-            lambda: solve_influence(
-                gear.tooth, mesh, nu, plane,
-                order=order, reach=reach, corner_distance=closest, two_orders=estimate_error, solver=settings.solver,
-            ),
-        )  # fmt: skip
+        fine = cache.call_kept(
+            shape_codec(gear.tooth), solve_influence, gear.tooth, mesh, nu, plane,
+            order=order, reach=reach, corner_distance=closest, two_orders=estimate_error, solver=settings.solver,
+        ).value  # fmt: skip
     else:
         check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
@@ -163,8 +166,11 @@ def solve_gear(
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
     estimate: Estimate | None = None
     if fine.lower is not None:
-        lower = replace(fine.lower, corner_distance=coarser.corner_distance)
-        estimate = Estimate(fine, lower, settings.patch_half_width, coarser.patch_half_width)
+        # Recalled with the errors over the flank that have been looked for: neither size nor steel changes them, and
+        # a sweep over loads asks again and again.
+        estimate = cache.call(
+            _estimate, fine, coarser.corner_distance, settings.patch_half_width, coarser.patch_half_width
+        ).value
     return GearInfluence(gear, fine, estimate, replace(settings), seconds)
 
 
@@ -205,9 +211,6 @@ def solve_to_tolerance(
         started = time.perf_counter()
         settings = replace(settings_at(level), solver=solver)
         known = solve_gear(gear, settings, reach=reach, progress=progress, cache=cache)
-        known = _with_errors(
-            known, content_key("largest errors", _shape(gear), gear.support_in_modules, settings, reach), cache
-        )
         errors = known.largest_errors()
         rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
         if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
@@ -216,49 +219,31 @@ def solve_to_tolerance(
         level += 1.0
 
 
-def _with_errors(known: GearInfluence, key: str, cache: SolutionCache) -> GearInfluence:
-    """Look for errors over the flank, which neither size nor steel change: a sweep over loads asks again and again."""
-
-    def looked_for() -> Estimate | None:
-        known.largest_errors()
-        return known.estimate
-
-    return replace(known, estimate=cache.solve(key, looked_for).value)
+def _estimate(fine: Influence, corner_distance: float, patch: float, coarse_patch: float) -> Estimate:
+    """By the elements one order lower of the same mesh, at the corner distance and pressures of a coarser one."""
+    assert fine.lower is not None  # noqa: S101
+    return Estimate(fine, replace(fine.lower, corner_distance=corner_distance), patch, coarse_patch)
 
 
 def _shape(gear: Gear) -> tuple[InvoluteTooth, float, float, Plane]:
     return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
 
 
-Shape = TypeVar("Shape")
-
-
 #: What a solved plane shape consists of.
 _PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain, PinForces, RimSupport)
 
 
-def known_or_solved(
-    cache: SolutionCache,
-    tooth: InvoluteTooth,
-    what: tuple[object, ...],
-    solve: Callable[[], Shape],
-    kinds: tuple[type, ...] = _PLANE,
-) -> Shape:
-    """Recall the solution of a shape, or solve and keep it.
+def shape_codec(tooth: InvoluteTooth, kinds: tuple[type, ...] = _PLANE) -> Codec[Any]:
+    """How the solution of a shape is kept on disk.
 
     Parameters
     ----------
-    cache : SolutionCache
     tooth : InvoluteTooth
-    what : tuple
-        All else that the solution depends on; anything that `content_key` takes.
-    solve : callable
+        Which whoever asks for the solution knows: it is not kept.
     kinds : tuple of type
         Dataclasses that the solution consists of, its own first; it has the tooth as a field.
     """
-    key = content_key(code_version("fem"), tooth, what)
-    codec: Codec[Shape] = Codec(lambda found: pack(_plain(found, kinds)), lambda data: _restored(data, tooth, kinds))
-    return cache.solve(key, solve, codec).value
+    return Codec(lambda found: pack(_plain(found, kinds)), lambda data: _restored(data, tooth, kinds))
 
 
 def _plain(item: object, kinds: tuple[type, ...]) -> object:

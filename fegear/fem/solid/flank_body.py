@@ -63,10 +63,6 @@ class FlankBody(Protocol):
     def contact_slope(self) -> float:
         """What of a line load's approach goes with -2 ln b, b its half-width."""
 
-    @property
-    def identity(self) -> tuple[object, ...]:
-        """All that its answers depend on, for keys of what is made of them."""
-
     def band_half_width(self, radius: ArrayLike) -> Array:
         """Half-width of a pressure that the section resolves, shape (P,) [modules]."""
 
@@ -88,18 +84,6 @@ class TwistedFlank:
     compliance: Mapping[int, Array]
     reach: int
     settings: SolidSettings
-
-    @property
-    def identity(self) -> tuple[object, ...]:
-        """All that its answers depend on, for keys of what is made of them.
-
-        What a bore, a held part of it or a mesh of one's own change shows in the answer to the first node's force.
-        """
-        kind, flank = type(self).__name__, self.flank
-        return (
-            kind, self.tooth, self.tau, self.width, self.poisson_ratio, self.reach, self.settings, flank.arc,
-            self.compliance[0][0],
-        )  # fmt: skip
 
     def band_half_width(self, radius: ArrayLike) -> Array:
         """Half-width of a pressure that the section resolves, shape (P,) [modules]: less beside the flank's ends."""

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask
-from fegear.base.code_version import code_version
-from fegear.base.plain import content_key, pack, read_only, unpack
+from fegear.base.plain import pack, read_only, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart
 from fegear.fem.plane.settings import MeshSettings
-from fegear.fem.plane.solution import known_or_solved
+from fegear.fem.plane.solution import shape_codec
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands, hats
 from fegear.fem.solid.contact import line_compliance
@@ -85,8 +84,8 @@ class SolidInfluence:
 
     fine: SolidSolution
     coarse: SolidSolution | None
-    seconds: Mapping[str, float]
-    known_error: Mapping[str, float] | None = None
+    seconds: Mapping[str, float] = field(compare=False)
+    known_error: Mapping[str, float] | None = field(default=None, compare=False)
 
     @property
     def settings(self) -> SolidSettings:
@@ -204,9 +203,11 @@ class SolidInfluence:
 
     def with_error(self, cache: SolutionCache) -> SolidInfluence:
         """The same with `error` found now, or recalled: all contact lines of the flank are solved for it."""
-        both = [one.identity for one in (self.fine, self.coarse) if one is not None]
-        key = content_key(code_version("fem"), "errors of a solid gear", both)
-        return replace(self, known_error=cache.solve(key, lambda: dict(self.error), _ERRORS).value)
+        return replace(self, known_error=cache.call_kept(_ERRORS, _error, self.fine, self.coarse).value)
+
+
+def _error(fine: SolidSolution, coarse: SolidSolution | None) -> dict[str, float]:
+    return dict(SolidInfluence(fine, coarse, {}).error)
 
 
 def contact_line(solution: SolidSolution, radius: ArrayLike, stations: ArrayLike) -> Bands:
@@ -290,7 +291,7 @@ def solid_influence(
     settings = settings or SolidSettings()
     check_bore(section, bore_radius)
     check_solid(section, tau, width, poisson_ratio, settings, held, reach)
-    by = solver_of(settings)
+    by, known = solver_of(settings), SolutionCache() if cache is None else cache
     estimate_error &= settings.source == "solid"  # that of slices is known from the gears that they were compared with
 
     tooth = None if body is None or body.holes is None else body.holes.tooth
@@ -298,25 +299,11 @@ def solid_influence(
         body = replace(body, holes=replace(body.holes, tooth=None))
 
     def solve(chosen: SolidSettings) -> SolidSolution:
-        found = known_or_solved(
-            cache or SolutionCache(),
-            section,
-            ("solid", tau, width, poisson_ratio, bore_radius, chosen, reach, held, body, support),
-            lambda: by(
-                section,
-                tau,
-                width,
-                poisson_ratio,
-                bore_radius,
-                chosen,
-                reach=reach,
-                held=held,
-                body=body,
-                support=support,
-            ),
-            _KINDS,
-        )
-        return found if tooth is None else as_if_all_were(found, tooth)
+        found: SolidSolution = known.call_kept(
+            shape_codec(section, _KINDS), by, section, tau, width, poisson_ratio, bore_radius, chosen,
+            reach=reach, held=held, body=body, support=support,
+        ).value  # fmt: skip
+        return found if tooth is None else known.call(as_if_all_were, found, tooth).value
 
     fine = solve(settings)
     coarse = solve(settings.coarser(width)) if estimate_error else None

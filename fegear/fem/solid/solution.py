@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -101,7 +101,7 @@ class SolidSolution(TwistedFlank):
     reach: int
     unknowns: int
     settings: SolidSettings
-    seconds: Mapping[str, float]
+    seconds: Mapping[str, float] = field(compare=False)
     support: RimSupport | None = None
     uneven: UnevenTeeth | None = None
     holed: HoledTeeth | None = None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
-from fegear.base.plain import content_key
 from fegear.case.built.loaded_pair import (
     build_loaded_pair,
     check_pair,
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.citation import Citation
+    from fegear.fem.plane.gear import GearInfluence
 
 
 @dataclass(frozen=True)
@@ -85,16 +85,12 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _at_rest(asked: PairInputs, upstream: Upstream, work: Work) -> Engagement:
     """The pair without modifications, the same one for every load and relief: it keeps what they do not change."""
-    influences = {gear: solution_of(upstream, gear) for gear in asked.gears} if upstream else {}
-    effects = asked.effects
-    key = content_key(
-        "pair at rest", asked.pair, asked.compliance, asked.table,
-        effects.only(AT_REST),
-        asked.nominal if effects.hertz == "linear" else None,
-        # what is kept holds them, so that no other can have their identity
-        [id(influences[gear]) for gear in asked.gears] if influences else [],
-    )  # fmt: skip
-    return work.cache.solve(key, lambda: engagement_at_rest(asked, compliance_sources(asked, influences))).value
+    solved = tuple(solution_of(upstream, gear) for gear in asked.gears) if upstream else ()
+    return work.cache.call(_engagement, asked.at_rest, solved).value
+
+
+def _engagement(asked: PairInputs, solved: tuple[GearInfluence, ...]) -> Engagement:
+    return engagement_at_rest(asked, compliance_sources(asked, dict(zip(asked.gears, solved, strict=False))))
 
 
 def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> LoadedPair:
