@@ -172,6 +172,11 @@ class DynamicsPart(Part):
     tolerance: Annotated[Number, Field(gt=1e-12, le=1e-2)] = Field(
         default=5e-4, description="Relative error of the dynamic factor where the motion repeats."
     )
+    method: Literal["shooting", "averaging"] = Field(
+        default="shooting",
+        description="How a steady motion is found: Newton's method on the state after a period, or the iteration of "
+        "TM-100180, from the average of a period's start and end. Default: shooting.",
+    )
     friction: Table[FrictionPart] = Field(
         default_factory=FrictionPart, description="Friction between the teeth; it needs the effect `friction`."
     )

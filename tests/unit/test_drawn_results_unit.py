@@ -176,8 +176,9 @@ def test_a_dynamic_factor_over_too_few_speeds_says_where_peaks_may_be_missed():
     none = np.zeros(5)
     whole = np.ones(5, dtype=int)
     chart = SpeedChart(
-        speeds, factor, factor, none, none, whole, ("periodic",) * 5, factor, factor, whole, none, factor
-    )
+        speeds, factor, factor, none, none, whole, ("periodic",) * 5, factor, factor, whole, none, factor,
+        0 * whole, none, none,
+    )  # fmt: skip
     figure = _factor_figure("I", chart, "motor")
     assert "From 1909.86 to 2864.79 rpm it changes by 43%" in figure.caption
     assert all(item.marked for item in figure.panels[0].items)

@@ -306,11 +306,10 @@ def _loaded(data: GearTrain) -> list[int]:
 
 def _changes(asked: MotionInputs, data: GearTrain, state: SteadyState) -> list[FactorChange]:
     """One motion with one effect more, at the speed of a state without it."""
-    from fegear.case.built.train import motion_model
-    from fegear.dynamics.motion.steady_state import steady_state
+    from fegear.case.built.train import motion_model, steady_motion
 
     speed = state.model.speed
-    other = steady_state(motion_model(asked, data, speed), start=asked.start, tolerance=max(asked.tolerance, 1e-3))
+    other = steady_motion(asked, motion_model(asked, data, speed), asked.start, max(asked.tolerance, 1e-3))
     found = []
     for m in _loaded(data):
         before, after = (float(s.tooth_force[m] / data.forces[m]) for s in (state, other))

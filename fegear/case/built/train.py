@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -197,6 +197,8 @@ class MotionInputs:
     tolerance : float
     speeds : ndarray
         Of the body that speeds refer to [rad/s].
+    method : {"shooting", "averaging"}
+        How a steady motion is found.
     """
 
     contact_loss: bool
@@ -207,6 +209,7 @@ class MotionInputs:
     direction: Direction
     tolerance: float
     speeds: Array
+    method: Literal["shooting", "averaging"] = "shooting"
 
     @property
     def in_time(self) -> bool:
@@ -225,7 +228,7 @@ def motion_inputs(scene: Scene) -> MotionInputs:
     taken_by = part.loss_taken_by or (scene.case.train and scene.case.train.balance) or ""
     return MotionInputs(
         effects.contact_loss, effects.parametric, effects.friction, part.friction, taken_by, part.direction,
-        part.tolerance, part.speed_values,
+        part.tolerance, part.speed_values, part.method,
     )  # fmt: skip
 
 
@@ -274,12 +277,26 @@ def motion_model(asked: MotionInputs, data: GearTrain, speed: float) -> MotionMo
     return MotionModel(data.train, excitations_at(asked, data, speed), speed, asked.taken_by)
 
 
+def steady_motion(
+    asked: MotionInputs,
+    model: MotionModel,
+    start: str | tuple[Array, Array],
+    tolerance: float,
+    progress: Callable[[float], None] | None = None,
+) -> SteadyState:
+    """Find the steady motion at one speed in the way that the case asks for."""
+    from fegear.dynamics.motion.averaging import averaged_motion
+    from fegear.dynamics.motion.steady_state import steady_state
+
+    find = averaged_motion if asked.method == "averaging" else steady_state
+    return find(model, start=start, tolerance=tolerance, progress=progress)
+
+
 def steady_motions(
     asked: MotionInputs, data: GearTrain, progress: Callable[[float], None] | None = None
 ) -> tuple[SteadyState, ...]:
     """Steady motions over the speeds, in increasing order of speed, each started as the direction says."""
     from fegear.dynamics.motion.effort import of_one
-    from fegear.dynamics.motion.steady_state import steady_state
 
     speeds = asked.speeds / data.speed_ratio
     order = speeds[::-1] if asked.direction == "down" else speeds
@@ -289,7 +306,7 @@ def steady_motions(
     for number, speed in enumerate(order):
         within = of_one(progress, number, order.size)
         model = motion_model(asked, data, float(speed)) if asked.friction else model.at_speed(float(speed))
-        state = steady_state(model, start=start, tolerance=asked.tolerance, progress=within)
+        state = steady_motion(asked, model, start, asked.tolerance, within)
         states.append(state)
         if asked.direction in ("up", "down"):
             start = (state.x, state.v)

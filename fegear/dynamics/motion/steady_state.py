@@ -58,7 +58,8 @@ class SteadyState:
     kind : str
         "periodic", "quasi-periodic", "chaotic", "long-period" (comes back, but after more than 32 periods),
         "not settled" (still changing when the effort of `motion.effort` was spent, or after 60,000 periods, a chaotic
-        motion after 12,000), or "growing" (without bound: forces are infinite).
+        motion after 12,000), or "growing" (without bound: forces are infinite); of the averaging iteration
+        (`averaging`) also "unstable".
     periods : int
         Periods of the excitation after which the motion repeats; 0 if it does not.
     multipliers : ndarray, complex
@@ -86,7 +87,11 @@ class SteadyState:
     coexisting : tuple of SteadyState
         Stable motions that repeat and exist at this speed with one that does not (those that were found, not all).
     followed : int
-        Periods of excitation that a motion which does not repeat was followed before it was measured.
+        Periods of excitation that a motion which does not repeat was followed before it was measured, or repetitions
+        of the averaging iteration (`averaging`), which leave start and end of a period apart by `residual`.
+    off : float
+        What the difference that the averaging iteration leaves may change of the largest tooth force, relative to the
+        mean mesh force.
     """
 
     model: Moving
@@ -107,6 +112,7 @@ class SteadyState:
     drift: float = 0.0
     coexisting: tuple[SteadyState, ...] = ()
     followed: int = 0
+    off: float = 0.0
 
     @property
     def multiplier(self) -> float:
@@ -193,10 +199,8 @@ def steady_state(
     RangeError
         If the tolerance is out of range, or a train without damping is at resonance.
     """
-    if not 1e-13 < tolerance <= 1e-2:
-        raise RangeError("tolerance", tolerance, "must lie between 1e-13 and 1e-2")
+    step = step_for(tolerance)
     packed = pack(model)
-    step = max(1e-3 * tolerance, 1e-14)
     x, v = starting_state(packed, start)
     if not np.any(packed.side):
         return _linear(packed, x, v, step)
@@ -207,7 +211,7 @@ def steady_state(
             if not orbit.stable:
                 x, v = leap(orbit, x, v, step)
             elif _keeps_contact(orbit, x, v, step):
-                return _periodic(orbit)
+                return periodic_motion(orbit)
     run, periods = 0, max(settling, 1)
     states = np.zeros((0, int(moving(packed).sum())))
     ahead: Orbit | None = None
@@ -215,17 +219,35 @@ def steady_state(
         window = follow(packed, x, v, periods, step, peaks=False)
         x, v = window.x, window.v
         if not _bounded(packed, window):
-            return _growing(packed, growth(packed, *starting_state(packed, "static"), step))
+            return growing_motion(packed, step)
         states = np.concatenate([states, window.states])
         # one seen from the window before: one look shows whether the motion is near it now
         if ahead is not None and periods % ahead.periods == 0 and leads_to(ahead, x, v, step):
-            return _periodic(ahead)
+            return periodic_motion(ahead)
         found, ahead, (x, v) = _settled(packed, states, x, v, step)
         if found is not None:
             return found
         run += periods
         periods = run
     return _wander(packed, x, v, step, measured, effort_for(packed, passage.steps * packed.size, progress))
+
+
+def step_for(tolerance: float) -> float:
+    """Tolerance of a step of the integration [static deflections], well below that of the largest forces.
+
+    Raises
+    ------
+    RangeError
+        If the tolerance is out of range.
+    """
+    if not 1e-13 < tolerance <= 1e-2:
+        raise RangeError("tolerance", tolerance, "must lie between 1e-13 and 1e-2")
+    return max(1e-3 * tolerance, 1e-14)
+
+
+def growing_motion(packed: Packed, step: float) -> SteadyState:
+    """No steady motion, and by how much a motion that starts at rest under the load grows."""
+    return _growing(packed, growth(packed, *starting_state(packed, "static"), step))
 
 
 def _linear(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
@@ -235,7 +257,7 @@ def _linear(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
         return _growing(packed, growth(packed, x, v, step))
     if not orbit.stable:
         return _growing(packed, math.log(orbit.radius), orbit.multipliers)
-    return _periodic(orbit)
+    return periodic_motion(orbit)
 
 
 def _keeps_contact(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
@@ -291,7 +313,7 @@ def _settled(
         if not orbit.stable:
             unstable.append(orbit)
         elif leads_to(orbit, x, v, step):
-            return _periodic(orbit), orbit, (x, v)
+            return periodic_motion(orbit), orbit, (x, v)
         else:
             ahead = orbit
     for orbit in unstable:
@@ -301,7 +323,8 @@ def _settled(
     return None, ahead, (x, v)
 
 
-def _periodic(orbit: Orbit) -> SteadyState:
+def periodic_motion(orbit: Orbit) -> SteadyState:
+    """The motion that closes on an orbit, over the fewest periods after which it does."""
     packed, x, v = orbit.packed, orbit.x, orbit.v
     use = moving(packed)
     for divisor in range(1, orbit.periods):
@@ -378,7 +401,7 @@ def _measured(
     """A motion that does not repeat, from what a sample of its periods did."""
     parts = sample.passages
     per_period = np.array([p.tooth_force for p in parts])
-    beside = tuple(_periodic(orbit) for orbit in stable_motions(packed.model, step))
+    beside = tuple(periodic_motion(orbit) for orbit in stable_motions(packed.model, step))
     return SteadyState(
         packed.model, kind, 0, np.zeros(0, dtype=complex), rate,
         np.max([p.largest for p in parts], axis=0), np.min([p.smallest for p in parts], axis=0),

@@ -53,6 +53,11 @@ class SpeedChart:
     lower: Array = shown(
         "", "dynamic factor that every measured period reaches: the smallest of theirs", name="smallest_factor"
     )
+    repetitions: NDArray[np.int64] = shown("", "periods of the averaging iteration until it settled or was given up")
+    difference: Array = shown(
+        "", "difference of start and end of the last period, relative to the static deflection", name="left_difference"
+    )
+    off: Array = shown("", "what the averaging iteration leaves in the dynamic factor")
 
     @classmethod
     def of(cls, speeds: Array, states: Sequence[SteadyState], mesh: int, mean: float) -> SpeedChart:
@@ -70,6 +75,9 @@ class SpeedChart:
             np.array([s.measured for s in states], dtype=np.int64),
             np.array([s.multiplier for s in states]),
             np.array([s.quantile(0.0)[mesh] for s in states]) / mean,
+            np.array([s.followed for s in states], dtype=np.int64),
+            np.array([s.residual for s in states]),
+            np.array([s.off for s in states]),
         )
 
     @classmethod
@@ -79,7 +87,7 @@ class SpeedChart:
         kinds = ("periodic",) * speeds.size
         return cls(
             speeds, dynamic_factor, mesh_force_factor, none, none.copy(), one, kinds, dynamic_factor, dynamic_factor,
-            one.copy(), np.full(speeds.size, np.nan), dynamic_factor,
+            one.copy(), np.full(speeds.size, np.nan), dynamic_factor, 0 * one, none.copy(), none.copy(),
         )  # fmt: skip
 
     @property

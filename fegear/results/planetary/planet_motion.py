@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
+from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.case.built.planetary import pin_errors, planetary_part, set_inputs
 from fegear.engine.citation import Citation, citing
@@ -146,13 +147,22 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     return Forecast({"speeds": speeds, "planets": part.count}, _SECONDS * part.count * speeds)
 
 
+def _check(scene: Scene, name: str) -> None:
+    check_vibration(scene, name)
+    if scene.case.dynamics.method != "shooting":
+        raise InputError(
+            "dynamics.method", scene.case.dynamics.method, "is for gear trains, not for planetary gear sets",
+            'set dynamics.method = "shooting"',
+        )  # fmt: skip
+
+
 PLANET_MOTION = Stage(
     subjects=planetary_sets,
     needs=lambda _scene, name: (Task("planet-modes", name),),
     inputs=_inputs,
     compute=_compute,
     present=_present,
-    check=check_vibration,
+    check=_check,
     cites=citing(
         Citation("lin-parker", "model of the set"),
         Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24"),

@@ -121,6 +121,7 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
             # the other end of what is seen of a motion that is still on its way
             *(columns_of(chart, "lower") if "not settled" in chart.kinds else ()),
             *(columns_of(chart, "multiplier") if found.in_time else ()),
+            *(columns_of(chart, "repetitions", "difference") if found.in_time and motion.method == "averaging" else ()),
             *((error_column(factor, _errors(chart, motion.tolerance)),) if found.in_time else ()),
         ),
         f"Dynamic factor of mesh {name} over speed",
@@ -129,7 +130,7 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
     worst, where = held.worst
     at = int(np.argmax(held.dynamic_factor))
     repeats = held.kinds[at] == "periodic"
-    error = motion.tolerance * worst if found.in_time and repeats else None
+    error = float(_errors(held, motion.tolerance)[at]) if found.in_time and repeats else None
     sample = "" if repeats else f"; largest of {held.measured[at]} periods of a motion that does not repeat"
     over = "over the speeds" if held is chart else "over the speeds at which the motion does not grow without bound"
     values = [
@@ -145,7 +146,8 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
             "dynamic factor is that of the mesh force."
         )
-    figures = (_figure(name, held, found.speed_of),) if held.speeds.size > 1 else ()
+    averaged = found.in_time and motion.method == "averaging"
+    figures = (_figure(name, held, found.speed_of, averaged=averaged),) if held.speeds.size > 1 else ()
     return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
 
 
@@ -153,11 +155,16 @@ def _errors(chart: SpeedChart, tolerance: float) -> Array:
     """Estimated errors of dynamic factors of motions in time; not a number where a motion does not repeat."""
     # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
     repeats = np.array([kind == "periodic" for kind in chart.kinds])
-    return np.where(repeats, tolerance * chart.dynamic_factor, np.nan)
+    return np.where(repeats, np.maximum(tolerance * chart.dynamic_factor, chart.off), np.nan)
 
 
 def _check(scene: Scene, name: str) -> None:
     needs_speeds(scene, name)
+    if scene.case.dynamics.method == "averaging" and not motion_inputs(scene).in_time:
+        raise InputError(
+            "dynamics.method", "averaging", "has a meaning only for motions in time",
+            "set effects.contact_loss, effects.parametric or effects.friction, or remove the key",
+        )  # fmt: skip
     mesh, pair = train_part(scene).mesh[name], scene.pairs[train_part(scene).pair_of(name)]
     given, own = backlash_of(mesh, pair), pair.free_backlash  # said once more, that of the gears changes nothing
     said_nothing = math.isinf(given) or math.isclose(given, own, rel_tol=1e-6, abs_tol=1e-12)
@@ -168,8 +175,8 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
-    """Dynamic factor over speed, and the share of the time without contact where there is any."""
+def _figure(name: str, chart: SpeedChart, speed_of: str, *, averaged: bool = False) -> Figure:
+    """Dynamic factor over speed, the share of the time without contact where there is any, and how averaging went."""
     speed, x = drawn(chart, "speeds"), Axis(f"speed of {speed_of}", "rpm")
     items: list[Curve | Points] = [
         Curve(speed, chart.dynamic_factor, "tooth force", "own force", markers=True, width=1.2),
@@ -186,6 +193,9 @@ def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     lost = tuple(Curve(speed, 100.0 * share, label, role) for label, role, share in shares if share.any())
     if lost:
         panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
+    if averaged:
+        counts = Curve(speed, chart.repetitions.astype(float), "averaging", "ink", markers=True, width=0.9)
+        panels.append(Panel(x, Axis("periods until it settled", zero=True), (counts,), height=0.5))
     worst, where = chart.worst
     smaller = np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
     changed = np.abs(np.diff(chart.dynamic_factor))

@@ -102,8 +102,10 @@ def _present(found: SweepData, asked: SweepInputs) -> Outcome:
     remarks += _without_backlash(data) if motion.contact_loss else []
     if asked.idle_friction:
         remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
-    remarks += _unsteady(data, states)
+    averaged = motion.method == "averaging"
+    remarks += averaging_remarks(data, states) if averaged else _unsteady(data, states)
     settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
+    settings |= {"method": motion.method} if averaged else {}
     return Outcome(found, settings=settings, remarks=tuple(remarks))
 
 
@@ -126,17 +128,9 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     """What is to be known of motions that do not repeat, of those that grow, and of stable ones with them."""
 
     def rpm(state: SteadyState) -> str:
-        return f"{state.model.speed * data.speed_ratio * _RPM:.6g} rpm"
+        return speed_text(data, state)
 
-    said = []
-    growing = [state for state in states if state.kind == "growing"]
-    if growing:
-        where = ", ".join(f"{rpm(s)} ({s.multiplier:.4g} times a period)" for s in growing)
-        said.append(
-            f"The motion grows without bound at {len(growing)} of {len(states)} speeds: {where}. There the varying "
-            "mesh stiffness feeds it more than damping takes. Give the meshes damping, let teeth part "
-            "(effects.contact_loss), or avoid these speeds."
-        )
+    said = _growing(data, states)
     odd = [state for state in states if state.kind not in ("periodic", "growing", "not settled")]
     moving = [state for state in states if state.kind == "not settled"]
     if odd:
@@ -162,6 +156,56 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
         said.append(
             f"In addition to a motion that does not repeat a stable one exists, to which another start leads: "
             f"{'; '.join(beside)}."
+        )
+    return said
+
+
+def speed_text(data: GearTrain, state: SteadyState) -> str:
+    """Speed of a motion, of the body that speeds refer to."""
+    return f"{state.model.speed * data.speed_ratio * _RPM:.6g} rpm"
+
+
+def _growing(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
+    """Speeds at which the motion grows without bound."""
+    growing = [state for state in states if state.kind == "growing"]
+    if not growing:
+        return []
+    where = ", ".join(f"{speed_text(data, s)} ({s.multiplier:.4g} times a period)" for s in growing)
+    said = (
+        f"The motion grows without bound at {len(growing)} of {len(states)} speeds: {where}. There the varying "
+        "mesh stiffness feeds it more than damping takes. Give the meshes damping, let teeth part "
+        "(effects.contact_loss), or avoid these speeds."
+    )
+    return [said]
+
+
+def averaging_remarks(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
+    """Where the averaging iteration settled, where it did not, and where no machine would stay in what it found."""
+    said = _growing(data, states)
+    given_up = [state for state in states if state.kind == "not settled"]
+    unstable = [state for state in states if state.kind == "unstable"]
+    settled = [state for state in states if state.kind in ("periodic", "unstable")]
+    if settled:
+        counts = [state.followed for state in settled]
+        said.append(
+            f"The averaging iteration settled at {len(settled)} of {len(states)} speeds, after {min(counts):,} to "
+            f"{max(counts):,} periods."
+        )
+    if given_up:
+        seen = "; ".join(
+            f"{speed_text(data, s)} after {s.followed:,} periods, start and end of the last one {s.residual:.2g} of "
+            f"the static deflection apart, {_range(data, s)} in the last {s.measured}"
+            for s in given_up
+        )
+        said.append(
+            f"The averaging iteration did not settle at {len(given_up)} of {len(states)} speeds: {seen}. Set "
+            'dynamics.method = "shooting" there.'
+        )
+    if unstable:
+        where = ", ".join(f"{speed_text(data, s)} ({s.multiplier:.6g} times a period)" for s in unstable)
+        said.append(
+            f"The averaging iteration came to a motion that small disturbances grow away from at {len(unstable)} of "
+            f'{len(states)} speeds: {where}. No machine stays in it; set dynamics.method = "shooting" there.'
         )
     return said
 

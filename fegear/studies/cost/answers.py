@@ -18,7 +18,7 @@ from fegear.base.errors import RangeError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.loaded_pair import build_loaded_pair, engagement_at_rest
 from fegear.case.built.pair_inputs import gear_name, pair_compliance_table, pair_inputs
-from fegear.case.built.train import motion_inputs, motion_model, train_inputs
+from fegear.case.built.train import motion_inputs, motion_model, steady_motion, train_inputs
 from fegear.contact.plane.closed_form_compliance import ConstantCompliance, closed_form_compliance
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.table_compliance import table_sources
@@ -98,12 +98,9 @@ def largest_force(asked: Asked, data: GearTrain, harmonics: int = FORCE_HARMONIC
 
 def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> float:
     """Dynamic factor of steady motion at a speed of the reference body [rad/s], started from static deflection."""
-    from fegear.dynamics.motion.steady_state import steady_state
-
     i = data.train.mesh_index(asked.mesh)
-    state = steady_state(
-        motion_model(motion_inputs(asked.scene), data, speed / data.speed_ratio), start="static", tolerance=tolerance
-    )
+    motion = motion_inputs(asked.scene)
+    state = steady_motion(motion, motion_model(motion, data, speed / data.speed_ratio), "static", tolerance)
     if state.kind == "growing":
         raise RangeError(
             "dynamics.speed", f"{speed:.9g} rad/s", f"lets the motion grow {state.multiplier:.4g} times a period",
