@@ -133,7 +133,8 @@ def solved_case(g, tolerance):
 
 
 @pytest.mark.parametrize(
-    ("tolerance", "gears"), [(1e-2, 4), *(pytest.param(one, 10, marks=pytest.mark.long) for one in (1e-2, 1e-3, 1e-4))]
+    ("tolerance", "gears"),
+    [(1e-1, 4), (1e-2, 4), *(pytest.param(one, 10, marks=pytest.mark.long) for one in (1e-1, 1e-2, 1e-3, 1e-4))],
 )
 def test_gears_meet_the_tolerance_of_their_case(tolerance, gears):
     assert len(FOR_TOLERANCES) == 10

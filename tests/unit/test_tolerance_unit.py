@@ -40,15 +40,15 @@ def run(folder, **accuracy):
 
 
 def test_finer_tolerances_start_with_finer_settings_of_one_ladder():
-    edges = [settings_for(10.0**-k).root_edge_length for k in (2, 3, 4, 5, 6)]
+    edges = [settings_for(10.0**-k).root_edge_length for k in (1, 2, 3, 4, 5, 6)]
     assert all(coarser > finer for coarser, finer in itertools.pairwise(edges))
-    assert settings_for(0.1) == settings_for(1e-2)  # a coarser mesh saves next to nothing
+    assert settings_for(0.5) == settings_for(0.1)  # a coarser mesh saves next to nothing
     assert settings_for(1e-4) == settings_at(0) == MeshSettings()
     assert settings_for(1e-3).root_edge_length == pytest.approx(2.0 * MeshSettings().root_edge_length)
     # Between the tolerances that were learned the finer half of a level is taken, and beyond them the last.
     assert [level_for(t) for t in (0.5, 0.05, 1e-2, 3e-3, 2e-3, 1e-3, 5e-4, 1e-4)] == [
-        -4.5,
-        -4.5,
+        -6,
+        -5.5,
         -4.5,
         -3,
         -2.5,
@@ -127,7 +127,7 @@ def test_given_settings_are_obeyed_without_refinement(tmp_path):
     assert any("root tension reaches" in remark for remark in outcome.remarks)
 
 
-@pytest.mark.parametrize(("tolerance", "most"), [(1e-2, 6000), (1e-3, 9000), (1e-4, 20_000)])
+@pytest.mark.parametrize(("tolerance", "most"), [(1e-1, 3000), (1e-2, 6000), (1e-3, 9000), (1e-4, 20_000)])
 def test_a_tolerance_is_met_by_few_unknowns_and_its_estimate_by_fewer(tolerance, most):
     """It took 4,200, 14,000 and 49,000 unknowns of meshes that spent them elsewhere than at the fillets."""
     known = solve_to_tolerance(steel_gear(), tolerance)

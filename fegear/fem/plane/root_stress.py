@@ -69,22 +69,20 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str, sid
     FilletStrain
     """
     p = elasticity.order
-    xi = 0.5 + 0.5 * np.polynomial.legendre.leggauss(p)[0]
+    xi, weights, slopes = _along_edges(p)
     _, dofs = toward_tip(mesh, elasticity.edge_dofs[name], name, side)
     _, places = toward_tip(mesh, elasticity.edge_places[name], name, side)
     curve = places.shape[1] - 1
     position = np.einsum("cin,iq->cnq", places, lagrange(curve, xi))
     tangent = np.einsum("cin,iq->cnq", places, lagrange_slope(curve, xi))
     speed = np.hypot(*tangent)
-    slopes = lagrange_slope(p, xi)  # (p + 1, q)
     n, q = speed.shape
     values = np.einsum("cnq,iq,nq->nqci", tangent, slopes, 1.0 / speed**2)  # t . du/ds
     unknowns, where = np.unique(dofs, return_inverse=True)
     where = where.reshape(dofs.shape)
     strain = np.zeros((n, q, unknowns.size))
-    for e in range(n):
-        strain[e][:, where[:, :, e]] += values[e]
-    weights = 0.5 * np.polynomial.legendre.leggauss(p)[1]
+    # An edge's unknowns differ from each other: each place is met once.
+    strain[np.arange(n)[:, None, None, None], np.arange(q)[:, None, None], where.transpose(2, 0, 1)[:, None]] += values
     length = (speed * weights).sum(axis=1)
     arc = np.concatenate([[0.0], np.cumsum(length)])[:-1, None] + length[:, None] * xi
     flat = position.reshape(2, -1)
@@ -98,6 +96,14 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str, sid
         tangent_angle=lean,
         length=float(length.sum()),
     )
+
+
+@functools.lru_cache
+def _along_edges(order: int) -> tuple[Array, Array, Array]:
+    """Gauss points of an edge [0, 1], their weights, and slopes of its functions there, shape (order + 1, points)."""
+    places, weights = np.polynomial.legendre.leggauss(order)
+    xi = 0.5 + 0.5 * places
+    return xi, 0.5 * weights, lagrange_slope(order, xi)
 
 
 #: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,

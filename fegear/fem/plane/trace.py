@@ -202,6 +202,11 @@ class LoadedFlank:
             normal[:, off] = self.side * np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
         return normal
 
+    @cached_property
+    def _normal_at_end(self) -> Array:
+        """Unit vector into the material at the end of the flank's last edge, shape (2, 1)."""
+        return self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
+
     def patches(self, arc: Array, half_width: Array) -> Array:
         """Unknown-wise loads of unit contacts centred at `arc` with half-widths a.
 
@@ -249,8 +254,7 @@ class LoadedFlank:
         # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
         beyond = edge >= self.after_flank_edge
         if beyond.any():
-            last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
-            inward[:, beyond] = last[:, :, None]
+            inward[:, beyond] = self._normal_at_end[:, :, None]
         shape = lagrange(self.order, xi) * weight
         return edge, position, shape * inward[:, None]
 
