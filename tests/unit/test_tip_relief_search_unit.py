@@ -12,7 +12,17 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.charts import bench
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.ground import refine
-from fegear.design.tip_relief.search import _apart, _are_like, _driver_deeper, _followed, _mirrored, scan, search
+from fegear.design.tip_relief.search import (
+    _RULE,
+    _apart,
+    _are_like,
+    _driver_deeper,
+    _even,
+    _followed,
+    _mirrored,
+    scan,
+    search,
+)
 from fegear.design.tip_relief.trials import Trials, Tried
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -365,3 +375,21 @@ def test_the_course_of_searches(teeth, power, metric, count, solved, least, best
     assert (found.band_error >= known * (1.0 - 1e-12)).all()
     if metric == "peak_to_peak":
         np.testing.assert_allclose(found.band_error, np.tile(known, (2, 1)), rtol=1e-9)
+
+
+def test_even_positions_stand_on_both_sides_of_every_change_and_weigh_a_pitch(pair):
+    made = _even(pair, 20)
+    x, pitch, start = made.points.x, pair.pair.base_pitch, pair.pair.x_start
+    end = start + np.mod(pair.pair.path_length, pitch)
+    even = start + pitch * (np.arange(20) + 0.5) / 20
+    beside = np.array([1e-9, 0.002, 0.007, 0.0175]) * pitch
+    changes = [start + beside, start + pitch - beside, end + beside, end - beside]
+    np.testing.assert_allclose(x, np.sort(np.concatenate([even, *changes])), atol=1e-12 * pitch)
+    assert made.points.weights.sum() == pytest.approx(pitch, rel=1e-12)
+    ends = np.concatenate([[x[-1] - pitch], x, [x[0] + pitch]])
+    np.testing.assert_allclose(made.points.weights, 0.5 * (ends[2:] - ends[:-2]), rtol=1e-9)
+    np.testing.assert_allclose(made.points.breaks, [start, end, start + pitch], rtol=1e-12)
+
+
+def test_a_whole_path_more_of_relief_is_worth_a_hundredth_of_the_mean_error():
+    assert _RULE.tolist() == [1.0, -0.01, 1.0, -0.01]

@@ -22,20 +22,7 @@ DEAR = {
 }  # fmt: skip
 
 
-@pytest.mark.dear(
-    "planetary-phases",
-    "two-meshes-in-turn",
-    "calculix-planet-and-ring",
-    "calculix-ring-corner",
-    "internal-teeth-rolled",
-    "ring-compliance",
-    "planetary-contact-states",
-    "calculix-transmission-error",
-    "fillets-rolled",
-    "fmu",
-    "ring-neighbours",
-    "tooth-beam",
-)
+@pytest.mark.dear("planetary-phases", "two-meshes-in-turn", "fmu")
 @pytest.mark.parametrize(
     "row",
     [pytest.param(row, marks=[pytest.mark.long] * (row.name in DEAR)) for row in ALL],
