@@ -1,0 +1,602 @@
+"""The window's elements without a server: form, text, bar and page built in this process, pressed and read."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import tomllib
+from types import SimpleNamespace
+
+import pytest
+
+pytest.importorskip("nicegui", reason="nicegui is missing; pip install 'fegear[workbench]'")
+
+from nicegui import Client, core, ui
+from nicegui.events import GenericEventArguments, handle_event
+from nicegui.page import page as ui_page
+
+from fegear.base.errors import InputError
+from fegear.window import messages
+from fegear.window.bar import EXPORTS, Bar
+from fegear.window.bench import LEVELS, TEMPLATES, Bench
+from fegear.window.document import Desk
+from fegear.window.inputs import Inputs, stepped
+from fegear.window.messages import Messages, _moved, checked
+from fegear.window.page import Page
+
+TEXT = """title = "x"
+results = ["load-sharing"]
+[gear.a]
+teeth = 28     # z
+module = "3 mm"
+face_width = "20 mm"
+plane = "stress"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "5 kN"
+compliance = { source = "weber-banaschek" }
+[effects]
+neighbour_coupling = false
+"""
+TEETH, MODULE, PLANE = ("gear", "a", "teeth"), ("gear", "a", "module"), ("gear", "a", "plane")
+COUPLING, RESULTS, LOAD = ("effects", "neighbour_coupling"), ("results",), ("pair", "I", "load")
+
+
+@pytest.fixture(autouse=True)
+def state(tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "state"))
+
+
+@pytest.fixture
+def client(monkeypatch):
+    """A page that nobody looks at; `said` are notices on it."""
+    loop = asyncio.new_event_loop()
+    monkeypatch.setattr(core, "loop", loop)
+    asyncio.set_event_loop(loop)
+    made = Client(ui_page("/tested"), request=None)
+    made.said, made.scripts = [], []
+    monkeypatch.setattr(ui, "notify", lambda words, **_: made.said.append(words))
+    monkeypatch.setattr(made, "run_javascript", made.scripts.append)
+    with made:
+        yield made
+    made.delete()
+    loop.run_until_complete(asyncio.sleep(0))
+    asyncio.set_event_loop(None)
+    loop.close()
+
+
+@pytest.fixture
+def bench(tmp_path):
+    """What the elements see of the bench, with the number of changes that it was told."""
+    made = SimpleNamespace(desk=Desk(TEXT, "c", tmp_path), level="normal", pinned=None, changes=0, asked=[])
+
+    def changed():
+        made.changes += 1
+
+    made.changed = changed
+    made.pin = lambda: setattr(made, "pinned", True)
+    made.unpin = lambda: setattr(made, "pinned", None)
+    made.lay = lambda desk: made.asked.append(("lay", desk))
+    made.export = lambda what, target: made.asked.append((what, target))
+    return made
+
+
+def press(element, kind="click", args=None):
+    """Have an element hear of an event as the framework does."""
+    event = GenericEventArguments(sender=element, client=element.client, args=args)
+    heard = [one for one in element._event_listeners.values() if one.type == kind]
+    assert heard
+    for one in heard:
+        handle_event(one.handler, event)
+
+
+def button(client, text):
+    (found,) = [one for one in client.elements.values() if isinstance(one, ui.button) and one.text == text]
+    return found
+
+
+def typed(inputs, path, text):
+    inputs._elements[path].set_value(text)
+    press(inputs._elements[path], "keydown.enter")
+
+
+# ---- form ------------------------------------------------------------------------------------------------------------
+def test_each_key_has_a_field_of_its_kind(client, bench):
+    inputs = Inputs(bench)
+    made = {path: type(element) for path, element in inputs._elements.items()}
+    assert made[TEETH] is ui.input
+    assert made[PLANE] is ui.select
+    assert made[COUPLING] is ui.switch
+    assert made[RESULTS] is ui.select
+    values = {path: inputs._elements[path].value for path in (TEETH, MODULE, PLANE, COUPLING, RESULTS, LOAD)}
+    assert values == {
+        TEETH: "28", MODULE: "3 mm", PLANE: "stress", COUPLING: False, RESULTS: ["load-sharing"], LOAD: "5 kN",
+    }  # fmt: skip
+    teeth = inputs._elements[TEETH]
+    assert teeth.props["data-key"] == "gear.a.teeth"
+    assert teeth.props["hint"] == teeth.props["title"] == "Number of teeth, 5 to 1000. A whole number"
+    assert "hint" not in inputs._elements[COUPLING].props
+    assert "given" in teeth.classes
+    assert "absent" not in teeth.classes
+    assert "" in inputs._elements[PLANE].options
+    assert inputs._elements[PLANE].options["stress"] == "stress"
+    assert inputs._elements[RESULTS].multiple
+    assert bench.changes == 0
+
+
+def test_keys_with_their_defaults_come_when_somebody_looks(client, bench):
+    inputs = Inputs(bench)
+    path = ("gear", "a", "pressure_angle")
+    assert path not in inputs._elements
+    fold = inputs._places[path]
+    count = sum(place is fold for place in inputs._places.values())
+    assert fold.text == f"{count} more with their defaults"
+    fold.set_value(True)
+    angle = inputs._elements[path]
+    assert (angle.value, angle.props["placeholder"], angle.props["stack-label"]) == ("", "20 deg", True)
+    assert "absent" in angle.classes
+    number = len(inputs._elements)
+    fold.set_value(False)
+    fold.set_value(True)
+    assert inputs._elements[path] is angle
+    assert len(inputs._elements) == number
+    # A step begins at the default.
+    press(angle, "keydown.up.prevent", {"shiftKey": False})
+    assert angle.value == "21 deg"
+    assert tomllib.loads(bench.desk.text)["gear"]["a"]["pressure_angle"] == "21 deg"
+
+
+def test_what_is_typed_is_in_the_case_and_comments_stay(client, bench):
+    inputs = Inputs(bench)
+    typed(inputs, TEETH, "31")
+    assert "teeth = 31     # z" in bench.desk.text
+    assert bench.changes == 1
+    typed(inputs, TEETH, "31")
+    assert bench.changes == 1 or "teeth = 31" in bench.desk.text
+    inputs.hear("changed", {})
+    press(inputs._elements[TEETH], "blur")
+    assert bench.changes <= 2
+    typed(inputs, MODULE, "4 mm")
+    assert tomllib.loads(bench.desk.text)["gear"]["a"]["module"] == "4 mm"
+    inputs._elements[PLANE].set_value("")
+    assert "plane" not in tomllib.loads(bench.desk.text)["gear"]["a"]
+    inputs._elements[COUPLING].set_value(True)
+    assert tomllib.loads(bench.desk.text)["effects"]["neighbour_coupling"] is True
+    inputs._elements[RESULTS].set_value(["load-sharing", "transmission-error"])
+    assert tomllib.loads(bench.desk.text)["results"] == ["load-sharing", "transmission-error"]
+
+
+def test_arrow_keys_step_by_one_unit_of_the_last_digit_and_by_ten(client, bench):
+    inputs = Inputs(bench)
+    load = inputs._elements[LOAD]
+    for key, shift, wanted in (
+        ("up", False, "6 kN"),
+        ("down", True, "-4 kN"),
+        ("down", False, "-5 kN"),
+        ("up", True, "5 kN"),
+    ):
+        press(load, f"keydown.{key}.prevent", {"shiftKey": shift})
+        assert load.value == wanted
+        inputs.hear("changed", {})
+    assert bench.changes == 4
+    press(load, "keydown.up.prevent", "nonsense")
+    assert load.value == "6 kN"
+    assert stepped("0.30", -1) == "0.29"
+    assert stepped("2", 10) == "12"
+    assert stepped("-1.05e-3 mm", 1) == stepped("-1.05e-3 mm", 1)
+    assert stepped("gear", 1) is None
+
+
+def test_a_refusal_stands_at_its_field_and_goes_with_its_cause(client, bench):
+    inputs = Inputs(bench)
+    typed(inputs, TEETH, "2")
+    inputs.hear("changed", {})
+    teeth = inputs._elements[TEETH]
+    assert teeth.props["error"] is True
+    assert teeth.props["error-message"] == str(bench.desk.refusal)
+    assert inputs._refusal.text == ""
+    assert inputs._text_refusal.text == str(bench.desk.refusal)
+    typed(inputs, TEETH, "20")
+    inputs.hear("changed", {})
+    assert not teeth.props.get("error")
+    assert inputs._text_refusal.text == inputs._refusal.text == ""
+    # What only the computation refuses; of a table: at the nearest field, or above all where there is none.
+    inputs.hear("refused", {"sentence": "no room", "key": "gear.a.module.x"})
+    assert inputs._elements[MODULE].props["error-message"] == "no room"
+    inputs.hear("refused", {"sentence": "nowhere", "key": "pear.b"})
+    assert not inputs._elements[MODULE].props.get("error")
+    assert inputs._refusal.text == "nowhere"
+    inputs.hear("refused", {"sentence": "a switch", "key": "effects.neighbour_coupling"})
+    assert inputs._refusal.text == "a switch"
+
+
+def test_what_cannot_be_typed_is_said_and_not_taken(client, bench):
+    inputs = Inputs(bench)
+    before = bench.desk.text
+    typed(inputs, TEETH, "2" + chr(0xD800))
+    assert bench.desk.text == before
+    assert bench.changes == 0
+    assert inputs._elements[TEETH].props["error"] is True
+
+
+def test_remarks_of_results_mark_fields_and_the_folds_that_hide_them(client, bench):
+    inputs = Inputs(bench)
+    bore = ("gear", "a", "bore_radius")
+    inputs._warn({bore: "assumed", TEETH: "few"})
+    fold = inputs._places[bore]
+    assert fold.props["caption"] == "assumed or not given: bore radius"
+    assert "warned" in inputs._elements[TEETH].classes
+    assert inputs._elements[TEETH].props["hint"].startswith("few Number of teeth")
+    fold.set_value(True)
+    assert "warned" in inputs._elements[bore].classes
+    inputs._warn({})
+    assert fold.props["caption"] == ""
+    assert "warned" not in inputs._elements[TEETH].classes
+    assert "warned" not in inputs._elements[bore].classes
+
+
+def test_what_others_change_is_shown_but_not_over_what_is_being_typed(client, bench):
+    inputs = Inputs(bench)
+    inputs._elements[MODULE].set_value("3.5 m")
+    bench.desk.change(TEXT.replace("28", "44").replace("neighbour_coupling = false", "neighbour_coupling = true"))
+    inputs.hear("changed", {})
+    assert inputs._elements[TEETH].value == "44"
+    assert inputs._elements[COUPLING].value is True
+    assert inputs._elements[MODULE].value == "3.5 m"
+    assert inputs._text.value == bench.desk.text
+    bench.desk.change(bench.desk.text.replace('"3 mm"', '"5 mm"'))
+    inputs.hear("changed", {})
+    assert inputs._elements[MODULE].value == "5 mm"  # this one another has changed
+    # Another table: the form is made anew, and what is typed stays.
+    inputs._elements[LOAD].set_value("7 k")
+    bench.desk.change(bench.desk.text + '[gear.b]\nteeth = 30\nmodule = "5 mm"\nface_width = "20 mm"\n')
+    inputs.hear("changed", {})
+    assert inputs._elements["gear", "b", "teeth"].value == "30"
+    assert inputs._elements[LOAD].value == "7 k"
+
+
+def test_the_text_is_the_case_and_what_cannot_be_one_stays_in_its_field(client, bench):
+    inputs = Inputs(bench)
+    inputs._text.set_value(TEXT.replace("28", "29"))
+    assert "teeth = 29" in bench.desk.text
+    assert bench.changes == 1
+    inputs.hear("changed", {})
+    assert inputs._elements[TEETH].value == "29"
+    inputs._text.set_value(TEXT + chr(0xD800))
+    assert "teeth = 29" in bench.desk.text
+    assert inputs._text_refusal.text.startswith("Not taken, and kept in this field only: ")
+    assert inputs._refusal.text.startswith("The text is not taken: ")
+    inputs.hear("changed", {})
+    assert inputs._text.value == TEXT + chr(0xD800)
+    inputs._text.set_value(TEXT.replace("28", "29"))
+    assert inputs._text_refusal.text == inputs._refusal.text == ""
+    inputs.leave_too_long()
+    assert "it is longer than" in inputs._text_refusal.text
+
+
+def test_what_another_page_changes_waits_for_who_types_and_is_merged(client, bench, monkeypatch):
+    monkeypatch.setattr("fegear.window.inputs._PAUSE", 20)
+    inputs = Inputs(bench)
+    bench.desk.change(TEXT.replace('"5 kN"', '"6 kN"'))
+
+    async def heard():
+        inputs._begun()
+        inputs.hear("changed", {})
+        assert "5 kN" in inputs._text.value
+        await asyncio.sleep(0.02)
+        assert "5 kN" in inputs._text.value
+        inputs._text.set_value(TEXT.replace("28", "32"))
+
+    core.loop.run_until_complete(heard())
+    assert "teeth = 32" in bench.desk.text
+    assert '"6 kN"' in bench.desk.text
+    assert inputs._text.value == bench.desk.text
+    bench.desk.change(bench.desk.text.replace('"6 kN"', '"7 kN"'))
+
+    async def nothing_typed():
+        inputs._begun()
+        inputs.hear("changed", {})
+        assert "6 kN" in inputs._text.value
+        await asyncio.sleep(0.15)
+
+    core.loop.run_until_complete(nothing_typed())
+    assert "7 kN" in inputs._text.value
+
+
+def test_a_table_is_added_at_the_end(client, bench):
+    inputs = Inputs(bench)
+    (choice,) = [one for one in client.elements.values() if isinstance(one, ui.select) and "accuracy" in one.options]
+    assert "effects" not in choice.options
+    assert choice.options["accuracy"].startswith("accuracy: ")
+    choice.set_value("accuracy")
+    assert bench.desk.text == f"{TEXT.rstrip()}\n\n[accuracy]\n"
+    assert bench.changes == 1
+    inputs.hear("changed", {})
+    assert any(path[:1] == ("accuracy",) for path in (*inputs._places, *inputs._elements))
+
+
+# ---- bar -------------------------------------------------------------------------------------------------------------
+def test_the_bar_says_what_the_case_is_called_and_whether_it_is_saved(client, bench, tmp_path):
+    bar = Bar(bench)
+    undo, redo = button(client, "Undo"), button(client, "Redo")
+    assert (bar._name.text, bar._unsaved.text) == ("c", "has no file yet")
+    assert (undo.enabled, redo.enabled, bar._give_up.visible) == (False, False, False)
+    bench.desk.save_as(tmp_path / "d.toml")
+    bar.hear("changed", {})
+    assert (bar._name.text, bar._unsaved.text) == ("d", "saved")
+    bench.desk.change(TEXT.replace("28", "29"))
+    bar.hear("changed", {})
+    assert bar._unsaved.text == "changed, not saved"
+    assert (undo.enabled, redo.enabled, bar._give_up.visible) == (True, False, True)
+    press(undo)
+    assert bench.desk.text == TEXT
+    assert bench.changes == 1
+    bar.hear("kept", {})
+    assert (undo.enabled, redo.enabled) == (False, True)
+    press(redo)
+    assert "29" in bench.desk.text
+    press(button(client, "Give up changes"))
+    assert bench.desk.text == TEXT
+    assert bench.changes == 3
+
+
+def test_saving_asks_for_a_name_and_before_it_writes_over_others(client, bench, tmp_path):
+    Bar(bench)
+    press(button(client, "Save"))
+    (path,) = [one for one in client.elements.values() if isinstance(one, ui.input)]
+    assert path.value.endswith("c.toml")
+    (tmp_path / "there.toml").write_text("x = 1\n")
+    path.set_value(str(tmp_path / "no" / "folder.toml"))
+    press(button(client, "OK"))
+    assert path.props["error"] is True
+    path.set_value(str(tmp_path / "there.toml"))
+    press(button(client, "OK"))
+    press(button(client, "Replace it"))
+    assert (tmp_path / "there.toml").read_text() == TEXT
+    assert client.said[-1] == f"Saved {tmp_path / 'there.toml'}"
+    assert bench.changes == 1
+    bench.desk.change(TEXT.replace("28", "29"))
+    press(button(client, "Save"))
+    assert "29" in (tmp_path / "there.toml").read_text()
+    (tmp_path / "there.toml").write_text("x = 2\n")
+    bench.desk.change(TEXT)
+    press(button(client, "Save"))
+    assert (tmp_path / "there.toml").read_text() == "x = 2\n"
+    press([one for one in client.elements.values() if isinstance(one, ui.button) and one.text == "Replace it"][-1])
+    assert (tmp_path / "there.toml").read_text() == TEXT
+
+
+def test_accuracy_and_variants_are_chosen_in_the_bar(client, bench):
+    bar = Bar(bench)
+    assert bar._level.options == list(LEVELS)
+    other = next(name for name in LEVELS if name != "normal")
+    bar._level.set_value(other)
+    assert (bench.level, bench.changes) == (other, 1)
+    bar._level.set_value(None)
+    assert (bench.level, bar._level.value, bench.changes) == (other, other, 1)
+    bench.level = "normal"
+    bar.hear("changed", {})
+    assert (bar._level.value, bench.changes) == ("normal", 1)
+    assert bar._pin.text == "Pin as A"
+    press(bar._pin)
+    bar.hear("pinned", {})
+    assert (bench.pinned, bar._pin.text) == (True, "Unpin A")
+    press(bar._pin)
+    bar.hear("unpinned", {})
+    assert (bench.pinned, bar._pin.text) == (None, "Pin as A")
+    bench.desk.change(TEXT.replace("28", "2"))
+    press(bar._pin)
+    assert bench.pinned is None
+    assert client.said == [str(bench.desk.refusal)]
+    press(button(client, "Other case"))
+    assert bench.asked == [("lay", None)]
+
+
+def test_exports_go_into_the_folder_that_is_named(client, bench, tmp_path, monkeypatch):
+    Bar(bench)
+    items = {
+        one.props.get("label") or one.default_slot.children[0].text: one
+        for one in client.elements.values()
+        if isinstance(one, ui.menu_item)
+    }
+    assert len(items) == 1 + len(EXPORTS)
+    for words, what, ending in EXPORTS:
+        press(items[words])
+        path = [one for one in client.elements.values() if isinstance(one, ui.input)][-1]
+        assert path.value.endswith(f"c{ending}" if ending else path.value)
+        path.set_value(str(tmp_path / "to"))
+        press([one for one in client.elements.values() if isinstance(one, ui.button) and one.text == "OK"][-1])
+        assert bench.asked[-1] == (what, str(tmp_path / "to"))
+        assert client.said[-1] == "Writing ..."
+    sent = []
+    monkeypatch.setattr(ui.download, "content", lambda *given: sent.append(given))
+    press(items["Case (TOML), as it is now"])
+    assert sent == [(TEXT.encode(), "c.toml", "application/toml")]
+
+
+def test_the_bar_reports_what_has_been_done(client, bench):
+    bar = Bar(bench)
+    bar.hear("designed", {"told": "a relief"})
+    bar.hear("failed", {"sentence": "no relief"})
+    bar.hear("exported", {"target": "out", "remarks": ["one", "two"]})
+    assert client.said == ["a relief", "no relief", "Wrote out\none\ntwo"]
+    bench.desk = None
+    bar.refresh()
+    press(button(client, "Undo"))
+    assert "is not open any more" in client.said[-1]
+
+
+# ---- page ------------------------------------------------------------------------------------------------------------
+def run(loop, seconds=0.0):
+    loop.run_until_complete(asyncio.sleep(seconds))
+
+
+def test_a_page_tells_its_scripts_all_at_once_and_form_and_bar_what_is_theirs(client, tmp_path, monkeypatch):
+    monkeypatch.setattr("fegear.window.page._STILL", 0.02)
+    bench = Bench(None)
+    bench.desk = Desk(TEXT, "c", tmp_path)
+
+    async def begun():
+        with client:
+            return Page(bench)
+
+    page = core.loop.run_until_complete(begun())
+    heard = []
+    page._bar = SimpleNamespace(
+        hear=lambda what, content: heard.append(("bar", what)), save=lambda: heard.append("save")
+    )
+    page._inputs = SimpleNamespace(
+        hear=lambda what, content: heard.append(("form", what)), leave_too_long=lambda: heard.append("long")
+    )
+    client.scripts.clear()
+
+    async def told():
+        for what, content in (
+            ("done", {"moving": True}), ("done", {"moving": False}), ("pinned", {}), ("figures", {"n": 1}),
+            ("kept", {}), ("changed", {"moving": False}),
+        ):  # fmt: skip
+            page._hear(what, content)
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+
+    core.loop.run_until_complete(told())
+    assert heard == [(who, what) for what in ("done", "pinned", "kept", "changed") for who in ("bar", "form")]
+    (script,) = client.scripts
+    sent = json.loads(script.removeprefix("fegear.hearAll(").removesuffix(")"))
+    assert [what for what, _ in sent] == ["done", "done", "pinned", "figures"]
+    assert page._unsent == []
+    # A value that moves is shown in the form when it stands still, once.
+    heard.clear()
+
+    async def moved():
+        page._hear("changed", {"moving": True})
+        page._hear("changed", {"moving": True})
+        assert heard == []
+        await asyncio.sleep(0.1)
+
+    core.loop.run_until_complete(moved())
+    assert heard == [("bar", "changed"), ("form", "changed")]
+
+    async def forgotten():
+        page._hear("changed", {"moving": True})
+        page._forget()
+        await asyncio.sleep(0.05)
+
+    core.loop.run_until_complete(forgotten())
+    assert len(heard) == 2
+    page._too_long()
+    assert heard[-1] == "long"
+
+
+def test_a_page_without_a_case_offers_what_to_begin_with(client, tmp_path):
+    bench = Bench(None)
+
+    async def begun():
+        with client:
+            return Page(bench)
+
+    page = core.loop.run_until_complete(begun())
+    assert page._bar is None
+    offers = [one for one in client.elements.values() if "offer" in one.classes]
+    assert len(offers) >= len(TEMPLATES)
+
+    async def chosen():
+        press(offers[0])
+
+    core.loop.run_until_complete(chosen())
+    assert bench.desk is not None
+    assert bench.desk.name == next(iter(TEMPLATES)) or bench.desk.text
+
+
+# ---- messages --------------------------------------------------------------------------------------------------------
+RELIEF = {"gear": "a", "end": "tip", "index": 0, "start": 1.5, "amount": 2, "moving": True}
+
+
+def test_what_pages_say_is_looked_at():
+    assert checked("relief", RELIEF) == RELIEF
+    assert "index" not in checked("relief", {k: v for k, v in RELIEF.items() if k != "index"})
+    assert checked("design", {"pair": "I"}) == {"pair": "I"}
+    assert checked("sight", {"tasks": ["a", "b"]}) == {"tasks": ["a", "b"]}
+    for wrong in (
+        {**RELIEF, "start": None}, {**RELIEF, "start": True}, {**RELIEF, "amount": float("inf")},
+        {**RELIEF, "index": -1},
+        {**RELIEF, "index": False}, {**RELIEF, "index": 0.5}, {**RELIEF, "end": "side"}, {**RELIEF, "gear": 1},
+        {**RELIEF, "gear": chr(0xD800)}, {**RELIEF, "moving": 1}, {**RELIEF, "more": 1}, [RELIEF], None,
+        {k: v for k, v in RELIEF.items() if k != "amount"},
+    ):  # fmt: skip
+        with pytest.raises(InputError):
+            checked("relief", wrong)
+    for kind, wrong in (
+        ("sight", {"tasks": "ab"}), ("sight", {"tasks": [1]}), ("design", {"pair": "I", "how": "other"}),
+        ("design", {}), ("shows", {"pair": "I", "kind": "stress", "on": "yes"}),
+        ("load", {"pair": "I", "key": "speed", "text": "", "moving": False}),
+    ):  # fmt: skip
+        with pytest.raises(InputError):
+            checked(kind, wrong)
+
+
+def said(**parts):
+    return {"client_id": "p", "listener_id": "l", "args": [json.dumps(parts)]}
+
+
+def test_a_moved_value_takes_the_place_of_the_one_that_waits():
+    assert _moved(said(gear="a", start=1.0, amount=2.0, moving=True)) == ("p", "l", "gear a", "moving True")
+    assert _moved(said(gear="a", moving=False)) is None
+    assert _moved({"args": ["["], "client_id": "p"}) is None
+    assert _moved({"args": ["1"]}) is None
+    assert (
+        _moved({"args": [json.dumps({"moving": True, "x": "y" * 1000})], "client_id": "p", "listener_id": "l"}) is None
+    )
+    heard = Messages()
+    first, second, other = (said(gear=g, start=s, moving=True) for g, s in (("a", 1.0), ("a", 2.0), ("b", 3.0)))
+    assert not heard._replaces(first)
+    assert heard._replaces(second)
+    assert first["args"] == second["args"]
+    assert not heard._replaces(other)
+    assert heard._replaces(said(gear="b", start=4.0, moving=True))
+    assert not heard._replaces({"args": []})  # whatever comes between stays between
+    assert not heard._replaces(said(gear="a", start=5.0, moving=True))
+
+
+def test_a_long_message_is_put_together_from_its_pieces(client, monkeypatch):
+    heard, refused = Messages(), []
+    monkeypatch.setattr(messages, "refuse", lambda page, words: refused.append(words))
+    acted = []
+    monkeypatch.setattr(messages, "_act", acted.append)
+    whole = {"client_id": client.id, "id": 1, "args": ["x" * 30]}
+    text = json.dumps(whole)
+
+    def piece(at, part, count=3, name="n"):
+        core.loop.run_until_complete(
+            heard.piece("s", {"client_id": client.id, "name": name, "count": count, "at": at, "text": part})
+        )
+
+    third = len(text) // 3
+    parts = [text[:third], text[third : 2 * third], text[2 * third :]]
+    for at, part in enumerate(parts):
+        piece(at, part)
+    assert acted == [whole]
+    assert refused == []
+    # Begun anew from the first; one in the wrong order, or beyond its count, is refused.
+    piece(0, parts[0])
+    for at, part in enumerate(parts):
+        piece(at, part)
+    assert acted == [whole] * 2
+    piece(1, parts[1])
+    assert len(refused) == 1
+    piece(3, parts[1])
+    assert len(refused) == 2
+    piece(0, "[", count=1)
+    assert len(refused) == 3
+    piece(0, json.dumps({"client_id": "another"}), count=1)
+    assert len(refused) == 4
+    for k in range(8):
+        piece(0, "x", name=f"m{k}")
+    assert len(refused) == 4
+    piece(0, "x", name="m8")
+    assert len(refused) == 5
+    monkeypatch.setattr(messages, "_MOST", 10)
+    piece(0, "x" * 11, name="m0")
+    assert len(refused) == 6
+    assert acted == [whole] * 2
