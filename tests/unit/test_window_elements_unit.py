@@ -57,7 +57,7 @@ def client(monkeypatch):
     made = Client(ui_page("/tested"), request=None)
     made.said, made.scripts = [], []
     monkeypatch.setattr(ui, "notify", lambda words, **_: made.said.append(words))
-    monkeypatch.setattr(made, "run_javascript", made.scripts.append)
+    monkeypatch.setattr(made, "run_javascript", lambda script, **_: made.scripts.append(script))
     with made:
         yield made
     made.delete()
