@@ -28,7 +28,7 @@ import tempfile
 import time
 from collections import Counter, defaultdict
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -98,6 +98,8 @@ class Record:
         self.heirs: dict[str, set[str]] = defaultdict(set)
         self.lines: list[tuple[Path, CoverageData]] = []
         for place in sorted(WORK.glob("record-*")):
+            if not (place / "coverage").exists():  # not finished
+                continue
             data = CoverageData(str(place / "coverage"))
             data.read()
             self.lines.append((place / "tree", data))
@@ -209,7 +211,7 @@ class Outcome:
 
     mutant: Mutant
     killer: str = ""
-    tests: int = 0
+    ran: list[str] = field(default_factory=list)
     left: int = 0
     seconds: float = 0.0
 
@@ -296,10 +298,10 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
                 part += [name] if spent < budget or not first else []
             if part and not outcome.killer:
                 outcome.killer = passed(tree, part, taken)
-                outcome.tests += len(part)
+                outcome.ran += part
     finally:
         _written(path, source)
-    outcome.left = 0 if outcome.killer else len(names) - outcome.tests
+    outcome.left = 0 if outcome.killer else len(names) - len(outcome.ran)
     outcome.seconds = time.monotonic() - started
     return outcome
 
@@ -339,7 +341,7 @@ def main() -> None:
         return
     known, rooms = Record(), tuple(filter(None, asked.rooms.split(",")))
     mutants = list(draw(ROOT, asked.count, asked.seed, rooms))
-    report(mutants, known, asked.workers, asked.budget, WORK / f"drawn-{asked.seed}.json")
+    report(mutants, known, asked.workers, asked.budget, WORK / f"drawn-{asked.seed}.jsonl")
 
 
 def holes(known: Record) -> None:
@@ -362,14 +364,36 @@ def holes(known: Record) -> None:
         print(f"{room:12} {left:5} of {count:5} lines are executed by no ordinary test")
 
 
+def earlier(kept: Path) -> dict[str, Outcome]:
+    """Outcomes of a draw that was interrupted, or ran before other tests were recorded: by what the mutants change."""
+    found: dict[str, Outcome] = {}
+    for line in kept.read_text().splitlines() if kept.exists() else ():
+        one = json.loads(line)
+        shown = one.pop("shown")
+        outcome = Outcome(Mutant(**one.pop("mutant")), **one)
+        if shown in found and not outcome.killer:
+            outcome.ran = found[shown].ran + outcome.ran
+        found[shown] = outcome
+    return found
+
+
 def report(mutants: list[Mutant], known: Record, workers: int, budget: float, kept: Path) -> None:
-    """Try all, say each survivor at once and what each room kept in the end."""
+    """Try all, keep and say each at once, and say what each room kept in the end."""
+    taken, before = known.seconds, earlier(kept)
+    shown = {mutant: mutant.shown((ROOT / mutant.path).read_bytes()) for mutant in mutants}
     tests = {mutant: known.tests(mutant) for mutant in mutants}
-    taken = known.seconds
-    outcomes: list[Outcome] = []
+    outcomes = [before[shown[one]] for one in mutants if shown[one] in before and before[shown[one]].killer]
+    done = {shown[one.mutant] for one in outcomes}
+    ran = {one: set(before[shown[one]].ran) if shown[one] in before else set() for one in mutants}
+    asked = [
+        (one, [name for name in tests[one] if name not in ran[one]], taken, budget)
+        for one in mutants if shown[one] not in done
+    ]  # fmt: skip
     with ProcessPoolExecutor(workers, mp_context=get_context("fork")) as pool:
-        for outcome in pool.map(tried, [(mutant, tests[mutant], taken, budget) for mutant in mutants]):
+        for outcome in pool.map(tried, asked):
             outcomes.append(outcome)
+            with kept.open("a") as file:
+                print(json.dumps({"shown": shown[outcome.mutant], **asdict(outcome)}), file=file)
             said(outcome)
             print(f"{len(outcomes)} of {len(mutants)}", end="\r", file=sys.stderr, flush=True)
         # A test that fails without any mutant has noticed nothing.
@@ -385,7 +409,6 @@ def report(mutants: list[Mutant], known: Record, workers: int, budget: float, ke
             said(outcome)
     for tree in WORK.glob("run-*"):
         shutil.rmtree(tree)
-    kept.write_text(json.dumps([asdict(outcome) for outcome in outcomes], indent=1))
     rooms = defaultdict(list)
     for outcome in outcomes:
         rooms[outcome.mutant.room].append(bool(outcome.killer))
@@ -400,7 +423,7 @@ def said(outcome: Outcome) -> None:
     if not outcome.killer:
         shown = outcome.mutant.shown((ROOT / outcome.mutant.path).read_bytes())
         more = f", {outcome.left} not run" if outcome.left else ""
-        print(f"survived {outcome.tests} tests{more}: {shown}", flush=True)
+        print(f"survived {len(outcome.ran)} tests{more}: {shown}", flush=True)
 
 
 def _alone(name: str) -> str:
