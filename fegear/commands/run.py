@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -26,6 +26,9 @@ from fegear.commands.common import (
     leave,
 )
 
+if TYPE_CHECKING:
+    from fegear.output.fields import FieldFile
+
 
 def run(
     case: CaseFile,
@@ -38,6 +41,14 @@ def run(
         bool,
         typer.Option(
             "--cache", help="Recall tooth shapes and chart points from the disk cache, and keep new ones there."
+        ),
+    ] = False,
+    fields: Annotated[
+        bool,
+        typer.Option(
+            "--fields",
+            help="Name the files of displacement and stress fields (VTU), write them with --no-plots too, and draw "
+            "plane gears in space where pyvista is installed.",
         ),
     ] = False,
     quiet: Quiet = False,
@@ -76,12 +87,15 @@ def run(
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
             process = None if no_plots else stack.enter_context(PictureProcess())
-            drawing = Drawing(scratch / "plots", process, scene.name) if process else None
+            drawing = (
+                Drawing(scratch / "plots", process, scene.name, scene.gears if fields else None) if process else None
+            )
             results = run_plan(
                 scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler),
                 found=drawing.begin if drawing else None,
             )  # fmt: skip
-            remarks = write_results(results, scratch, watching, plots=not no_plots, begun=drawing)
+            files: list[FieldFile] | None = [] if fields else None
+            remarks = write_results(results, scratch, watching, plots=not no_plots, begun=drawing, fields=files)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for table in results.tables:
@@ -89,6 +103,10 @@ def run(
             voice.say(line)
     for value in results.values:
         voice.say(repr(value))
+    for file in files or ():
+        voice.say(f"Field {target / str(file)}")
+    if fields and not files:
+        voice.note("No result of this case has a field: request root-stress, or stiffness with face_positions.")
     for remark in (*remarks, beyond_tolerance(results.values, scene.case.accuracy.tolerance)):
         if remark:
             voice.note(remark)

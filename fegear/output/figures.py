@@ -19,20 +19,19 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from fegear.base.errors import MissingLibraryError
-from fegear.engine.figure.figure import Figure, MeshField, SolidMeshField
+from fegear.engine.figure.figure import Figure
 from fegear.engine.processes import cores
-from fegear.output.file_names import file_name
+from fegear.output.fields import FOLDER, FieldFile, in_space, write_field
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from fegear.engine.outcome import Outcome
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
+    from fegear.geometry.gear import Gear
     from fegear.output.draw_png import Picture
 
     Pictures = tuple[Picture, ...] | None
@@ -56,6 +55,17 @@ def described(results: Results) -> list[Drawn]:
     ]
 
 
+def with_fields(results: Results) -> list[Drawn]:
+    """The figures that cost something to describe and show a part of a field, without pictures."""
+    deferred = (
+        Drawn(task, figure.made())
+        for task, outcome in results.outcomes.items()
+        for figure in outcome.figures
+        if not isinstance(figure, Figure)
+    )
+    return [one for one in deferred if one.figure.field is not None]
+
+
 class Drawing:
     """The pictures of a run, begun as soon as there is something to draw.
 
@@ -67,10 +77,24 @@ class Drawing:
         Who draws; here, at the end, without.
     case : str
         Name that stands at the head of every picture.
+    spatial : mapping of str to Gear, optional
+        Gears whose plane fields are drawn in space, too, by the names of the fields.
+
+    Attributes
+    ----------
+    fields : list of FieldFile
+        What was written for other programs, when finished.
     """
 
-    def __init__(self, folder: Path, process: PictureProcess | None = None, case: str = "") -> None:
-        self._folder, self._process, self._case = folder, process, case
+    def __init__(
+        self,
+        folder: Path,
+        process: PictureProcess | None = None,
+        case: str = "",
+        spatial: Mapping[str, Gear] | None = None,
+    ) -> None:
+        self._folder, self._process, self._case, self._spatial = folder, process, case, spatial or {}
+        self.fields: list[FieldFile] = []
         self._begun: list[tuple[Task, Figure, Future[tuple[Picture, ...] | None] | None]] = []
         self._missing: list[str] = []
 
@@ -80,9 +104,16 @@ class Drawing:
         for figure in outcome.figures:
             with self._remarked():
                 made = replace(figure.made(), case=self._case)
-                # What a picture shows of a field is in its panels; the field itself stays here.
-                sent = self._process.draw(replace(made, field=None), self._folder) if self._process else None
-                self._begun.append((task, made, sent))
+                self._send(task, made)
+                gear = self._spatial.get(made.field.name) if made.field else None
+                spatial = None if gear is None else in_space(made, gear)
+                if spatial is not None:
+                    self._send(task, spatial)
+
+    def _send(self, task: Task, figure: Figure) -> None:
+        # What a picture shows of a field is in its panels; the field itself stays here.
+        sent = self._process.draw(replace(figure, field=None), self._folder) if self._process else None
+        self._begun.append((task, figure, sent))
 
     def finish(self, advance: Callable[[float], None]) -> tuple[list[Drawn], list[str]]:
         """Write the fields, and wait for the pictures or draw them.
@@ -100,9 +131,8 @@ class Drawing:
         """
         if self._process:
             self._process.close()
-        for _, figure, _ in self._begun:
-            if figure.field is not None:
-                _write_field(figure.field, self._folder.parent / "fields")
+        written = (write_field(figure, self._folder.parent / FOLDER) for _, figure, _ in self._begun)
+        self.fields += [one for one in written if one]
         drawn: list[Drawn] = []
         for number, (task, figure, sent) in enumerate(self._begun, start=1):
             with self._remarked():
@@ -121,17 +151,6 @@ class Drawing:
             yield
         except MissingLibraryError as error:
             self._missing.append(f"{error}".rstrip(".") + ".")
-
-
-def _write_field(field: MeshField | SolidMeshField, folder: Path) -> None:
-    """Write ``<name>.vtu`` for ParaView."""
-    from fegear.fem.plane.imported_mesh import write_vtu
-
-    folder.mkdir(exist_ok=True)
-    solid = isinstance(field, SolidMeshField)
-    elements = field.wedges if isinstance(field, SolidMeshField) else field.triangles
-    path = folder / f"{file_name(field.name)}.vtu"
-    write_vtu(path, np.asarray(field.points), (elements,), field.values, single=not solid)
 
 
 #: What the other process runs, with the search path of this one. Not multiprocessing's: that would load the main

@@ -29,7 +29,8 @@ from fegear.output.exchange import (
     put_back,
     undisturbed,
 )
-from fegear.output.figures import Drawing, described
+from fegear.output.fields import FOLDER, FieldFile, write_field
+from fegear.output.figures import Drawing, described, with_fields
 from fegear.output.file_names import file_name
 from fegear.output.report.run import write_report
 from fegear.output.tables import write_summary, write_table
@@ -185,7 +186,13 @@ STEPS = 1
 
 
 def write_results(
-    results: Results, folder: Path, watcher: Watcher, *, plots: bool = True, begun: Drawing | None = None
+    results: Results,
+    folder: Path,
+    watcher: Watcher,
+    *,
+    plots: bool = True,
+    begun: Drawing | None = None,
+    fields: list[FieldFile] | None = None,
 ) -> list[str]:
     """Write tables, dataset, pictures, report and summary.
 
@@ -199,6 +206,8 @@ def write_results(
         Whether to draw; without, neither matplotlib nor pyvista is imported.
     begun : Drawing, optional
         Pictures that were begun while the run computed; by default they are begun now.
+    fields : list of FieldFile, optional
+        Receives what is written for other programs; given, fields are written where nothing is drawn, too.
 
     Returns
     -------
@@ -218,6 +227,11 @@ def write_results(
         for task, outcome in results.outcomes.items():
             begun.begin(task, outcome)
     drawn, missing = begun.finish(watcher.advance) if begun else (described(results), [])
+    if fields is not None and begun is None:
+        drawn = [*drawn, *with_fields(results)]
+        fields += [file for file in (write_field(one.figure, folder / FOLDER) for one in drawn) if file]
+    elif fields is not None and begun is not None:
+        fields += begun.fields
     remarks = [*results.remarks, *results.cache_remarks, *missing]
     write_report(folder / "report.html", results, drawn, remarks)
     write_summary(folder / SUMMARY, results, remarks, [*files_in(folder), SUMMARY])

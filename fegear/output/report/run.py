@@ -19,6 +19,7 @@ from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Mark, Points
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
+from fegear.output.fields import field_file
 from fegear.output.file_names import file_name
 from fegear.output.numbers import plain_number
 from fegear.output.report.blocks import (
@@ -109,6 +110,8 @@ def _stage(results: Results, task: Task, drawn: Sequence[Drawn], shown: frozense
         if one.figure.key in shown:
             continue
         blocks += [Plot(one.figure)] if one.figure.drawable_in_page else [Still(picture) for picture in one.pictures]
+        if field := field_file(one.figure):
+            blocks.append(Paragraph(str(field)))
     blocks += [DataTable(table) for table in outcome.tables if table.name not in shown]
     return Section(_title(results, task), (*blocks, *_sources(results, task)) if blocks else ())
 
