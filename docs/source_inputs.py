@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import TYPE_CHECKING, Any
 
 import pint
@@ -22,14 +22,14 @@ _NEUTRAL = 10
 def answer_in_input(printed: Found, case: dict[str, Any]) -> str:
     """The key of a case under which a printed number is given, or nothing.
 
-    A member of a list counts, unless the list is evenly spaced and long, as a grid is that knows no answer; a single
-    value counts unless it is 0 or 1, which are given for other reasons.
+    A member of a list counts, unless it stands in a long evenly spaced part of it, as of a grid that knows no answer; a
+    single value counts unless it is 0 or 1, which are given for other reasons.
     """
     for key, values in _given(case):
         alone = len(values) == 1
-        if (alone and printed.value in (0.0, 1.0)) or _neutral(values):
+        if alone and printed.value in (0.0, 1.0):
             continue
-        if any(_is_printed(value, printed) for value in values):
+        if any(_is_printed(value, printed) and not _neutral(values, at) for at, value in enumerate(values)):
             return key
     return ""
 
@@ -61,11 +61,21 @@ def _is_printed(value: Any, printed: Found) -> bool:
     return math.isclose(size.to(wanted.units).magnitude, wanted.magnitude, rel_tol=1e-9)
 
 
-def _neutral(values: list[Any]) -> bool:
-    """Whether a list is evenly spaced and long; its last member may be the end of the range."""
+def _neutral(values: list[Any], at: int) -> bool:
+    """Whether a member of a list stands in a long evenly spaced part; the last one may be the end of the range."""
     sizes = [_size(value) for value in values]
     if len(values) < _NEUTRAL or any(size is None for size in sizes):
         return False
     found = [size.to_base_units().magnitude for size in sizes]
-    steps = [b - a for a, b in pairwise(found[:-1])]
-    return max(steps) - min(steps) <= 1e-6 * max(map(abs, steps))
+    steps = [b - a for a, b in pairwise(found)]
+    beside = [at - 1, at, *([at - 2] if at == len(steps) else [])]
+    return max(_alike(steps, k) for k in beside if 0 <= k < len(steps)) + 1 >= _NEUTRAL
+
+
+def _alike(steps: list[float], at: int) -> int:
+    """How many steps on end, this one among them, are equal."""
+    before, after = steps[: at + 1][::-1], steps[at:]
+    return (
+        sum(len(list(takewhile(lambda s: math.isclose(s, steps[at], rel_tol=1e-6), way))) for way in (before, after))
+        - 1
+    )

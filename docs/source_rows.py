@@ -8,36 +8,24 @@ fegear makes of each. ``tests/cases/test_sources_cases.py`` holds the list compl
 from __future__ import annotations
 
 import importlib
-import math
 import shlex
 import tomllib
-from decimal import Decimal
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 from source_inputs import answer_in_input
-from source_runs import Found, Part, Run
+from source_numbers import NUMBERS, REPRODUCED, Number, Series
+from source_runs import Part, Run
 
 from fegear.cli import COMMANDS
 from fegear.engine.citation import bibliography
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "sources"
 CASES = ROOT / "cases"
 
-#: What each kind of number says, in the order in which the pages count them.
-NUMBERS: dict[str, str] = {
-    "printed": "in print and reproduced, within half a unit of its last digit or the stated accuracy of reading",
-    "differs": "in print, and not reproduced; the number says why",
-    "input": "in print, and put into the case, or what the case's input was worked out from: it can only come back",
-    "words": "what the text says in words, without a number; a bound chosen here holds it",
-    "regression": "a number of fegear alone, kept so that it does not change unnoticed; nothing is in print",
-}
 #: What each kind of row says: by its numbers, or without any.
 ROWS: dict[str, str] = {
     "printed": "printed numbers, and fegear reproduces all of them",
@@ -50,190 +38,41 @@ ROWS: dict[str, str] = {
     "text lost": "the curve is in no text that we have: fegear draws it, and there is nothing to compare it with",
     "sketch": "a drawing without numbers: the row leads to what fegear draws of the same thing",
 }
-NumberKind = Literal["printed", "differs", "input", "words", "regression"]
 RowKind = Literal["printed", "in part", "differs", "words", "input", "equation", "regression", "text lost", "sketch"]
-_TAKES = {"max": max, "min": min, "first": lambda v: v[0], "last": lambda v: v[-1], "mean": lambda v: sum(v) / len(v),
-          "ptp": lambda v: max(v) - min(v)}  # fmt: skip
 
 
-class Number(Part):
-    """A number or a statement of a paper, and where fegear's stands.
+class Tried(Part):
+    """A reading of the text, or a choice of what it leaves open, that was tried where a number differs.
 
     Parameters
     ----------
-    kind : str
-        One of `NUMBERS`.
     what : str
-    case, kept : str, optional
-        The case that makes it, else the row's; or the folder in docs/sources that keeps what a run gave that is too
-        long for the site.
-    printed : str, optional
-        As printed, with its unit: ``"338 lbf"``.
-    reading : float, optional
-        Accuracy of the print in its own unit, where that is not half a unit of the last digit; `because` says why.
-    statement : str, optional
-        What the text says in words.
-    because : str
-        Why it differs, or why the print is less accurate than its digits; one sentence.
-    value, table, column, take, where, near
-        Where fegear's number stands: a single value, or what is taken of a column's rows.
-    over : dict
-        What it is divided by: ``{ value = "..." }``, or the entries of `where` and `near` that are other there.
-    found, tolerance : float
-        Fegear's number where it is none of the printed ones, and within which part of it.
-    most, least : float, optional
-        Bounds.
+    case : str, optional
+        The case that was run, else that of the number.
+    set : tuple of str
+        What was set in it, ``KEY=VALUE`` as after ``--set``.
+    gave : dict
+        What each number of the row, by its `what`, came to.
+    read : dict
+        Where such a number stands elsewhere than in the row: entries of `Number` that are other here.
+    tolerance : float
+        Relative, of `gave`.
+    test : str, optional
+        The test that shows it, where it is no run of a case.
     """
 
-    kind: NumberKind
     what: str
     case: str | None = None
-    kept: str | None = None
-    printed: str | None = None
-    reading: float | None = Field(gt=0.0, default=None)
-    statement: str | None = None
-    because: str = ""
-    value: str | None = None
-    table: str | None = None
-    column: str | None = None
-    take: Literal["max", "min", "ptp", "first", "last", "mean"] = "first"
-    where: dict[str, float | str] = Field(default_factory=dict)
-    near: dict[str, float] = Field(default_factory=dict)
-    over: dict[str, float | str] = Field(default_factory=dict)
-    tolerance: float = Field(gt=0.0, le=0.5, default=1e-3)
-    found: float | None = None
-    most: float | None = None
-    least: float | None = None
-
-    @model_validator(mode="after")
-    def _whole(self) -> Number:
-        in_print, own = self.kind in ("printed", "input"), self.found is not None
-        rules = (
-            (in_print and self.printed is None, f"is {self.kind}, and no printed number is given"),
-            (in_print and own, "is in print: fegear's number is not listed"),
-            (
-                self.kind == "words" and not (self.statement and self._bounded),
-                "needs `statement`, and `most` or `least`",
-            ),
-            (
-                self.kind == "regression" and bool(self.printed or self.statement),
-                "is fegear's own, has nothing in print",
-            ),
-            (self.kind == "regression" and not (own or self._bounded), "needs `found`, `most` or `least`"),
-            (self.kind == "differs" and not (self.printed or self.statement), "differs from nothing: give `printed`"),
-            (self.kind == "differs" and not own, "differs, and `found` does not say by how much"),
-            (self.kind == "differs" and not self.because, "differs, and `because` does not say why"),
-            (self.reading is not None and not self.because, "is read less accurately; `because` does not say why"),
-            (bool(self.printed and self.statement), "give `printed` or `statement`"),
-            ((self.value is None) == (self.table is None), "give `value`, or `table` and `column`"),
-            ((self.table is None) != (self.column is None), "give `table` and `column`"),
-        )
-        for wrong, said in rules:
-            if wrong:
-                raise ValueError(f"{self.what}: {said}")
-        return self
+    set: tuple[str, ...] = ()
+    gave: dict[str, float] = Field(min_length=1)
+    read: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    tolerance: float = Field(gt=0.0, le=0.05, default=2e-3)
+    test: str | None = None
 
     @property
-    def _bounded(self) -> bool:
-        return self.most is not None or self.least is not None
-
-    def in_print(self) -> Found | None:
-        """The printed number, where there is one."""
-        if self.printed is None:
-            return None
-        number, _, unit = self.printed.partition(" ")
-        return Found(value=float(number), unit=unit)
-
-    def accuracy(self) -> float:
-        """Half a unit of the last printed digit, or the stated accuracy of reading, in the printed unit."""
-        assert self.printed is not None
-        last = Decimal(self.printed.partition(" ")[0]).as_tuple().exponent
-        return self.reading if self.reading is not None else 0.5 * 10.0 ** int(last)
-
-    def read(self, run: Run) -> Found:
-        """Fegear's number, in the printed unit."""
-        got = self._found(run, self.value, self.where, self.near)
-        if self.over:
-            other = {key: value for key, value in self.over.items() if key != "value"}
-            where, near = (
-                {**part, **{key: other[key] for key in part if key in other}} for part in (self.where, self.near)
-            )
-            value = self.over.get("value")
-            below = self._found(run, value if value is None else str(value), where, near)
-            return Found(value=got.value / below.to(got.unit).value, unit="")
-        printed = self.in_print()
-        return got if printed is None else got.to(printed.unit)
-
-    def _found(self, run: Run, value: str | None, where: Mapping[str, Any], near: Mapping[str, Any]) -> Found:
-        """A single value, or what is taken of a table's rows."""
-        if value is not None:
-            return run.value(value)
-        assert self.table is not None
-        assert self.column is not None
-        rows = run.rows(self.table)
-        if rows and (lost := {self.column, *where, *near} - rows[0].keys()):
-            raise LookupError(f"{self.table} has no column {', '.join(sorted(lost))}; it has {', '.join(rows[0])}")
-        for head, wanted in where.items():
-            rows = [row for row in rows if _same(row[head], wanted)]
-        for head, wanted in near.items():
-            least = min((abs(float(row[head]) - wanted) for row in rows), default=math.inf)
-            rows = [row for row in rows if abs(float(row[head]) - wanted) == least]
-        if not rows:
-            raise LookupError(f"{self.table} has no row with {where or near}")
-        unit = self.column.rpartition("[")[2].rstrip("]") if "[" in self.column else ""
-        return Found(value=_TAKES[self.take]([float(row[self.column]) for row in rows]), unit=unit)
-
-    def fault(self, run: Run) -> str:
-        """What is wrong with the number, or nothing."""
-        got, printed = self.read(run).value, self.in_print()
-        if self.found is not None and not _near(got, self.found, self.tolerance):
-            return f"{self.what}: fegear gives {got:.6g}, the list says {self.found:.6g} within {self.tolerance:g}"
-        if printed is not None:
-            within = abs(got - printed.value) <= self.accuracy() * (1.0 + 1e-9)
-            if self.kind != "differs" and not within:
-                return f"{self.what}: fegear gives {got:.6g}, printed is {self.printed} (within {self.accuracy():g})"
-            if self.kind == "differs" and within:
-                return f"{self.what}: {got:.6g} is what is printed, {self.printed}, and the list says that it differs"
-        if self.most is not None and not got <= self.most:
-            return f"{self.what}: {got:.6g} is more than {self.most:g}"
-        if self.least is not None and not got >= self.least:
-            return f"{self.what}: {got:.6g} is less than {self.least:g}"
-        return ""
-
-
-class Series(Part):
-    """A printed column: numbers of one kind by the rows of one table, ``printed = { "1" = "1.61803", ... }``."""
-
-    kind: NumberKind
-    what: str
-    case: str | None = None
-    table: str
-    column: str
-    key: str
-    unit: str = ""
-    printed: dict[str, str] = Field(min_length=1)
-    reading: float | None = None
-    because: str = ""
-
-    def numbers(self) -> tuple[Number, ...]:
-        """A number for each printed one."""
-        return tuple(
-            Number(
-                kind=self.kind, what=f"{self.what} {at}", case=self.case, printed=f"{text} {self.unit}".strip(),
-                table=self.table, column=self.column, near={self.key: float(at)}, reading=self.reading,
-                because=self.because,
-            )
-            for at, text in self.printed.items()
-        )  # fmt: skip
-
-
-def _near(got: float, wanted: float, tolerance: float) -> bool:
-    """Within a relative tolerance; of zero, within an absolute one."""
-    return abs(got - wanted) <= tolerance * (abs(wanted) or 1.0)
-
-
-def _same(cell: str, wanted: float | str) -> bool:
-    return cell == wanted if isinstance(wanted, str) else math.isclose(float(cell), wanted, rel_tol=1e-6, abs_tol=1e-12)
+    def runs(self) -> bool:
+        """Whether it is a run of a case."""
+        return self.test is None
 
 
 class Row(Part):
@@ -256,6 +95,10 @@ class Row(Part):
         Tests that hold the equations, ``literature/test_x.py::test_y``.
     remark : str
     number, series : tuple
+    trial : tuple of str
+        What is set in all that was tried, as `Tried.set`: fewer speeds.
+    tried : tuple of Tried
+        Where numbers differ: what was tried, with what it gave.
     """
 
     covers: tuple[str, ...] = Field(min_length=1)
@@ -270,6 +113,21 @@ class Row(Part):
     remark: str = ""
     number: tuple[Number, ...] = ()
     series: tuple[Series, ...] = ()
+    trial: tuple[str, ...] = ()
+    tried: tuple[Tried, ...] = ()
+
+    @property
+    def verdict(self) -> str:
+        """Whether what is printed holds, or differs and it is said what was tried."""
+        return "differs" if self.kind in ("differs", "in part") else "held"
+
+    def named(self, what: str) -> tuple[Number, str]:
+        """A number by its name, and the case that makes it."""
+        return next((n, c) for n, c in zip(self.numbers, self.cases_of_numbers(), strict=True) if n.what == what)
+
+    def case_of(self, tried: Tried) -> str:
+        """The case of something tried: its own, or that of the numbers that it names."""
+        return tried.case or self.named(next(iter(tried.gave)))[1]
 
     @property
     def numbers(self) -> tuple[Number, ...]:
@@ -302,6 +160,7 @@ class Row(Part):
             wrong.append(f"{self.function} is not there")
         wrong += [f"tests/{name} is not there" for name in self.tests if not _is_test(name)]
         wrong += self._faults_of_kind()
+        wrong += self._faults_of_tried()
         wrong += [f"{n.what}: {key} of the case holds what is printed" for n, key in self._answers() if key]
         return [f"{', '.join(self.covers)} {fault}" for fault in wrong]
 
@@ -310,12 +169,34 @@ class Row(Part):
         return [
             (number, answer_in_input(printed, _case(case)))
             for number, case in zip(self.numbers, self.cases_of_numbers(), strict=True)
-            if number.kind in ("printed", "differs") and number.kept is None and (printed := number.in_print())
+            if number.kind in (*REPRODUCED, "differs") and number.kept is None and (printed := number.in_print())
         ]
+
+    def untried(self) -> list[str]:
+        """Numbers that differ, and nothing was tried."""
+        tried = {what for one in self.tried for what in one.gave}
+        return [n.what for n in self.numbers if n.kind == "differs" and n.what not in tried]
+
+    def reading(self, tried: Tried, what: str) -> Number:
+        """A number as it is read in what was tried."""
+        number, _ = self.named(what)
+        return number.model_copy(update={"kept": None, **tried.read.get(what, {})})
+
+    def _faults_of_tried(self) -> list[str]:
+        """Where something was tried that no number asks for, or that nobody can repeat."""
+        differ = {number.what for number in self.numbers if number.kind == "differs"}
+        named = [(t, what) for t in self.tried for what in (*t.gave, *t.read)]
+        wrong = [f"{t.what!r} names {what!r}, which does not differ" for t, what in named if what not in differ]
+        wrong += [
+            f"{t.what!r} sets nothing" for t in self.tried if t.runs and not (t.set or t.case or t.read or self.trial)
+        ]
+        wrong += [f"{t.what!r} sets what its test does not run" for t in self.tried if t.test and (t.set or t.case)]
+        return wrong + [f"tests/{t.test} is not there" for t in self.tried if t.test and not _is_test(t.test)]
 
     def _faults_of_kind(self) -> list[str]:
         """Where the row is called what its numbers do not bear out."""
         has = {kind: self.count(kind) > 0 for kind in NUMBERS}
+        has["printed"] = any(has[kind] for kind in REPRODUCED)
         compared = has["printed"] or has["differs"]
         rules = {
             "printed": (has["printed"] and not has["differs"], "a printed number, and none that differs"),
@@ -341,6 +222,14 @@ class Source(Part):
     citation: str
     items: tuple[str, ...]
     row: tuple[Row, ...] = ()
+
+    def verdicts(self) -> dict[str, str]:
+        """Of every item: "held", or "differs" where a row that covers it says so; none where no row does."""
+        found: dict[str, str] = {}
+        for row in self.row:
+            for item in row.covers:
+                found[item] = "differs" if "differs" in (row.verdict, found.get(item)) else "held"
+        return found
 
     def faults(self) -> list[str]:
         """Items that no row covers, rows that cover something else, and faults of rows."""

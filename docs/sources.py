@@ -8,7 +8,8 @@ from gallery import MADE, case_name
 from gallery import cases as run_cases
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
-from source_rows import NUMBERS, ROWS, Row, Source, cases, faults_of_runs, kept, sources
+from source_numbers import NUMBERS, ORIGINS
+from source_rows import ROWS, Row, Source, cases, faults_of_runs, kept, sources
 from source_runs import Run
 
 from fegear.engine.citation import bibliography
@@ -21,11 +22,14 @@ _HEAD = "| printed as | what it is | made by | number | in print | fegear | diff
 #: Numbers of a row that the first page shows.
 _SHOWN = 3
 _WORDS = """\
-What the papers that fegear implements print, figure by figure, and what fegear gives. Numbers are of five kinds, which
-are counted separately: reproduced is only what is printed and comes out within the print, from an input that does not
-hold it. Each number is made by the case named with it when these pages are built, and tests hold it. A paper's own page
-shows the pictures, drawn with the paper's axes, and what is to be said of each. Where the text of a paper is damaged,
-the equation was derived anew and checked against another method; nothing is tuned to hit a print."""
+What the papers that fegear implements print, figure by figure, and what fegear gives. Numbers are of several kinds,
+which are counted separately: reproduced is only what is printed and comes out within the print, from an input that
+does not hold it. A zero by construction, arithmetic on what is given and what a constant was inferred from are
+input. Where the place of a maximum is read, the grid is finer than the print: on a coarser one a member of the grid
+would be found. Each number is made by the case named with it when these pages are built, and tests hold it. A
+paper's own page shows the pictures, drawn with the paper's axes, and what is to be said of each. Where the text of a
+paper is damaged, the equation was derived anew and checked against another method; nothing is tuned to hit a print.
+Where a number differs for good, the page shows what was tried."""
 
 
 def _made(case: str) -> bool:
@@ -50,9 +54,26 @@ def _number(number: Number, case: str) -> tuple[str, str, str, str, str]:
 
 
 def _why(number: Number) -> str:
-    """The kind, and why it differs or how accurately it is read."""
+    """The kind, and why it differs or is no answer, how accurately it is read and on which grid it was found."""
+    kind = number.kind if number.origin is None else f"{number.kind} ({number.origin})"
     within = f" within {number.reading:g}" if number.reading is not None else ""
-    return f"{number.kind}{within}: {number.because}" if number.because else number.kind
+    grid = f", on a grid of {number.grid.step:g}" if number.grid is not None else ""
+    why = number.because or number.by.replace("**", "^").replace("*", "×")
+    return f"{kind}{within}{grid}: {why}" if why else f"{kind}{within}{grid}"
+
+
+def _tried(row: Row, paper: str) -> str:
+    """What was tried where numbers differ: a line for each, with what each number came to."""
+    wanted = [number for number in row.numbers if any(number.what in tried.gave for tried in row.tried)]
+    lines = [_cells(("tried", *(number.what for number in wanted))), "|---" * (len(wanted) + 1) + "|"]
+    lines.append(_cells(("**in print**", *(number.printed or f'"{number.statement}"' for number in wanted))))
+    lines.append(_cells(("as made here", *(f"{number.found:.5g}" for number in wanted))))
+    for tried in row.tried:
+        gave = (f"{tried.gave[number.what]:.5g}" if number.what in tried.gave else "" for number in wanted)
+        lines.append(_cells((tried.what, *gave)))
+    common = f" with `{'`, `'.join(row.trial)}`" if row.trial else ""
+    again = f'`python docs/source_tried.py {paper} "{row.covers[0]}"`'
+    return "\n".join(lines) + f"\n\nTried{common}; run again by {again}."
 
 
 def _maker(row: Row, top: str) -> str:
@@ -89,6 +110,16 @@ def _count(rows: list[Row]) -> str:
     return f"Numbers: {numbers or 'none'}. Rows: {words}."
 
 
+def _inventory() -> str:
+    """Of every item of every paper: held, or differs, with what was tried."""
+    verdicts = [verdict for source in sources().values() for verdict in source.verdicts().values()]
+    items, held = sum(len(source.items) for source in sources().values()), verdicts.count("held")
+    return (
+        f"Of {items} figures, tables and groups of equations {held} are held and {len(verdicts) - held} differ, in "
+        "whole or in part; the page of the paper shows what was tried of these."
+    )
+
+
 def _counts() -> str:
     """Numbers of each kind by paper."""
     papers = {name: list(source.row) for name, source in sources().items()}
@@ -97,7 +128,15 @@ def _counts() -> str:
     for kind, means in NUMBERS.items():
         found = [sum(row.count(kind) for row in rows) for rows in papers.values()]
         lines.append(_cells((kind, *map(str, found), str(sum(found)), means)))
+        if kind == "input":
+            lines += [_origin(origin, papers) for origin in ORIGINS]
     return "\n".join(lines)
+
+
+def _origin(origin: str, papers: dict[str, list[Row]]) -> str:
+    """The line of the counts for one origin of input."""
+    found = [sum(n.origin == origin for row in rows for n in row.numbers) for rows in papers.values()]
+    return _cells((f"of these {origin}", *map(str, found), str(sum(found)), ORIGINS[origin]))
 
 
 def overview() -> str:
@@ -110,6 +149,7 @@ def overview() -> str:
     parts = [
         "# Sources",
         _WORDS,
+        _inventory(),
         _counts(),
         f"| row | rows | meaning |\n|---|---|---|\n{meanings}",
         f"In {repaired} rows an equation is damaged in the text and was repaired.",
@@ -133,6 +173,8 @@ def page(source: Source) -> str:
         if cells:
             table = "\n".join(_cells(cell) for cell in cells)
             lines.append(f"| number | in print | fegear | difference | kind |\n|---|---|---|---|---|\n{table}")
+        if row.tried:
+            lines.append(_tried(row, source.citation.replace("-", "_")))
         held = f" Tests: {', '.join(f'`{name}`' for name in row.tests)}." if row.tests else ""
         lines.append(f"Made by {_maker(row, '../')}.{held}")
         if row.picture and _made(row.case or ""):

@@ -8,11 +8,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
 from fegear.dynamics.helical_pair.modal_indices import mode_table, rank_modes
 from fegear.dynamics.helical_pair.mode_following import follow_modes
-from fegear.dynamics.helical_pair.model import ReducedPairModel
+from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel, RigidGear
 from fegear.dynamics.helical_pair.transmissibility import reduced_transmissibility
 
 DEG = math.pi / 180.0
@@ -110,3 +111,38 @@ def test_modes_are_followed_over_the_helix_angle_of_fig_5():
     assert (np.diff(followed.ratio[:, 0]) > 0.0).all()
     assert (np.diff(followed.ratio[:, 4]) < 0.0).all()
     assert followed.likeness >= 0.8
+
+
+def two_gears(mass_j, stiffness_j, size_j):
+    """Table 1's spur gears, the driven one changed; fegear's model and an own one of y and theta_z alone."""
+    m, a, k = 2.882, 0.07048, 6e8
+    gears = [
+        RigidGear(mass, (m * a**2, m * a**2, mass * radius**2), radius, 0.02114, np.diag([ky, 1.5e8, 1e6, 1e6, 0.0]))
+        for mass, radius, ky in ((m, a, k), (mass_j * m, size_j * a, stiffness_j * k))
+    ]
+    approach = np.array([1.0, 1.0, -1.0, 1.0])  # y_i, a_i theta_i, y_j, a_j theta_j: all in the line of action
+    own_stiffness = 3e8 * np.outer(approach, approach) + np.diag([k, 0.0, stiffness_j * k, 0.0])
+    squares, shapes = eigh(own_stiffness, m * np.diag([1.0, 1.0, mass_j, mass_j]))
+    share = np.abs(approach @ (shapes / np.linalg.norm(shapes, axis=0)))
+    meshes = share > 1e-9 * share.max()
+    own = np.sqrt(squares[meshes])[::-1], (share / share.max())[meshes][::-1]
+    table = mode_table(HelicalPairModel(*gears, MeshParameters(3e8, 0.0, 1.0 / 3.0, 0.0), 0.0, 0.04))
+    kept = table.normal > 1e-9
+    return (table.frequency[kept], table.normal[kept]), own
+
+
+def test_unequal_spur_gears_have_two_secondary_modes():
+    """Section 5.1: "two distinct secondary mesh modes exist given m_i != m_j or alpha_i != alpha_j".
+
+    Twice the mass on the same bearings: .2525 and .2340 of the primary mode; equal gears have one.
+    """
+    draws = np.random.default_rng(5).uniform(0.3, 3.0, (20, 3))
+    for change in [(2.0, 1.0, math.sqrt(2.0)), (1.0, 2.0, 1.0), (3.0, 0.4, 1.7), *draws]:
+        (found, normal), (squares, own) = two_gears(*change)
+        assert found == pytest.approx(squares, rel=1e-8)
+        assert normal == pytest.approx(own, abs=1e-8)
+        assert normal.size == 3
+    (_, normal), _ = two_gears(2.0, 1.0, math.sqrt(2.0))
+    assert normal == pytest.approx([1.0, 0.2525, 0.2340], abs=5e-5)
+    (_, normal), _ = two_gears(1.0, 1.0, 1.0)
+    assert normal == pytest.approx([1.0, 0.23607], abs=5e-6)
