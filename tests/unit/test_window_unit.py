@@ -44,7 +44,7 @@ from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper, Keys
 from fegear.window.bench import Bench
 from fegear.window.case_text import value_at
-from fegear.window.computing import SAME, Computing, Sent, whole
+from fegear.window.computing import PATIENCE, SAME, Computing, Sent, whole
 from fegear.window.designs import draft_of
 from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
@@ -1411,3 +1411,29 @@ def test_long_texts_are_merged_at_once():
 )
 def test_two_texts_of_one_are_merged_by_lines(mine, theirs, both):
     assert merged("a\nb\nc\nd\n", mine, theirs) == both
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_who_insists_waits_anew_for_a_process_that_loads_and_replaces_one_that_computes(loaded, monkeypatch):
+    began, ended = [], []
+    made = object.__new__(Computing)
+    made._lock, made._closed, made._timer, made._loaded = threading.Lock(), False, None, loaded
+    now = time.monotonic()
+    made._open = {1: "old", 2: "new"}
+    made._unwanted = {1: now - 1000.0}
+    made._process, made._connection = "process", SimpleNamespace(send=began.append)
+    monkeypatch.setattr("fegear.window.computing.end", ended.append)
+    monkeypatch.setattr(made, "_start", lambda: began.append("start"), raising=False)
+    made._insist()
+    if loaded:
+        assert ended == ["process"]
+        assert began == ["start", "new"]
+        assert made._open == {2: "new"}
+        assert made._unwanted == {}
+        assert made._timer is None
+    else:
+        assert (ended, began) == ([], [])
+        assert list(made._unwanted) == [1]
+        assert made._unwanted[1] == pytest.approx(now, abs=60.0)
+        assert made._timer.interval == pytest.approx(PATIENCE, abs=1.0)
+        made._timer.cancel()
