@@ -69,6 +69,22 @@ def test_lives_are_positive_and_those_of_the_cycles_that_are_borne(pair):
     assert flank / 3600.0 == pytest.approx(2162.6, rel=1e-4)
 
 
+def test_damage_is_what_is_run_over_what_is_borne():
+    """Of flanks and of roots: after cycles over damage a test gear of that stress would fail."""
+    values, _, outcome = rated({**PLANET_DRIVES, "torque": "2400 N*m"}, operation={"life": "500 h"})
+    curves, formula, count = outcome.data.curves, outcome.data.formula, 0
+    for i, (gear, speed) in enumerate((("planet", 900.0), ("ring", 900.0 * 22 / 61))):
+        for symbol, curve, stress in (
+            ("damage_H", curves.contact[i], formula.contact_stress[i]),
+            ("damage_F", curves.bending[i], formula.bending_stress[i]),
+        ):
+            damage = values.get(f"I.{member(PLANET_DRIVES, gear)}.{symbol}", 0.0)
+            if math.isfinite(damage) and damage > 0.0:
+                assert curve.at(500.0 * 60.0 * speed / damage) == pytest.approx(stress, rel=1e-9)
+                count += symbol == "damage_F"
+    assert count >= 1
+
+
 def test_which_gear_drives_changes_no_life():
     one, other = (rated(pair)[0] for pair in (PLANET_DRIVES, RING_DRIVES))
     for gear in GEARS:

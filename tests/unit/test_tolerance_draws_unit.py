@@ -259,6 +259,23 @@ def test_nothing_on_the_grid_is_better_than_the_relief_found():
     assert found.left == trials.exact(found.numbers)
 
 
+@pytest.mark.parametrize("named", [{"lengths": (0.3, 0.6)}, {"amounts": (14e-6,)}], ids=["no amounts", "no lengths"])
+def test_amounts_and_lengths_that_nobody_names(named):
+    """Eight amounts up to three mean transmission errors, lengths from a tenth of the path to 0.7, and no relief."""
+    table, some = small_bench(), drawn(3)
+    found = robust_tip_relief(table, some, (10e-6, 0.4, 10e-6, 0.4), percent=90.0, **named)
+    trials = _trials(table, some, 1.0, 90.0)
+    mean = float(trials.base.min(axis=0).mean())
+    amounts = named.get("amounts", [a * mean * 3.0 / 8.0 for a in range(1, 9)])
+    lengths = named.get("lengths", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7])
+    each = [(0.0, lengths[0]), *((a, n) for a in amounts for n in lengths)]
+    one, other = ([np.float32(a) * trials.form(gear, n) for a, n in each] for gear in (0, 1))
+    least = min(trials.left(trials.base + a + b) for a in one for b in other)
+    assert found.candidates == len(each) ** 2
+    assert found.on_grid == pytest.approx(least, rel=1e-5)
+    assert found.draws == 3
+
+
 CASE = {
     "results": ["robustness"],
     "gear": {
