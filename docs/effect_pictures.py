@@ -32,6 +32,12 @@ STUDIES = (
     ),
     ("lin_dynamic_factor", FACTOR, ("contact_loss", "parametric", "friction")),
     ("litvin_shaft_angle", (), ("misalignment",)),
+    (
+        "torque_ripple",
+        ('results=["dynamic-factor"]', "effects.contact_loss=false", "effects.parametric=false",
+         "train.mesh.I.backlash=unlimited", "dynamics.speeds={ start = '1200 rpm', stop = '4000 rpm', count = 57 }"),
+        ("torque_ripple",),
+    ),
 )  # fmt: skip
 
 

@@ -29,6 +29,7 @@ KERNELS = MappingProxyType(
         "passages": "motion integrated over a stretch of time",
         "changes of contact": "a tooth pair or gear pair parts or meets in a motion",
         "springs in time": "a spring whose stiffness varies, in one integrated passage",
+        "ripple lines": "one line of a torque ripple at one speed, or in one integrated passage",
         "friction fits": "friction torques of one gear pair at one speed",
         "tooth contacts": "earliest contact of helical flanks at many angles",
         "misaligned flanks": "a flank placed off its nominal axis",

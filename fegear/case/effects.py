@@ -23,6 +23,8 @@ class Described(NamedTuple):
         Its own keys.
     wide, carried, moving : bool
         Whether it is loaded with its width, shafts of the case carry its gears, and the case has a train.
+    rippling : bool
+        Whether the train has torques that fluctuate.
     """
 
     gears: Collection[str]
@@ -30,6 +32,7 @@ class Described(NamedTuple):
     wide: bool
     carried: bool = False
     moving: bool = False
+    rippling: bool = False
 
     def has(self, *keys: str) -> bool:
         """Whether a gear or the pair has one of these keys."""
@@ -125,6 +128,10 @@ class EffectsPart(Part):
     parametric: Annotated[bool, Effect("results in time", ("springs in time",), _moving, of="motion")] = Field(
         default=False, description="Whether the mesh stiffness varies in time."
     )
+    torque_ripple: Annotated[
+        bool,
+        Effect("`train.torque_ripple`", ("ripple lines",), lambda pair: pair.rippling, of="motion"),
+    ] = Field(default=False, description="Torques of the train that fluctuate, next to the excitation by its meshes.")
     misalignment: Annotated[
         bool,
         Effect(

@@ -349,4 +349,6 @@ def _of_train(part: TrainPart) -> Iterator[tuple[str, str | None, str]]:
     for name, damper in part.damper.items():
         yield from ((f"train.damper.{name}.{end}", getattr(damper, end), "body") for end in ("a", "b"))
     yield from (("train.torque", torque, "body") for torque in part.torque)
+    for name, ripple in part.torque_ripple.items():
+        yield from ((f"train.torque_ripple.{name}.{end}", getattr(ripple, end), "body") for end in ("body", "order_of"))
     yield "train.balance", part.balance, "body"

@@ -256,7 +256,7 @@ def _with_effects(case: Case, pairs: Mapping[str, GearPair]) -> Case:
             case.gear[part.driver].model_fields_set | case.gear[part.driven].model_fields_set,
             part.model_dump(exclude_unset=True), part.width_in(pairs[key]) != "plane",
             {part.driver, part.driven} <= {one.gear for shaft in case.shaft.values() for one in shaft.gears},
-            case.train is not None,
+            case.train is not None, case.train is not None and bool(case.train.torque_ripple),
         )
         for key, part in case.pair.items()
     ]  # fmt: skip

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from fegear.base.errors import GeometryError
 from fegear.case.part import (
+    Angle,
     LengthOrZero,
     Number,
     Part,
@@ -24,6 +25,8 @@ from fegear.geometry.plausible import LONGEST_OF_TRAIN, refuse_shaft
 TorsionalStiffness = Annotated[float, quantity("torsional_stiffness", positive=True)]
 TorsionalDamping = Annotated[float, quantity("torsional_damping", not_negative=True)]
 MeshDamping = Annotated[float, quantity("damping", not_negative=True)]
+FrequencyOrZero = Annotated[float, quantity("frequency")]
+AmplitudeOrZero = Annotated[float, quantity("torque", not_negative=True)]
 TorqueValue = Annotated[float, quantity("torque")]
 Ratio = Annotated[Number, Field(ge=0.0)]
 #: A length, or the word for back flanks that never touch.
@@ -148,6 +151,68 @@ class DamperPart(Part):
     damping: TorsionalDamping = Field(description="Torsional damping.")
 
 
+class TorqueRipplePart(Part):
+    """Torque that fluctuates about the constant torque of a body: a harmonic, or a curve over one period in a file.
+
+    ``T(t) = amplitude cos(order angle + phase)``, positive as in ``[train.torque]``; the angle is that which the body
+    has turned since time zero, in the sense in which it runs.
+    """
+
+    body: str = Field(description="Body on which the torque acts.")
+    order: Number | None = Field(
+        default=None, description="Periods per revolution of `body`, or of `order_of`; give this or `frequency`."
+    )
+    order_of: str | None = Field(
+        default=None, description="Body whose revolutions `order` and the angles of `file` count. Default: `body`."
+    )
+    frequency: FrequencyOrZero | None = Field(
+        default=None, description="Fixed frequency, at every speed; give this or `order`."
+    )
+    amplitude: AmplitudeOrZero | None = Field(
+        default=None, description="Amplitude of the torque; give this or `amplitude_over_mean`."
+    )
+    amplitude_over_mean: Annotated[Number, Field(ge=0.0)] | None = Field(
+        default=None,
+        description="Amplitude over the constant torque of the body; where `phase` is zero, the torque begins at its "
+        "largest size.",
+    )
+    phase: Angle = Field(default=0.0, description="Phase of the cosine at time zero.")
+    file: str | None = Field(
+        default=None,
+        description="CSV file with `angle [deg]` or `time [s]` and `torque [N*m]` over one period, its last line "
+        "repeating the first torque; straight between its entries, the mean left out.",
+    )
+    harmonics: Annotated[int, Field(ge=1, le=512)] = Field(default=32, description="Harmonics of `file` that are kept.")
+
+    @model_validator(mode="after")
+    def _a_harmonic_or_a_file(self) -> Self:
+        if self.file is not None:
+            for key in ("order", "frequency", "amplitude", "amplitude_over_mean", "phase"):
+                if key in self.given:
+                    raise refuse("contradicts file, which has the whole torque", "give either", key=key)
+            return self
+        if "harmonics" in self.given:
+            raise refuse("has a meaning only with file", "leave it out", key="harmonics")
+        if (self.order is None) == (self.frequency is None):
+            raise refuse(
+                "must be given, or frequency instead", 'write order = 2, or frequency = "100 Hz", or a file',
+                key="order", value="(both)" if self.order is not None else "(not given)",
+            )  # fmt: skip
+        if self.frequency is not None and self.order_of is not None:
+            raise refuse("has no meaning with a fixed frequency", "leave it out", key="order_of")
+        for key in ("order", "frequency"):
+            value = getattr(self, key)
+            if value is not None and value <= 0.0:
+                remedy = "add a constant torque to train.torque" if value == 0.0 else "turn it with phase"
+                raise refuse("must be greater than zero", remedy, key=key)
+        if (self.amplitude is None) == (self.amplitude_over_mean is None):
+            raise refuse(
+                "must be given, or amplitude_over_mean instead", 'write amplitude = "8 N*m"', key="amplitude",
+                value="(both)" if self.amplitude is not None else "(not given)",
+            )  # fmt: skip
+        return self
+
+
 class TrainPart(Part):
     """A gear train as a graph; angles and torques of all bodies count in one sense of rotation."""
 
@@ -166,9 +231,24 @@ class TrainPart(Part):
     torque: Annotated[dict[str, TorqueValue], Field(min_length=1)] = Field(
         description="Constant torques by body; the loads of the pairs must agree with them."
     )
+    torque_ripple: dict[str, TorqueRipplePart] = Field(
+        default_factory=dict,
+        description="Torques that fluctuate about the constant ones, each by a name of your choice; they need the "
+        "effect `torque_ripple`.",
+    )
     balance: str | None = Field(
         default=None, description="Body whose torque balances the others; without it they must balance by themselves."
     )
+
+    @model_validator(mode="after")
+    def _names_of_their_own(self) -> Self:
+        for name in self.torque_ripple:
+            if name in self.mesh:
+                raise refuse(
+                    "is the name of a mesh, too, and results say by name what excites", "choose another",
+                    key="torque_ripple", value=f'"{name}"',
+                )  # fmt: skip
+        return self
 
     @model_validator(mode="after")
     def _balanced_by_a_free_body(self) -> Self:

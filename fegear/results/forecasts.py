@@ -9,9 +9,7 @@ Sources that several results share.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
-from fractions import Fraction
 
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.case.reading import Scene
@@ -69,11 +67,16 @@ def sizes(scene: Scene) -> tuple[int, int]:
 def periods(scene: Scene) -> int:
     """Periods of the fastest mesh after which all meshes stand as before."""
     from fegear.case.built.train import build_train, train_inputs
+    from fegear.dynamics.train.torque_ripple import common_period
 
-    orders = [Fraction(order) for order in build_train(train_inputs(scene)).mesh_orders]
-    parts = [1 / order for order in orders]
-    turns = Fraction(math.lcm(*(p.numerator for p in parts)), math.gcd(*(p.denominator for p in parts)))
-    return round(float(turns * max(orders)))
+    asked = train_inputs(scene)
+    train = build_train(asked)
+    turns, fastest = train.mesh_turns, max(train.mesh_orders)
+    speeds = scene.case.dynamics.speed_values
+    if asked.ripple and speeds.size:
+        first = float(speeds.mean()) / abs(float(train.ratios[train.dof[asked.speed_of]]))
+        turns *= common_period(turns, fastest, first, asked.ripple).count
+    return round(float(turns * fastest))
 
 
 def seconds_per_speed(scene: Scene) -> float:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.case.built.torque_ripple import torque_ripples
 from fegear.dynamics.train.gear_train import GearTrain, TrainMesh, a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.dynamics.train.train import (
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.charts import Direction
     from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.train.torque_ripple import TorqueRipple
     from fegear.geometry.pair import GearPair
 
 
@@ -86,6 +88,12 @@ class TrainInputs:
         Body that speeds refer to.
     assumed : bool
         Whether that is assumed: speeds are given, and not whose they are.
+    ripple : tuple of TorqueRipple
+        Torques that fluctuate, where the effect is on.
+    ripple_means : mapping of str to float
+        Mean torques of files, which are left out [N m].
+    idle_ripple : bool
+        Whether the case describes torque ripple, and its effect is off.
     """
 
     part: TrainPart
@@ -93,6 +101,9 @@ class TrainInputs:
     pairs: Mapping[str, GearPair]
     speed_of: str
     assumed: bool = field(default=False, compare=False)
+    ripple: tuple[TorqueRipple, ...] = ()
+    ripple_means: Mapping[str, float] = field(default_factory=dict)
+    idle_ripple: bool = field(default=False, compare=False)
 
 
 def train_inputs(scene: Scene) -> TrainInputs:
@@ -102,7 +113,13 @@ def train_inputs(scene: Scene) -> TrainInputs:
     inertias = {name: _inertia(scene, body) for name, body in part.body.items()}
     dynamics = scene.case.dynamics
     assumed = dynamics.speed_of is None and dynamics.speed_values.size > 0
-    return TrainInputs(part, inertias, pairs, dynamics.speed_of or next(iter(part.body)), assumed)
+    speed_of = dynamics.speed_of or next(iter(part.body))
+    # without its effect, ripple is nothing that a result depends on
+    still = TrainInputs(part.model_copy(update={"torque_ripple": {}}), inertias, pairs, speed_of, assumed)
+    if not scene.case.effects.torque_ripple:
+        return replace(still, idle_ripple=bool(part.torque_ripple))
+    ripple, means = torque_ripples(scene, part, build_train(still))
+    return replace(still, ripple=ripple, ripple_means=means)
 
 
 def _inertia(scene: Scene, part: BodyPart) -> float:
@@ -178,7 +195,8 @@ def assemble(asked: TrainInputs, excitations: Mapping[str, MeshExcitation]) -> G
     for (name, found), force, forward in zip(excitations.items(), static_forces(train), a_drives(train), strict=True):
         pair = asked.pairs[name]
         meshes.append(TrainMesh.under(pair if forward else pair.reversed(), found, float(force), a_drives=forward))
-    return GearTrain(train, tuple(meshes), abs(float(train.ratios[train.dof[asked.speed_of]])), asked.speed_of)
+    ratio = abs(float(train.ratios[train.dof[asked.speed_of]]))
+    return GearTrain(train, tuple(meshes), ratio, asked.speed_of, asked.ripple)
 
 
 @dataclass(frozen=True)
@@ -274,7 +292,7 @@ def motion_model(asked: MotionInputs, data: GearTrain, speed: float) -> MotionMo
     """The train at a speed of the first body [rad/s] with the effects that are on."""
     from fegear.dynamics.motion.motion_model import MotionModel
 
-    return MotionModel(data.train, excitations_at(asked, data, speed), speed, asked.taken_by)
+    return MotionModel(data.train, excitations_at(asked, data, speed), speed, asked.taken_by, data.ripple)
 
 
 def steady_motion(

@@ -113,6 +113,7 @@ def propagate(
             "looser tolerance."
         )
     note("changes of contact", int(found.changes))
+    note("ripple lines", packed.swing_rate.size)
     note("springs in time", sum(packed.varies(s) for s in range(packed.springs)))
     tangent = np.vstack([found.x[:, 1:], found.v[:, 1:]]) if tangents else np.zeros((0, 0))
     of_mesh = np.array([found.tooth[packed.mesh_of == m].max() for m in range(packed.damping.size)])

@@ -22,7 +22,8 @@ from fegear.dynamics.train.matrices import damping_matrix, elements, projected, 
 from fegear.dynamics.train.modes import modes
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.segments import segment_shapes
-from fegear.dynamics.train.train import Train
+from fegear.dynamics.train.torque_ripple import CommonPeriod, TorqueRipple, common_period
+from fegear.dynamics.train.train import Train, common_multiple
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,24 @@ class MotionParts:
     static: Array
     frequency: Array
     momentary: NDArray[np.bool_]
+    swings: Swings | None = None
+
+
+@dataclass(frozen=True)
+class Swings:
+    """Torques that fluctuate, line by line, in SI: load cos(rate t + phase).
+
+    Parameters
+    ----------
+    load : ndarray, shape (lines, n)
+        In the coordinates of `MotionParts`.
+    rate, phase : ndarray, shape (lines,)
+        [rad/s, rad].
+    """
+
+    load: Array
+    rate: Array
+    phase: Array
 
 
 class Moving(Protocol):
@@ -107,12 +126,15 @@ class MotionModel:
         Speed of the first body [rad/s], positive.
     loss_taken_by : str
         Body whose torque makes up for the mean friction loss (by default the one of the train's last torque).
+    ripple : tuple of TorqueRipple
+        Torques that fluctuate about the constant ones.
     """
 
     train: Train
     excitations: tuple[MeshExcitation, ...]
     speed: float
     loss_taken_by: str = ""
+    ripple: tuple[TorqueRipple, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.excitations) != len(self.train.meshes):
@@ -151,11 +173,32 @@ class MotionModel:
         )
 
     @cached_property
+    def mesh_turns(self) -> Fraction:
+        """Common period of all gear pairs in turns of the first body."""
+        return common_multiple(self.mesh_periods)
+
+    @cached_property
+    def common(self) -> CommonPeriod:
+        """How many of these periods close a motion under torque ripple, and what frequencies that takes."""
+        if not self.ripple:
+            return CommonPeriod(1, ())
+        return common_period(self.mesh_turns, max(self.train.mesh_orders), self.speed, self.ripple)
+
+    @cached_property
     def period(self) -> float:
         """Common period of all excitations [s]."""
-        parts = self.mesh_periods
-        turns = Fraction(math.lcm(*(p.numerator for p in parts)), math.gcd(*(p.denominator for p in parts)))
-        return float(turns) * 2.0 * math.pi / self.speed
+        return float(self.mesh_turns * self.common.count) * 2.0 * math.pi / self.speed
+
+    def _swings(self, shapes: Array) -> Swings | None:
+        """Torque ripple in coordinates whose shapes are columns of rotation angles."""
+        if not self.ripple:
+            return None
+        rows, rates, phases = [], [], []
+        for one, stretch in zip(self.ripple, self.common.stretch, strict=True):
+            rows.append(np.outer(np.abs(one.torques), shapes[self.train.dof[one.body]]))
+            rates.append(2.0 * math.pi * stretch * one.frequencies(self.speed))
+            phases.append(np.angle(one.torques))
+        return Swings(np.concatenate(rows), np.concatenate(rates), np.concatenate(phases))
 
     def parts(self) -> MotionParts:
         """The train in its modes, or in its segments where they are many; see `LONG`."""
@@ -186,6 +229,7 @@ class MotionModel:
             static=self.static,
             frequency=train.mesh_frequencies(self.speed),
             momentary=np.array([m.damping_law == "momentary" for m in train.meshes]),
+            swings=self._swings(shapes),
         )
 
 
@@ -266,6 +310,9 @@ class Packed:
     first: NDArray[np.int64]
     cuts: Array
     poly: Array
+    swing: Array
+    swing_rate: Array
+    swing_phase: Array
 
     @property
     def period(self) -> float:
@@ -285,7 +332,9 @@ class Packed:
     @cached_property
     def train_arrays(self) -> TrainArrays:
         """What the integrator knows of the train."""
-        return TrainArrays(self.K, self.C, self.f, self.free.astype(np.int64))
+        return TrainArrays(
+            self.K, self.C, self.f, self.free.astype(np.int64), self.swing, self.swing_rate, self.swing_phase
+        )
 
     @cached_property
     def mesh_arrays(self) -> MeshArrays:
@@ -358,6 +407,7 @@ def pack(model: Moving) -> Packed:
     time = 1.0 / parts.fastest
     force = unit**2 / (time**2 * length)
     springs, degree = _spring_tables(parts, length, force)
+    swings = parts.swings or Swings(np.zeros((0, parts.free.size)), np.zeros(0), np.zeros(0))
     K = parts.stiffness * time**2
     K[~parts.free, :] = 0.0
     K[:, ~parts.free] = 0.0
@@ -385,6 +435,9 @@ def pack(model: Moving) -> Packed:
         first=np.concatenate([[0], np.cumsum(pieces)]).astype(np.int64),
         cuts=np.concatenate([s[2] for s in springs]),
         poly=np.concatenate([s[3] for s in springs]).reshape(-1, 4, degree + 1),
+        swing=swings.load * (time**2 / unit),
+        swing_rate=swings.rate * time,
+        swing_phase=swings.phase,
     )
 
 

@@ -13,6 +13,7 @@ from fegear.base.arrays import Array
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.matrices import static_forces
 from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
 from fegear.geometry.pair import GearPair, Member
 
@@ -31,12 +32,15 @@ class GearTrain:
         Speed of the body that speeds refer to over that of the first body.
     speed_of : str
         That body.
+    ripple : tuple of TorqueRipple
+        Torques that fluctuate about the constant ones.
     """
 
     train: Train
     meshes: tuple[TrainMesh, ...]
     speed_ratio: float
     speed_of: str
+    ripple: tuple[TorqueRipple, ...] = ()
 
     @property
     def errors(self) -> tuple[Periodic, ...]:
@@ -57,6 +61,11 @@ class GearTrain:
     def names(self) -> tuple[str, ...]:
         """Names of the meshes."""
         return tuple(mesh.name for mesh in self.train.meshes)
+
+    @property
+    def exciters(self) -> tuple[str, ...]:
+        """Names of all that excites the train: its meshes, then its torque ripple."""
+        return (*self.names, *(one.name for one in self.ripple))
 
 
 #: A mesh idles where it carries less than this share of the largest mesh force.

@@ -15,6 +15,7 @@ from fegear.base.arrays import Array, Complex, first_of_largest
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.dynamics.train.matrices import damping_matrix, elements
+from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
 
 #: A squared frequency below this part of the largest one counts as rigid-body motion.
@@ -129,6 +130,13 @@ def campbell(train: Train, speeds: ArrayLike, harmonics: int = 3) -> Campbell:
     for array in (speed, natural, lines, critical):
         array.flags.writeable = False
     return Campbell(speed, natural, lines, critical)
+
+
+def ripple_critical(one: TorqueRipple, natural: Array) -> Array:
+    """Speeds of the first body [rad/s] at which harmonics of a ripple meet modes [Hz], shape (harmonics, modes)."""
+    if one.order is None:
+        raise RangeError("frequency", one.frequency, "is fixed: it meets a mode at every speed or at none")
+    return 2.0 * math.pi * natural / (one.order[0] / one.order[1] * one.harmonics[:, None])
 
 
 def same_way_up(shapes: Array) -> Array:

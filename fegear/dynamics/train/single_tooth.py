@@ -22,6 +22,7 @@ from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.tooth_force import ToothForce, dynamic_error, root_stress, tooth_force
+from fegear.dynamics.train.torque_response import ripple_increment
 from fegear.geometry.pair import GearPair, Member
 
 #: Lines that tooth forces are summed from, at least.
@@ -118,7 +119,7 @@ def force_at(
     k = np.where(data.meshes[i].error(x / pitch + number) > m, k, 0.0)
     return tooth_force(
         data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch, number=number, harmonics=harmonics,
-        other_phases=other_phases, phases=data.phases,
+        other_phases=other_phases, phases=data.phases, ripple=data.ripple,
     )  # fmt: skip
 
 
@@ -148,6 +149,10 @@ def mesh_force(data: GearTrain, i: int, speed: float, count: int, harmonics: int
         since = (phase - data.phases[i]) * float(frequency[j] / frequency[i])
         at = phase if j == i else ahead + since
         increment = increment + dynamic_error(train, errors, i, j, reference, at, harmonics)
+    since = (phase - data.phases[i]) / float(frequency[i])
+    for one in data.ripple:
+        found = ripple_increment(train, one, reference, i)
+        increment = increment + np.real(np.exp(2j * math.pi * np.outer(since, one.frequencies(reference))) @ found)
     linear = data.forces[i] + train.meshes[i].stiffness * increment
     return MeshForce(phase, time, total, linear, pairs)
 

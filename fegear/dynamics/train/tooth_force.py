@@ -24,6 +24,8 @@ from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.increments import dynamic_increments
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.spectra import mesh_force_spectrum
+from fegear.dynamics.train.torque_response import ripple_increment
+from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
 from fegear.fem.plane.root_stress import FilletCurve
 
@@ -33,7 +35,7 @@ _BLOCK = 256
 
 @dataclass(frozen=True)
 class ToothForce:
-    """Force on one tooth pair of a mesh through its engagement, shapes (n,) and (meshes, n) of other meshes' parts.
+    """Force on one tooth pair of a mesh through its engagement, shapes (n,) and (meshes + ripple, n) of others' parts.
 
     Time is zero when the mesh is at phase zero: when tooth pair number 0 is at the pitch point. Numbers of equations
     are those of Mark.
@@ -111,6 +113,7 @@ def tooth_force(
     harmonics: int = 256,
     other_phases: int = 64,
     phases: ArrayLike = 0.0,
+    ripple: Sequence[TorqueRipple] = (),
 ) -> ToothForce:
     """Force on one tooth pair of mesh `mesh` over its engagement.
 
@@ -135,7 +138,10 @@ def tooth_force(
     other_phases : int
         Relative phases of the other meshes tried for `cross_reach` and `cross_least`.
     phases : array_like, shape () or (meshes,)
-        Phase of each mesh at one and the same moment [its base pitches]; only differences between meshes matter.
+        Phase of each mesh at one and the same moment [its base pitches]; only differences between meshes matter, and
+        the moment is the time zero of torque ripple.
+    ripple : sequence of TorqueRipple
+        Torques that fluctuate: each adds a part as another mesh does.
     """
     place, k, m = (np.array(v, dtype=float) for v in (x, stiffness, modification))
     if not place.shape == k.shape == m.shape or place.ndim != 1:
@@ -151,20 +157,18 @@ def tooth_force(
     own = k * (smooth - exact)
     at_once = np.broadcast_to(np.asarray(phases, dtype=float), (len(errors),))
     since = time - at_once[mesh] / float(frequency[mesh])  # from the moment that the phases hold for
-    cross = np.zeros((len(errors), place.size))
+    cross = np.zeros((len(errors) + len(ripple), place.size))
     reach, least = np.zeros_like(cross), np.zeros_like(cross)
     for j in range(len(errors)):
         if j == mesh:
             continue
         n, terms = _terms(train, errors, mesh, j, speed, harmonics)
         other = (at_once[j] + since * float(frequency[j])) / errors[j].pitches
-        all_phases = np.zeros((place.size, other_phases))
-        for start in range(0, n.size, _BLOCK):
-            part = slice(start, start + _BLOCK)
-            shift = np.exp(2j * math.pi * np.outer(n[part], np.arange(other_phases) / other_phases))
-            waves = np.exp(2j * math.pi * np.outer(other, n[part]))
-            all_phases += k[:, None] * 2.0 * np.real(waves @ (terms[part, None] * shift))
-        cross[j], reach[j], least[j] = all_phases[:, 0], all_phases.max(axis=1), all_phases.min(axis=1)
+        cross[j], reach[j], least[j] = _at_all_phases(k, other, n, terms, other_phases)
+    for j, one in enumerate(ripple, start=len(errors)):
+        terms = 0.5 * ripple_increment(train, one, speed, mesh)
+        other = since * float(one.base_frequency(speed))
+        cross[j], reach[j], least[j] = _at_all_phases(k, other, one.harmonics, terms, other_phases)
     for array in (place, time, static, own, cross, reach, least):
         array.flags.writeable = False
     return ToothForce(place, time, static, own, cross, reach, least)
@@ -198,6 +202,19 @@ def root_stress(
     return largest_stress(curve, np.asarray(fillet), "tension", radius)
 
 
+def _at_all_phases(
+    k: Array, phase: Array, n: NDArray[np.integer], terms: NDArray[np.complexfloating], count: int
+) -> tuple[Array, Array, Array]:
+    """A part of a tooth force at its phases, and its largest and smallest over so many shifts of them, shapes (n,)."""
+    found = np.zeros((phase.size, count))
+    for start in range(0, n.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        shift = np.exp(2j * math.pi * np.outer(n[part], np.arange(count) / count))
+        waves = np.exp(2j * math.pi * np.outer(phase, n[part]))
+        found += k[:, None] * 2.0 * np.real(waves @ (terms[part, None] * shift))
+    return found[:, 0], found.max(axis=1), found.min(axis=1)
+
+
 class Pull(NamedTuple):
     """Smallest linearised force of a mesh over some speeds.
 
@@ -222,13 +239,20 @@ class Pull(NamedTuple):
 
 
 def mesh_force_range(data: GearTrain, i: int, speed: float, harmonics: int) -> tuple[float, float]:
-    """Smallest and largest force of mesh `i` at a speed of the first body [rad/s], others at their worst phase."""
+    """Smallest and largest force of mesh `i` at a speed of the first body [rad/s], others at their worst phase.
+
+    Torque ripple counts as another mesh does.
+    """
     found = mesh_force_spectrum(data.train, data.errors, [speed], harmonics, rotational=True)
     size = 16 * found.orders.size
     spectra = [np.concatenate([[0.0], found.coefficients[i, j, :, 0]]) for j in range(len(data.names))]
     parts = [size * np.fft.irfft(np.pad(row, (0, size // 2 + 1 - row.size)), size) for row in spectra]
     mean = float(data.forces[i])
-    return mean + sum(float(p.min()) for p in parts), mean + sum(float(p.max()) for p in parts)
+    low, high = mean + sum(float(p.min()) for p in parts), mean + sum(float(p.max()) for p in parts)
+    for one in data.ripple:
+        least, most = one.extremes(ripple_increment(data.train, one, speed, i) * data.train.meshes[i].stiffness)
+        low, high = low + least, high + most
+    return low, high
 
 
 def largest_pull(data: GearTrain, i: int, speeds: Sequence[float] | Array, harmonics: int) -> Pull | None:

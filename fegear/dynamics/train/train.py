@@ -161,6 +161,11 @@ class Train:
         return tuple(abs(self.exact_ratios[self.dof[mesh.a]]) * mesh.teeth_a for mesh in self.meshes)
 
     @cached_property
+    def mesh_turns(self) -> Fraction:
+        """Turns of the first body after which all gear pairs stand as before, teeth alike."""
+        return common_multiple(1 / order for order in self.mesh_orders)
+
+    @cached_property
     def approach(self) -> Array:
         """Rows that turn rotation angles into the approach of each gear pair [m], shape (meshes, size)."""
         rows = np.zeros((len(self.meshes), self.size))
@@ -180,6 +185,12 @@ class Train:
             if mesh.name == name:
                 return index
         raise InputError("mesh", name, "is no gear pair of this train")
+
+
+def common_multiple(parts: Iterable[Fraction]) -> Fraction:
+    """Smallest multiple of every one of some positive ratios."""
+    known = tuple(parts)
+    return Fraction(math.lcm(*(p.numerator for p in known)), math.gcd(*(p.denominator for p in known)))
 
 
 def joined_bodies(bodies: Sequence[Body], shafts: Iterable[Shaft]) -> dict[str, int]:

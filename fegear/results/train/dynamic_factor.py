@@ -16,7 +16,7 @@ from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.table import Table
+from fegear.engine.table import Column, Table
 from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
 
 if TYPE_CHECKING:
@@ -47,12 +47,15 @@ class DynamicFactorData:
         Whether they come from motions in time; else from the linearised train.
     pull : Pull or None
         How far the force of the linearised mesh falls below zero.
+    still : SpeedChart or None
+        The same without torque ripple, where there is any.
     """
 
     chart: SpeedChart | None
     speed_of: str
     in_time: bool = False
     pull: Pull | None = None
+    still: SpeedChart | None = None
 
 
 @dataclass(frozen=True)
@@ -91,15 +94,19 @@ def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFact
     speeds, i = motion.speeds / data.speed_ratio, data.train.mesh_index(asked.mesh)
     if carries_nothing(data, i):
         return DynamicFactorData(None, data.speed_of)
-    pull = None
+    pull = still = None
     if motion.in_time:
         sweep: SweepData = upstream[Task("motion")]
         chart = SpeedChart.of(speeds, sweep.states, i, float(data.forces[i]))
+        if sweep.still:
+            still = SpeedChart.of(speeds, sweep.still, i, float(data.forces[i]))
     else:
         chart = linear_chart(data, i, speeds, asked.positions, asked.harmonics, work.progress)
         pull = largest_pull(data, i, speeds, asked.harmonics)
+        if data.ripple:
+            still = linear_chart(replace(data, ripple=()), i, speeds, asked.positions, asked.harmonics)
     chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
-    return DynamicFactorData(chart, data.speed_of, motion.in_time, pull)
+    return DynamicFactorData(chart, data.speed_of, motion.in_time, pull, still)
 
 
 def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
@@ -117,6 +124,7 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
             factor,
             column_of(chart, "apart", further=zero),
             column_of(chart, "behind", further=zero),
+            *_without_ripple(found.still),
             *columns_of(chart, "periods", "mesh_force_factor", "kinds", "median", "upper", "measured"),
             # the other end of what is seen of a motion that is still on its way
             *(columns_of(chart, "lower") if "not settled" in chart.kinds else ()),
@@ -137,6 +145,10 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
         Value(f"{name}.largest_dynamic_factor", worst, "", error, f"{over}, direction {motion.direction}{sample}"),
         Value(f"{name}.speed_of_largest", where, "rpm", None, of_body),
     ]
+    if found.still is not None:
+        still = float(found.still.dynamic_factor[np.isfinite(found.still.dynamic_factor)].max(initial=0.0))
+        without = "over the speeds, without torque ripple"
+        values.append(Value(f"{name}.largest_dynamic_factor_without_ripple", still, "", None, without))
     if parting:
         lost = float(chart.apart.max())
         values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
@@ -147,7 +159,8 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
             "dynamic factor is that of the mesh force."
         )
     averaged = found.in_time and motion.method == "averaging"
-    figures = (_figure(name, held, found.speed_of, averaged=averaged),) if held.speeds.size > 1 else ()
+    still_held = found.still.at(~chart.growing) if found.still is not None and held is not chart else found.still
+    figures = (_figure(name, held, found.speed_of, still_held, averaged=averaged),) if held.speeds.size > 1 else ()
     return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
 
 
@@ -175,13 +188,33 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def _figure(name: str, chart: SpeedChart, speed_of: str, *, averaged: bool = False) -> Figure:
-    """Dynamic factor over speed, the share of the time without contact where there is any, and how averaging went."""
+def _without_ripple(still: SpeedChart | None) -> tuple[Column, ...]:
+    """Columns of what the meshes do by themselves."""
+    if still is None:
+        return ()
+    parts = (("dynamic_factor", "tooth force"), ("mesh_force_factor", "mesh force"))
+    return tuple(
+        column_of(still, key, name=f"{key}_without_ripple", meaning=f"largest {what} over the mean mesh force, without "
+                  "torque ripple")
+        for key, what in parts
+    )  # fmt: skip
+
+
+def _figure(
+    name: str, chart: SpeedChart, speed_of: str, still: SpeedChart | None = None, *, averaged: bool = False
+) -> Figure:
+    """Dynamic factor over speed, the share of the time without contact where there is any, and how averaging went.
+
+    `still`: the same without torque ripple.
+    """
     speed, x = drawn(chart, "speeds"), Axis(f"speed of {speed_of}", "rpm")
     items: list[Curve | Points] = [
         Curve(speed, chart.dynamic_factor, "tooth force", "own force", markers=True, width=1.2),
         Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", markers=True, width=0.9),
     ]
+    if still is not None:
+        alone = np.where(np.isfinite(still.dynamic_factor), still.dynamic_factor, np.nan)
+        items.append(Curve(speed, alone, "tooth force without torque ripple", "static", markers=False, width=1.2))
     odd = np.array([kind != "periodic" for kind in chart.kinds])
     if odd.any():
         notes = tuple(kind for kind in chart.kinds if kind != "periodic")

@@ -34,7 +34,7 @@ from fegear.results.pair.root_stress_history import (
     told,
 )
 from fegear.results.train.gear_train import RPM, needs_one_speed, needs_plane_teeth, own_meshes
-from fegear.results.train.tooth_force import ToothForceData, over_time
+from fegear.results.train.tooth_force import ToothForceData, others_of, over_time, rippled
 
 
 @dataclass(frozen=True)
@@ -130,12 +130,13 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
             if known:
                 left = f"what {by} leave in stress_own_mesh{end}"
                 columns.append(column_of(s, "error", name=f"stress_error{end}", meaning=left))
-            alone = len(made.force.train.names) == 1
-            largest = [("", s.total, "" if alone else "with all meshes, at the case's phases, ")]
+            alone = len(made.force.train.exciters) == 1
+            others, more = others_of(made.force.train), rippled(made.force.train)
+            largest = [("", s.total, "" if alone else f"with all meshes{more}, at the case's phases, ")]
             if not alone:
                 largest += [
-                    ("_any_phase", s.any_phase, "at most, whatever the phases of the other meshes, "),
-                    ("_own_mesh", s.own, "without the other meshes, "),
+                    ("_any_phase", s.any_phase, f"at most, whatever the phases of {others}, "),
+                    ("_own_mesh", s.own, f"without {others}, "),
                 ]
             values += [
                 Value(f"{name}.{member}.largest_dynamic_root_tension{which}{end}", float(np.fmax.reduce(of)), "MPa",
@@ -154,7 +155,7 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
 def _figure(data: DynamicRootStress, asked: DynamicRootInputs) -> Figure:
     force, train = data.force.force, data.force.train
     name, x, panels = asked.mesh, drawn(force, "x"), []
-    others = len(train.names) > 1
+    others = len(train.exciters) > 1
     for member, found in data.stress.items():
         curves = []
         for k, (source, s) in enumerate(found.items()):
@@ -162,7 +163,7 @@ def _figure(data: DynamicRootStress, asked: DynamicRootInputs) -> Figure:
             curves.append(Curve(x, drawn(s, "own"), f"static and own increment{by}", f"series:{k}"))
             if k == 0:
                 if others:
-                    total = Curve(x, drawn(s, "total"), f"with the other meshes{by}", "with other meshes", width=1.2)
+                    total = Curve(x, drawn(s, "total"), f"with {others_of(train)}{by}", "with other meshes", width=1.2)
                     curves.append(total)
                 curves.append(Curve(x, drawn(s, "static"), f"quasi-static{by}", "static"))
         marks = path_marks(train.meshes[data.force.mesh].pair)

@@ -136,6 +136,8 @@ def _reference_remarks(data: GearTrain, asked: TrainInputs) -> list[str]:
 
 def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
     remarks = _reference_remarks(data, asked)
+    if asked.idle_ripple:
+        remarks.append("train.torque_ripple is given, but effects.torque_ripple is off: torques are constant.")
     values: list[Value] = []
     for (name, part), mesh, one in zip(asked.part.mesh.items(), data.train.meshes, data.meshes, strict=True):
         if not one.a_drives:
@@ -206,6 +208,17 @@ def own_meshes(scene: Scene) -> tuple[str, ...]:
 def carries_nothing(data: GearTrain, mesh: int) -> bool:
     """Whether a mesh idles."""
     return bool(data.forces[mesh] <= _NO_SHARE * float(np.max(np.abs(data.forces))))
+
+
+def from_exciter(data: GearTrain, number: int) -> str:
+    """Entry of a legend for the part that one mesh, or one torque ripple, excites."""
+    kind = "mesh" if number < len(data.names) else "torque ripple"
+    return f"from {kind} {data.exciters[number]}"
+
+
+def what_excites(data: GearTrain) -> str:
+    """What parts of a force are told apart by."""
+    return "the mesh or torque ripple that excites it" if data.ripple else "the mesh that excites it"
 
 
 def needs_plane_teeth(scene: Scene, mesh: str, key: str, value: str) -> None:

@@ -17,6 +17,13 @@ from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, gear_train, meshes, needs_one_speed, needs_train, pull_remarks
+from fegear.results.train.ripple_spectrum import (
+    ripple_points,
+    ripple_stems,
+    ripple_table,
+    ripple_values,
+    ripple_waterfall_table,
+)
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -25,6 +32,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.spectra import MeshForceSpectrum
     from fegear.dynamics.train.tooth_force import Pull
+    from fegear.dynamics.train.torque_response import RippleSpectrum
 
 
 #: Harmonics of the waterfall at most.
@@ -41,27 +49,38 @@ _NO_FORCE = 1e-12
 
 @dataclass(frozen=True)
 class SpectrumData:
-    """Forces in one mesh at the case's speed, over its speeds (the waterfall) where it gives a range, and its pull."""
+    """Forces in one mesh at the case's speed, over its speeds (the waterfall) where it gives a range, and its pull.
+
+    `ripple` and `ripple_waterfall` are the same of torque ripple; None without it.
+    """
 
     train: GearTrain
     mesh: int
     spectrum: MeshForceSpectrum
     waterfall: MeshForceSpectrum | None
     pull: Pull | None
+    ripple: RippleSpectrum | None = None
+    ripple_waterfall: RippleSpectrum | None = None
 
 
 def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> SpectrumData:
     from fegear.dynamics.train.spectra import mesh_force_spectrum
     from fegear.dynamics.train.tooth_force import largest_pull
+    from fegear.dynamics.train.torque_response import ripple_spectrum
 
     data, part = gear_train(upstream), asked.part
     i, speed, speeds = data.train.mesh_index(asked.name), part.one_speed / data.speed_ratio, part.speed_values
     found = mesh_force_spectrum(data.train, data.errors, [speed], part.harmonics, rotational=True, phases=data.phases)
-    waterfall = None
+    waterfall, ripple, rippled = None, None, None
+    if data.ripple:
+        ripple = ripple_spectrum(data.train, data.ripple, [speed])
     if speeds.size > 1:
         harmonics = min(part.harmonics, _WATERFALL_LINES)
         waterfall = mesh_force_spectrum(data.train, data.errors, speeds / data.speed_ratio, harmonics)
-    return SpectrumData(data, i, found, waterfall, largest_pull(data, i, [speed], part.harmonics))
+        if data.ripple:
+            rippled = ripple_spectrum(data.train, data.ripple, speeds / data.speed_ratio)
+    pull = largest_pull(data, i, [speed], part.harmonics)
+    return SpectrumData(data, i, found, waterfall, pull, ripple, rippled)
 
 
 def _present(made: SpectrumData, asked: Reads[DynamicsPart]) -> Outcome:
@@ -84,6 +103,11 @@ def _present(made: SpectrumData, asked: Reads[DynamicsPart]) -> Outcome:
     tables = [table]
     if made.waterfall is not None:
         tables.append(_waterfall_table(name, i, made.waterfall, data))
+    if made.ripple is not None:
+        values = (*ripple_values(name, i, made.ripple), *values)
+        tables.append(ripple_table(name, i, made.ripple))
+    if made.ripple_waterfall is not None:
+        tables.append(ripple_waterfall_table(name, i, made.ripple_waterfall, data))
     settings: dict[str, object] = {"harmonics": asked.part.harmonics, "speed": asked.part.one_speed}
     return Outcome(made, tuple(tables), values, settings, pull_remarks(made.pull), _spectrum_figures(made))
 
@@ -127,14 +151,16 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
                   tuple(f"harmonic {n:.6g}" for n in orders),
                   tuple(f"{n:.0f}" if known else "" for n, known in zip(orders, whole, strict=True)))
         )  # fmt: skip
+    if data.ripple is not None:
+        lines += ripple_stems(data.mesh, data.ripple, len(train.names))
     above = f" Lines above {top * 1e-3:.4g} kHz hold {left:.2g} of the mean square; the table has them."
     beyond = above if left > 0.0 else ""
     force, rpm = axis_of(found, "amplitudes", log=True), float(found.speeds[0]) * train.speed_ratio * RPM
     spectrum = Figure(
         f"mesh_force_spectrum_{name}",
         f"Spectrum of the force in mesh {name}",
-        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: lines by the mesh that excites them, with the number of "
-        f"the harmonic of its mesh frequency; drawn down to {_WEAKEST:g} of the strongest.{beyond}",
+        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: lines by {_exciter(train)} that excites them, with the "
+        f"number of the harmonic of its mesh frequency; drawn down to {_WEAKEST:g} of the strongest.{beyond}",
         (Panel(Axis("frequency", "kHz", zero=True), force, tuple(lines)),),
         under=f"{rpm:.6g} rpm",
     )
@@ -147,17 +173,24 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
     if not strong.any():
         return figures
     speed = np.broadcast_to(over.speeds * train.speed_ratio * RPM, size.shape)[strong]
-    points = Points(
+    points = [Points(
         over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,
         notes=tuple(f"{force:.4g} N" for force in size[strong]),
-    )  # fmt: skip
+    )]  # fmt: skip
+    if data.ripple_waterfall is not None:
+        points += ripple_points(data.mesh, data.ripple_waterfall, train)
+    crosses = "" if data.ripple_waterfall is None else " Crosses: lines of torque ripple."
     waterfall = Figure(
         f"mesh_force_waterfall_{name}",
         f"Waterfall of the force in mesh {name}",
-        f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.",
-        (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), (points,)),),
+        f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.{crosses}",
+        (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), tuple(points)),),
     )
     return *figures, waterfall
+
+
+def _exciter(train: GearTrain) -> str:
+    return "the mesh or torque ripple" if train.ripple else "the mesh"
 
 
 def _power_figure(data: SpectrumData, rpm: float) -> Figure:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.base.errors import InputError
-from fegear.case.built.neglected_effects import NeglectedInMotion, motion_remarks, neglected_in_motion
-from fegear.case.built.train import MotionInputs, motion_inputs, steady_motions
+from fegear.case.built.neglected_effects import NeglectedInMotion, motion_remarks, neglected_in_motion, percent
+from fegear.case.built.train import MotionInputs, build_train, motion_inputs, steady_motions, train_inputs
+from fegear.case.part import at
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.train.torque_ripple import LONGEST, common_period
 from fegear.engine.citation import Citation
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
@@ -24,15 +29,21 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
 
 _RPM = 30.0 / math.pi
+#: Shift of a ripple's frequency that is said.
+_SHIFTED = 1e-9
 
 
 @dataclass(frozen=True)
 class SweepData:
-    """Steady motions over speeds, in increasing order of speed, and what they neglect."""
+    """Steady motions over speeds, in increasing order of speed, and what they neglect.
+
+    `still`: the same without torque ripple, where there is any.
+    """
 
     train: GearTrain
     states: tuple[SteadyState, ...]
     neglected: NeglectedInMotion
+    still: tuple[SteadyState, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -74,13 +85,28 @@ def check_friction(scene: Scene, _subject: str = "") -> None:
 
 
 def check_motion(scene: Scene, subject: str = "") -> None:
-    """Refuse friction where teeth are lumped."""
+    """Refuse friction where teeth are lumped, and torque ripple that shares no period with the meshes."""
     check_friction(scene, subject)
+    _check_ripple(scene)
     effects = scene.case.effects
     if effects.friction and not effects.parametric:
         raise InputError(
             "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
         )
+
+
+def _check_ripple(scene: Scene) -> None:
+    """Refuse torque ripple so slow that no motion can be closed over its period."""
+    if not scene.case.effects.torque_ripple or not motion_inputs(scene).in_time:
+        return
+    asked = train_inputs(scene)
+    train = build_train(asked)
+    ratio = abs(float(train.ratios[train.dof[asked.speed_of]]))
+    try:
+        for speed in scene.case.dynamics.speed_values / ratio if asked.ripple else ():
+            common_period(train.mesh_turns, max(train.mesh_orders), float(speed), asked.ripple)
+    except InputError as error:
+        raise at("train", error) from None
 
 
 def _inputs(scene: Scene, _subject: str) -> SweepInputs:
@@ -91,9 +117,15 @@ def _inputs(scene: Scene, _subject: str) -> SweepInputs:
 
 def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
     data = gear_train(upstream)
-    states = steady_motions(asked.motion, data, work.progress)
+    if data.ripple:
+        # side by side: what the meshes do by themselves, and what they do under a torque that fluctuates
+        half = [lambda share, start=start: work.progress(start + 0.5 * share) for start in (0.0, 0.5)]
+        still = steady_motions(asked.motion, replace(data, ripple=()), half[0])
+        states = steady_motions(asked.motion, data, half[1])
+    else:
+        still, states = (), steady_motions(asked.motion, data, work.progress)
     neglected = neglected_in_motion(asked.motion, data, states) if asked.neglected else NeglectedInMotion({}, {})
-    return SweepData(data, states, neglected)
+    return SweepData(data, states, neglected, still)
 
 
 def _present(found: SweepData, asked: SweepInputs) -> Outcome:
@@ -102,6 +134,7 @@ def _present(found: SweepData, asked: SweepInputs) -> Outcome:
     remarks += _without_backlash(data) if motion.contact_loss else []
     if asked.idle_friction:
         remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
+    remarks += _common_period(data, states)
     averaged = motion.method == "averaging"
     remarks += averaging_remarks(data, states) if averaged else _unsteady(data, states)
     settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
@@ -122,6 +155,28 @@ def _without_backlash(data: GearTrain) -> list[str]:
             f'thickness_allowance of a gear, or train.mesh.{mesh.name}.backlash (a length or "unlimited").'
         )
     return said
+
+
+def _common_period(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
+    """Over which period motions under torque ripple are closed, and whose frequencies were shifted for that."""
+    models = [state.model for state in states if isinstance(state.model, MotionModel) and state.model.ripple]
+    if not models:
+        return []
+    shifts = np.array([model.common.stretch for model in models]) - 1.0
+    shifted = []
+    for one, shift in zip(data.ripple, shifts.T, strict=True):
+        worst = int(np.argmax(np.abs(shift)))
+        if abs(shift[worst]) > _SHIFTED:
+            base = float(one.base_frequency(models[worst].speed))
+            shifted.append(f"{one.name} (by up to {percent(float(abs(shift[worst])))}: {base:.6g} Hz "
+                           f"taken as {base * (1.0 + shift[worst]):.6g} Hz)")  # fmt: skip
+    if not shifted:
+        return []
+    sentence = (
+        f"Torque ripple {', '.join(shifted)}: no period within {LONGEST:,} mesh periods is common with the meshes; the "
+        "motion takes the nearest frequency that has one."
+    )
+    return [sentence]
 
 
 def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:

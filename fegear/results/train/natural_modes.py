@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fegear.case.dynamics import DynamicsPart
 from fegear.dynamics.train.gear_train import GearTrain
-from fegear.dynamics.train.modes import Campbell, Modes
+from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
 from fegear.engine.declared import column_of, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
@@ -73,6 +73,7 @@ def _present_modes(known: ModesData, asked: Reads[DynamicsPart]) -> Outcome:
         ]
         title = "Speeds at which mesh harmonics meet natural frequencies"
         tables.append(Table("critical_speeds", tuple(columns), title))
+        tables += _ripple_table(data, diagram)
     values = tuple(
         value_of(found, "frequencies", "", si=found.frequencies[k], name=f"natural_frequency_{k}") for k in count[1:]
     )
@@ -82,6 +83,37 @@ def _present_modes(known: ModesData, asked: Reads[DynamicsPart]) -> Outcome:
         values,
         figures=_modes_figures(known, math.nan if asked.part.speed is None else asked.part.speed),
     )
+
+
+def _ripple_table(data: GearTrain, diagram: Campbell) -> list[Table]:
+    """Speeds at which torque ripple meets natural frequencies; of a fixed frequency there is none."""
+    found = [(one, ripple_critical(one, diagram.natural)) for one in data.ripple if one.order is not None]
+    if not found:
+        return []
+    place = [1 + np.indices(critical.shape) for _, critical in found]
+    columns = (
+        Column("ripple", np.array([one.name for one, c in found for _ in range(c.size)], dtype=str), "", "its name"),
+        Column("n", np.concatenate([one.harmonics[p[0].ravel() - 1] for (one, _), p in zip(found, place, strict=True)]),
+               "", "number of its harmonic"),
+        Column("mode", np.concatenate([p[1].ravel() for p in place]), "", "natural mode that it meets"),
+        Column("speed", np.concatenate([c.ravel() for _, c in found]) * data.speed_ratio, "rpm",
+               f"speed of {data.speed_of}"),
+    )  # fmt: skip
+    title = "Speeds at which torque ripple meets natural frequencies"
+    return [Table("torque_ripple_critical_speeds", columns, title)]
+
+
+def _ripple_curves(train: GearTrain, speed: NDArray[np.float64], top: float) -> list[Curve]:
+    """Frequencies of torque ripple over speed, below the upper end of the diagram [Hz]."""
+    drawn = []
+    for k, one in enumerate(train.ripple):
+        for n, line in zip(one.harmonics, one.frequencies(speed / train.speed_ratio / _RPM), strict=True):
+            if line.min() > top:
+                continue
+            label = f"torque ripple {one.name}" + (f", harmonic {n}" if len(one.harmonics) > 1 else "")
+            role = f"series:{len(train.names) + k}"
+            drawn.append(Curve(speed, line * 1e-3, label, role, dash="dot", width=1.4, markers=False))
+    return drawn
 
 
 def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
@@ -115,6 +147,7 @@ def _campbell_figure(train: GearTrain, diagram: Campbell, operating: float) -> F
             label, dash = f"mesh {name}, harmonic {h + 1}", DASHES[h % len(DASHES)]
             line = diagram.lines[m, h] * 1e-3
             items.append(Curve(speed, line, label, f"series:{m}", dash=dash, width=1.4, markers=False))
+    items += _ripple_curves(train, speed, 1e3 * top)
     for m, name in enumerate(train.names):
         line, mode = np.indices(diagram.critical[m].shape)
         met = diagram.critical[m] * train.speed_ratio * _RPM
@@ -128,10 +161,11 @@ def _campbell_figure(train: GearTrain, diagram: Campbell, operating: float) -> F
     marks = [Mark("y", at * 1e-3, word) for at, word in _mode_words(diagram.natural, _ROOM_OF_MODES * 1e3 * top)]
     if low <= operating * _RPM <= high:
         marks.append(Mark("x", operating * _RPM, f"operating speed {operating * _RPM:.5g} rpm"))
+    rippled = " Dotted: torque ripple; torque_ripple_critical_speeds.csv has its speeds." if train.ripple else ""
     return Figure(
         "campbell", "Campbell diagram",
         "Where harmonics of the mesh frequencies (sloping) meet undamped natural frequencies (level): the points; "
-        "critical_speeds.csv has their speeds.",
+        f"critical_speeds.csv has their speeds.{rippled}",
         (Panel(
             Axis(f"speed of {train.speed_of}", "rpm", limits=(low, high)), Axis("frequency", "kHz", limits=(0.0, top)),
             tuple(items), tuple(marks), height=1.3,

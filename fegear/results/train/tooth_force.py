@@ -15,7 +15,16 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
-from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, own_meshes, pull_remarks
+from fegear.results.train.gear_train import (
+    RPM,
+    from_exciter,
+    gear_train,
+    needs_one_speed,
+    needs_train,
+    own_meshes,
+    pull_remarks,
+    what_excites,
+)
 
 if TYPE_CHECKING:
     from fegear.case.dynamics import DynamicsPart
@@ -75,18 +84,19 @@ def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
             *columns_of(force, "time", "x", "total", "with_others", "static", "own"),
             *(
                 column_of(force, "cross", force.cross[j], name=f"increment_from_{other}")
-                for j, other in enumerate(data.names)
+                for j, other in enumerate(data.exciters)
                 if j != i
             ),
         ),
         f"Force on one tooth pair of mesh {name}",
     )
-    alone = len(data.names) == 1
-    largest = [("", force.with_others, "" if alone else "with all meshes, at the case's phases, ")]
+    alone = len(data.exciters) == 1
+    others = others_of(data)
+    largest = [("", force.with_others, "" if alone else f"with all meshes{rippled(data)}, at the case's phases, ")]
     if not alone:
         largest += [
-            ("_any_phase", force.at_worst_phases, "at most, whatever the phases of the other meshes, "),
-            ("_own_mesh", force.total, "without the other meshes, "),
+            ("_any_phase", force.at_worst_phases, f"at most, whatever the phases of {others}, "),
+            ("_own_mesh", force.total, f"without {others}, "),
         ]
     values = [
         *(
@@ -98,9 +108,9 @@ def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
         *(
             Value(f"{name}.largest_increment_from_{other}", float(force.cross_peak[j]), "N", None,
                   "over the engagement and all relative phases")
-            for j, other in enumerate(data.names) if j != i
+            for j, other in enumerate(data.exciters) if j != i
         ),
-        *_mesh_force_values(name, made.together),
+        *_mesh_force_values(name, made.together, data),
     ]  # fmt: skip
     remarks = pull_remarks(made.pull)
     uneven = data.meshes[i].error.pitches
@@ -116,8 +126,19 @@ def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
     return Outcome(made, tables, tuple(values), settings, remarks, figures)
 
 
-def _mesh_force_values(name: str, found: MeshForce) -> tuple[Value, ...]:
-    about = "sum of the forces on the tooth pairs in contact, with all meshes, at the case's phases"
+def others_of(data: GearTrain) -> str:
+    """What excites a mesh besides itself, in words."""
+    ripple = "torque ripple" if data.ripple else ""
+    return " and ".join(filter(None, ("the other meshes" if len(data.names) > 1 else "", ripple)))
+
+
+def rippled(data: GearTrain) -> str:
+    """What follows "all meshes" where torques fluctuate, too."""
+    return " and torque ripple" if data.ripple else ""
+
+
+def _mesh_force_values(name: str, found: MeshForce, data: GearTrain) -> tuple[Value, ...]:
+    about = f"sum of the forces on the tooth pairs in contact, with all meshes{rippled(data)}, at the case's phases"
     return (
         Value(f"{name}.largest_mesh_force_of_teeth", float(found.of_teeth.max()), "N", None, about),
         Value(f"{name}.least_mesh_force_of_teeth", float(found.of_teeth.min()), "N", None, about),
@@ -149,19 +170,19 @@ def _while(data: ToothForceData) -> str:
 
 
 def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
-    force, names = data.force, data.train.names
+    force, names = data.force, data.train.exciters
     name, x, marks = names[data.mesh], drawn(force, "x"), path_marks(data.train.meshes[data.mesh].pair)
     top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
     if len(names) > 1:
-        top.append(Curve(x, force.with_others, "with the other meshes", "with other meshes"))
+        top.append(Curve(x, force.with_others, f"with {others_of(data.train)}", "with other meshes"))
     parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
-    below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j}") for j, part in parts.items()]
+    below = [Curve(x, part, from_exciter(data.train, j), f"series:{j}") for j, part in parts.items()]
     mean = Mark("y", float(data.train.forces[data.mesh]))
     return Figure(
         f"tooth_force_{name}",
         f"Force on one tooth pair of mesh {name}",
         f"Mesh {name}: force on one tooth pair {_while(data)}; the level line "
-        "is the mean mesh force. Below: what the vibration adds, by the mesh that excites it.",
+        f"is the mean mesh force. Below: what the vibration adds, by {what_excites(data.train)}.",
         (
             Panel(over_time(force), axis_of(force, "total", zero=True), tuple(top), (*marks, mean), height=1.2),
             Panel(LINE_OF_ACTION, axis_of(force, "own"), tuple(below), marks, height=0.8),

@@ -9,12 +9,18 @@ DONE, TOO_MANY_STEPS, TOO_MANY_EVENTS = 0, 1, 2
 
 
 class TrainArrays(NamedTuple):
-    """The linear part of the train: K, C of shape (n, n), constant forces f (n,), free (n,) 1 where a place matters."""
+    """The linear part of the train: K, C of shape (n, n), constant forces f (n,), free (n,) 1 where a place matters.
+
+    Forces that fluctuate, line by line: swing (lines, n) cos(swing_rate t + swing_phase).
+    """
 
     K: Any
     C: Any
     f: Any
     free: Any
+    swing: Any
+    swing_rate: Any
+    swing_phase: Any
 
 
 class MeshArrays(NamedTuple):
@@ -94,7 +100,7 @@ class Work(NamedTuple):
 
     Series in time of the motion X (order + 1, n, columns), of strains and loads of the springs, of damping force,
     damping coefficient and rate of approach of the gear pairs; local polynomials of the springs; accelerations; which
-    springs exist.
+    springs exist; series of the forces that fluctuate (n, order + 1).
     """
 
     X: Any
@@ -106,3 +112,4 @@ class Work(NamedTuple):
     local: Any
     acceleration: Any
     exists: Any
+    swing: Any

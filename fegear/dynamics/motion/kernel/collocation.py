@@ -7,16 +7,19 @@ from typing import Any
 import numpy as np
 
 from fegear.dynamics.motion.kernel.polynomials import value_at
-from fegear.dynamics.motion.kernel.series import damping_at
+from fegear.dynamics.motion.kernel.series import damping_at, swing_at
 
 
 def _matrices_at(
-    train: Any, meshes: Any, springs: Any, work: Any, status: Any, t: float, K: Any, C: Any, f: Any
+    train: Any, meshes: Any, springs: Any, work: Any, status: Any, t: float, K: Any, C: Any, f: Any, start: float
 ) -> None:
     """Stiffness, damping and force of the whole train at time t of the step, teeth in contact included."""
     n = train.K.shape[0]
+    swings = train.swing_rate.shape[0] > 0
     for i in range(n):
         f[i] = train.f[i]
+        if swings:
+            f[i] += swing_at(train, i, start + t)
         for j in range(n):
             K[i, j], C[i, j] = train.K[i, j], train.C[i, j]
     for m in range(meshes.approach.shape[0]):
@@ -38,9 +41,10 @@ def _matrices_at(
 
 
 def collocate(  # noqa: C901  (loops over nodes, coordinates and tangents)
-    train: Any, meshes: Any, springs: Any, rule: Any, radau: Any, work: Any, status: Any, x: Any, v: Any, h: float
-) -> bool:
-    """One collocation step of length h into the series of `work`; False where its polynomial misses the tolerance.
+    train: Any, meshes: Any, springs: Any, rule: Any, radau: Any, work: Any, status: Any, x: Any, v: Any, h: float,
+    start: float,
+) -> bool:  # fmt: skip
+    """One step of length h from time `start`, into the series of `work`; False where that misses the tolerance.
 
     The stage accelerations G solve G_i + C_i V_i + K_i X_i = f_i with V = v + h A G and X = x + h A V. A vibration
     that the step is too long for is damped at the nodes but not at its start, and shows in the polynomial's tail.
@@ -53,7 +57,7 @@ def collocate(  # noqa: C901  (loops over nodes, coordinates and tangents)
     row = np.zeros(S)  # of A squared
     for a in range(S):
         t = radau.nodes[a] * h
-        _matrices_at(train, meshes, springs, work, status, t, K, C, f)
+        _matrices_at(train, meshes, springs, work, status, t, K, C, f, start)
         for b in range(S):
             row[b] = 0.0
             for q in range(S):

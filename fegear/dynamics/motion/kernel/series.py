@@ -52,16 +52,45 @@ def damping_at(meshes: Any, springs: Any, work: Any, status: Any, m: int, t: flo
     return meshes.damping[m] * math.sqrt(max(total, 0.0) / meshes.stiffness[m])
 
 
+def swing_at(train: Any, i: int, t: float) -> float:
+    """Fluctuating force on coordinate i at a time."""
+    value = 0.0
+    for line in range(train.swing_rate.shape[0]):
+        value += train.swing[line, i] * math.cos(train.swing_rate[line] * t + train.swing_phase[line])
+    return value
+
+
+def _swing_series(train: Any, work: Any, t: float) -> None:
+    """Series of the fluctuating forces about a time."""
+    swing, order = work.swing, work.swing.shape[1] - 1
+    for i in range(swing.shape[0]):
+        for k in range(order + 1):
+            swing[i, k] = 0.0
+    for line in range(train.swing_rate.shape[0]):
+        rate = train.swing_rate[line]
+        at = rate * t + train.swing_phase[line]
+        # one derivative after the other: cos, -sin, -cos, sin
+        now, following, power = math.cos(at), -math.sin(at), 1.0
+        for k in range(order + 1):
+            for i in range(swing.shape[0]):
+                swing[i, k] += train.swing[line, i] * now * power
+            now, following = following, -now
+            power *= rate / (k + 1.0)
+
+
 def motion_series(  # noqa: C901  (one recurrence)
-    train: Any, meshes: Any, springs: Any, work: Any, status: Any, x: Any, v: Any, friction: bool
+    train: Any, meshes: Any, springs: Any, work: Any, status: Any, x: Any, v: Any, friction: bool, t: float
 ) -> None:
-    """Taylor coefficients of the motion, of loads and of damping forces from a state on."""
+    """Taylor coefficients of the motion, of loads and of damping forces from a state at time t on."""
     X, strain, load, local, acceleration = work.X, work.strain, work.load, work.local, work.acceleration
     rub, rate, slide = work.rub, work.rate, work.slide
     K, C, f = train.K, train.C, train.f
     approach, lever, mesh_of = meshes.approach, meshes.lever, springs.mesh_of
     order, n, columns = X.shape[0] - 1, X.shape[1], X.shape[2]
     degree = local.shape[2] - 1
+    swings = train.swing_rate.shape[0] > 0
+    if swings:
+        _swing_series(train, work, t)
     _damping_series(meshes, springs, work, status)
     for i in range(n):
         for c in range(columns):
@@ -73,6 +102,8 @@ def motion_series(  # noqa: C901  (one recurrence)
                 acceleration[i, c] = 0.0
             if k == 0:
                 acceleration[i, 0] = f[i]
+            if swings:
+                acceleration[i, 0] += work.swing[i, k]
             for j in range(n):
                 a, b = K[i, j], C[i, j] * (k + 1)
                 if a != 0.0 or b != 0.0:
@@ -128,8 +159,9 @@ def taylor_step(train: Any, rule: Any, X: Any, x: Any, v: Any) -> float:
     """Step length from the last two coefficients."""
     order, n, columns = X.shape[0] - 1, X.shape[1], X.shape[2]
     last, other = 1e-300, 1e-300
+    swings = train.swing_rate.shape[0] > 0
     for i in range(n):
-        if train.free[i] == 1:
+        if train.free[i] == 1 or swings:  # a torque may swing the whole train, whose angle has no place to miss
             last = max(last, abs(X[order, i, 0]))
             other = max(other, abs(X[order - 1, i, 0]))
     # tangents need fewer digits, but a stiff mode that the motion leaves alone must not blow them up

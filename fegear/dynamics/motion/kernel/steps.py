@@ -41,6 +41,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
         np.zeros((count, 4, degree + 1)),
         np.zeros((n, columns)),
         np.zeros(count, np.int64),
+        np.zeros((n, order + 1)),
     )
     X, local, exists = work.X, work.local, work.exists
     approach, mesh_of, sides = meshes.approach, springs.mesh_of, springs.side
@@ -98,13 +99,13 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                 pushes = side == 0.0 or side * gap > 0.0 or (gap == 0.0 and side * slope > 0.0)
                 status[s] = 1 if exists[s] == 1 and pushes else 0
             check[s] = 0
-        motion_series(train, meshes, springs, work, status, x, v, rule.friction)
+        motion_series(train, meshes, springs, work, status, x, v, rule.friction, t)
         h = taylor_step(train, rule, X, x, v)
         moment = MOMENT * min(h, 1.0)
         waited += 1
         if long_steps and waited >= wait and limit - t > worth * h:
             far = min(max(reach, worth * h), limit - t)
-            if collocate(train, meshes, springs, rule, radau, work, status, x, v, far):
+            if collocate(train, meshes, springs, rule, radau, work, status, x, v, far, t):
                 h, reach, wait = far, 8.0 * far, shortest
             else:
                 # too long for the teeth's change, or the vibration still lives: shorter next time, then wait
@@ -113,7 +114,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                     reach = shorter
                 else:
                     reach, wait, waited = 0.0, min(2 * wait, LONGEST_WAIT * shortest), 0
-                motion_series(train, meshes, springs, work, status, x, v, rule.friction)
+                motion_series(train, meshes, springs, work, status, x, v, rule.friction, t)
         to_limit = h >= limit - t
         if to_limit:
             h = limit - t
