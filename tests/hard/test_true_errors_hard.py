@@ -5,7 +5,7 @@ The truth has finer edges, narrower pressures and another growth of its edges (`
 
 import numpy as np
 import pytest
-from true_errors import TOLERANCES, answers, judged, possible, truth_of
+from true_errors import TOLERANCES, answers, judged, possible, true_answers
 
 #: Times the stated error that a true one may be.
 BEYOND = 1.5
@@ -17,7 +17,7 @@ def found(kind, seed, count):
     """Quantities judged, by tolerance."""
     every = {tolerance: [] for tolerance in TOLERANCES}
     for case in possible(kind, count, seed):
-        truth = answers(case, truth_of(kind))
+        truth = true_answers(kind, case)
         for tolerance in TOLERANCES:
             every[tolerance] += judged(answers(case, {"tolerance": tolerance}), truth)
     return every

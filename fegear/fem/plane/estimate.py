@@ -24,11 +24,16 @@ _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
 #: Neighbours err by the width of the pressures above all, which both orders share: this times what half the width
 #: changes, and a part of what elements one order lower do.
 _WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
-#: Root stress of the lower order lags behind the more, the shorter the edges: the part is the square of this over the
-#: number of edges that the fillet would have if all were as long as along most of it (those that are graded toward its
-#: ends say nothing about where stress is largest), and no more than all of it; no less than the other, for both orders
-#: have the edges' own curves.
-_STRESS_EDGES, _LEAST_STRESS_SHARE = 5.5, 0.24
+#: Root stress of fourth order errs the less beside that of third, the shorter the edges: the part is this power of this
+#: number over the number of edges that the fillet would have if all were as long as along most of it (those that are
+#: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
+#: other, for both orders have the edges' own curves. Elements of lower orders were not looked at, and count twice.
+_STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.4, 1.2, 0.2, 2.0
+#: A neighbour's stress is smooth, and its error that of the edges' own curves, which both orders have: so many times
+#: the part of a tooth's own and no less than the other part; relatively no less than so many times a tooth's own error.
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 3.0
+#: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
+_OTHER_FILLET = 0.1
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
@@ -154,24 +159,26 @@ class Estimate:
         return self._stresses[k]
 
     def _stress_estimate(self, k: int, side: Side, value: Array, difference: Array) -> Array:
-        share = self._stress_share
-        known = self._stress_at_samples(k)
+        share, own = self._stress_share, self._stress_at_samples(0)
+        # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
+        shares = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in own.values()]
+        least = _USUAL * max(shares)
         if k:
             # Stress of a neighbour passes through zero along the flank and on one of its fillets nearly vanishes; its
-            # error does neither, is no share of it, and on neither fillet less than on the other.
-            usual = max(_root_mean_square(off[:_SAMPLES]) for _, off in known.values())
-            return np.asarray(share * np.maximum(difference, _USUAL * usual))
-        # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
-        shares = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in known.values()]
-        least = _USUAL * max(shares)
-        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(known[side][0]).max())
+            # error does neither.
+            usual = {one: _root_mean_square(off[:_SAMPLES]) for one, (_, off) in self._stress_at_samples(k).items()}
+            beside = _USUAL * max(usual[side], _OTHER_FILLET * max(usual.values()))
+            error = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS) * np.maximum(difference, beside)
+            return np.asarray(np.maximum(error, _OF_OWN_STRESS * share * least * np.abs(value)))
+        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
         return np.asarray(share * np.maximum(difference, least * size))
 
     @cached_property
     def _stress_share(self) -> float:
         edges = np.diff(self.fine.fillets["tension"].arc[:: self.fine.flank.order])
         alike = edges.sum() ** 2 / (edges**2).sum()
-        return float(np.clip((_STRESS_EDGES / alike) ** 2, _LEAST_STRESS_SHARE, 1.0))
+        share = max(float(_STRESS_EDGES / alike) ** _STRESS_POWER, _LEAST_STRESS_SHARE)
+        return min(share if self.fine.flank.order == 4 else _LOWER_ORDERS * share, 1.0)
 
     @cached_property
     def _neighbours(self) -> dict[int, Array]:
