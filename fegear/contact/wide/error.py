@@ -1,28 +1,40 @@
-"""Estimated errors of loaded flanks: solved again with longer panels, then with the gears' coarser solutions, too."""
+"""Estimated errors of loaded flanks: solved again with longer panels, then with the gears' coarser solutions, too.
+
+Largest line loads and pressures stand beside kinks of the load along its line and at roll positions between those that
+are looked at; what longer panels change of them at one position says little about that. They are looked for once more
+where they may stand, with shorter panels at twice as many positions.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.errors import ConvergenceError
 from fegear.base.shown import shown
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import long_line
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-from fegear.contact.wide.over_pitch import OverPitch, Stated
+from fegear.contact.wide.over_pitch import JUMP, OverPitch, Stated
 from fegear.contact.wide.spots import missed_of_spots
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.pair import Member
 
 #: By how much panels are longer.
 _LONGER = 1.5
-#: What is taken for an error of the change of shares, of that of the largest load at a roll position, and of that of
-#: the shape of the transmission error: compared with solutions of a fourth of the panel's length on finer meshes.
-_SHARES, _LOCAL, _SHAPE = 1.2, 1.8, 0.5
+#: What is taken for an error of the change of shares, of that of the largest load at a roll position by coarser gears,
+#: and of that of the shape of the transmission error: compared with solutions of a fourth of the panel's length on
+#: finer meshes.
+_SHARES, _LOCAL, _SHAPE = 1.2, 1.25, 0.5
+#: Largest loads are looked for again at positions where they are this part of the largest of all, and beside these;
+#: with panels so much longer; so many positions at a time.
+_LIKELY, _SHORTER, _AT_ONCE = 0.8, 0.5, 16
+#: What is taken for an error of what that changes.
+_OF_FINER = 1.5
 #: What is taken for an error of the pressure read between stations: of what it is above the largest at a station.
 _BETWEEN = 0.6
 #: What longer panels change of the mean transmission error of spots, as an error of its peak to peak.
@@ -89,6 +101,9 @@ def flank_error(
     by_panels = changes[0]
     changes[0] = by_panels._replace(peak_to_peak=np.maximum(by_panels.peak_to_peak, _OF_SPOT * by_panels.mean))
     left = over.left_by_positions
+    if finer := finer_changes(flanks, gaps, over, about):  # instead of what longer panels and fewer positions change
+        changes[0] = changes[0]._replace(**dict.fromkeys(finer, np.zeros(found.load.shape)))
+        left = left._replace(**{key: _OF_FINER * change for key, change in finer.items()})
     at_stations = np.where(over.found.smooth[:, :, None], over.found.pressure, 0.0).max(axis=(0, 1))
     between = over.found.largest_pressure - at_stations
     missed = missed_of_spots(found.known, found.contact, long_line(found.pair))
@@ -100,6 +115,55 @@ def flank_error(
     te = sum(np.abs(two.transmission_error - one.transmission_error) for one, two in pairwise(steps))
     share = sum(_share_changes(found, one, two) for one, two in pairwise(steps))
     return FlankError(np.asarray(te), _SHARES * np.asarray(share), other, *sums)
+
+
+def finer_changes(flanks: FlankPair, gaps: FlankGaps, over: OverPitch, about: float) -> dict[str, Array]:
+    """What shorter panels at more roll positions change of the largest line load and pressure, shape (L,) each.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+    gaps : FlankGaps
+    over : OverPitch
+        What they were read from.
+    about : float
+        As of `flank_error`.
+
+    Returns
+    -------
+    dict
+        By the names of `Stated`; empty where contacts on panels so short find no balance, as spots may.
+    """
+    found, shorter = over.found, replace(flanks, panel=_SHORTER * flanks.panel)
+    roll = likely_positions(over.points.x, over.points.period, (found.largest_line_loads, found.largest_pressures))
+    try:
+        parts = [
+            shorter.solve(found.load, gaps, shorter.compliance(about, roll[i : i + _AT_ONCE]))
+            for i in range(0, roll.size, _AT_ONCE)
+        ]
+    except ConvergenceError:
+        return {}
+    names = ("largest_line_load", "largest_pressure")
+    return {
+        name: np.abs(np.max([getattr(part, name) for part in parts], axis=0) - getattr(found, name)) for name in names
+    }
+
+
+def likely_positions(roll: Array, period: float, values: Sequence[Array]) -> Array:
+    """Roll positions at which one of several values, shape (P, L) each, may be largest, and those halfway beside them.
+
+    Parameters
+    ----------
+    roll : ndarray, shape (P,)
+        Ascending within a period [m].
+    period : float
+        [m].
+    values : sequence of ndarray
+    """
+    near = np.any([(one > _LIKELY * one.max(axis=0)).any(axis=1) for one in values], axis=0)
+    step = np.diff(roll, append=roll[0] + period)
+    halfway = (near | np.roll(near, -1)) & (step > JUMP * period)
+    return np.sort(np.concatenate([roll[near], (roll + 0.5 * step)[halfway]]))
 
 
 def no_estimate(found: LoadedFlanks) -> FlankError:

@@ -24,7 +24,7 @@ POSITIONS = 48
 #: Rounds of looking for peaks between positions, and places in each for one load's largest or smallest value.
 _ROUNDS, _PLACES = 3, 2
 #: Positions nearer to each other than this share of a base pitch stand on both sides of a jump.
-_JUMP = 1e-5
+JUMP = 1e-5
 #: Positions that peaks are looked for at stand this share of a base pitch from others, at least.
 _APART = 1e-4
 #: Positions of a round, at most about: those of many loads stand close together.
@@ -160,7 +160,7 @@ def likely_peaks(x: Array, te: Array, period: float) -> tuple[Array, Array]:
     rise = (np.roll(te, -1, axis=0) - te) / step
     ahead, behind = np.roll(rise, 1, axis=0), np.roll(rise, -1, axis=0)
     # Slopes across a jump tell nothing, and nothing stands within one.
-    jump = step < _JUMP * period
+    jump = step < JUMP * period
     known = ~(jump | np.roll(jump, 1, axis=0) | np.roll(jump, -1, axis=0))
     peaked = known & (ahead > rise) & (behind < rise)
     way = np.where(peaked, (rise - behind) * step / np.where(peaked, ahead - behind, 1.0), 0.0)
