@@ -7,7 +7,8 @@ import pytest
 
 from fegear.contact.unloaded import HelicalGear
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-from fegear.contact.unloaded.tooth_contact import pair_contact, tooth_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
+from fegear.contact.unloaded.tooth_contact import tooth_contact
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 from fegear.dynamics.helical_pair.model import HelicalPairModel, RigidGear
 from fegear.dynamics.helical_pair.transmissibility import transmissibility

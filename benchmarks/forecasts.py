@@ -15,7 +15,8 @@ import time
 from pathlib import Path
 
 from fegear.case.reading import read_scene
-from fegear.engine.plan import forecast_seconds, make_plan
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import forecast_seconds
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from fegear.case.schema import KeyHelp, SchemaNodes, case_schema
+from fegear.case.schema import case_schema
+from fegear.case.schema_nodes import KeyHelp, SchemaNodes
 from fegear.results.catalogue import STAGES
 
 PAGE = Path(__file__).resolve().parent / "case-files.md"

@@ -16,9 +16,9 @@ import numpy as np
 
 from fegear.case.reading import read_scene
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import usual_gap
 from fegear.contact.wide.load_factors import iso_face_load_factor
 from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.tip_edges import usual_gap
 from fegear.fem.solid.settings import solid_settings
 from fegear.fem.solid.slices import solve_thin_slices
 from fegear.fem.solid.solution import solve_solid

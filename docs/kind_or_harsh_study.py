@@ -19,11 +19,14 @@ import numpy as np
 import slices_study as slices
 
 from fegear.contact.compared.formula_reach import off, reach, sentence
-from fegear.contact.compared.root_stress_study import drawn_gears, of_population, root_stress_study
+from fegear.contact.compared.population import drawn_gears
+from fegear.contact.compared.root_stress_study import of_population, root_stress_study
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.load_factors import iso_face_load_factor
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Mark, Zone
+from fegear.engine.figure.panel import Panel
 from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
 from fegear.geometry.gear import Gear

@@ -128,7 +128,7 @@ def written(folder: Path) -> dict[str, list[str]]:
 
 def found(results: Any) -> dict[str, tuple[list[float], list[float] | None, float]]:
     """Every number of a run by its name, its stated errors where it has some, and what its size is compared with."""
-    from fegear.engine.outcome import error_columns
+    from fegear.engine.least_errors import error_columns
 
     of_unit: dict[str, float] = {}
     for v in results.values:

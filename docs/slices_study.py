@@ -16,8 +16,10 @@ import numpy as np
 
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
+from fegear.engine.figure.panel import Panel
 from fegear.fem.solid.settings import solid_settings
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid

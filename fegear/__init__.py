@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from fegear.workbench.questions import (
         dynamic_factor,
         load_sharing,
-        rating,
         relief,
         root_stress,
         stiffness_table,
         transmission_error,
     )
+    from fegear.workbench.rating import rating
     from fegear.workbench.results import Results
     from fegear.workbench.run import run
 
@@ -44,7 +44,7 @@ _HOMES = {
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
     "load_sharing": "workbench.questions",
-    "rating": "workbench.questions",
+    "rating": "workbench.rating",
     "relief": "workbench.questions",
     "root_stress": "workbench.questions",
     "run": "workbench.run",

@@ -15,8 +15,9 @@ import fegear
 from fegear.base.errors import NO_ROOM, FegearError, lacks_memory
 from fegear.base.interrupts import between_imports, heed_ctrl_c
 from fegear.base.streams import give_up
-from fegear.commands.common import INTERRUPTED, Command, Group, context_settings, leave
+from fegear.commands.common import INTERRUPTED, leave
 from fegear.commands.export import export
+from fegear.commands.help_texts import Command, Group, context_settings
 from fegear.commands.import_model import import_
 from fegear.commands.migrate import migrate
 from fegear.commands.new import new

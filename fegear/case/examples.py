@@ -10,7 +10,7 @@ from pathlib import Path
 
 from fegear.base.code_version import package_folder
 from fegear.base.errors import FegearError, InputError, shown
-from fegear.case.part import nearest
+from fegear.case.nearest import nearest
 
 #: Files that a case names by a path of its own.
 _NAMED = re.compile(r'"((?:data|meshes)/[\w./-]+)"')

@@ -10,6 +10,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.base.errors import GeometryError, InputError
+from fegear.case.deviations import DeviationsPart
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.part import (
@@ -26,11 +27,11 @@ from fegear.case.part import (
     refuse,
 )
 from fegear.case.relief import BiasPart, LeadPart, MeasuredPart, ReliefPart, SpacingErrorsPart, TopographyPart
-from fegear.case.strength import DeviationsPart, StrengthPart
+from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
-from fegear.geometry.inspection import over_balls
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.over_balls import over_balls
 from fegear.geometry.plausible import refuse_material
 from fegear.geometry.tooth import Tooth
 
@@ -53,7 +54,7 @@ class MaterialPart(Part):
     def build(self) -> Material:
         """Make the material."""
         made = Material(self.young_modulus, self.poisson_ratio, self.density)
-        refuse_material(made)
+        refuse_material(made.young_modulus, made.density)
         return made
 
 

@@ -6,10 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from fegear.case.accuracy import AccuracyPart, StiffnessPart
-from fegear.case.design import DesignPart, FlankDesignPart
+from fegear.case.accuracy import AccuracyPart
+from fegear.case.design import DesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
+from fegear.case.flank_design import FlankDesignPart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
 from fegear.case.loading import LoadDistributionPart, LoadingPart, TransmissionErrorPart
@@ -19,6 +20,7 @@ from fegear.case.part import Part, Table
 from fegear.case.planetary import PlanetaryPart
 from fegear.case.renamed import SCHEMA_VERSION
 from fegear.case.shaft import BearingPart, ShaftInSpacePart
+from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
 from fegear.case.train import TrainPart
 from fegear.case.transmissibility import TransmissibilityPart

@@ -1,13 +1,7 @@
-"""What every part of a case file shares: strict keys, quantities with units, and errors that name their key.
-
-The known names, the nearest one first, for messages about unknown ones.
-
-Names by which the parts of a case refer to each other: gears, pairs, bodies and meshes that must be there.
-"""
+"""What every part of a case file shares: strict keys, quantities with units, and errors that name their key."""
 
 from __future__ import annotations
 
-import difflib
 import math
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
@@ -28,12 +22,7 @@ from fegear.base.errors import FegearError, InputError, shown
 from fegear.base.units import as_text, to_si
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator
-
-    from fegear.case.model import Case
-    from fegear.case.reading import Scene
-    from fegear.case.trade_words import Meaning
-    from fegear.case.train import TrainPart
+    from collections.abc import Callable
 
 
 #: Key in the schema of a quantity: its dimension, from which `fegear.case.schema` says what it looks like.
@@ -260,95 +249,3 @@ def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> F
     """
     key = (names or {}).get(error.key, error.key)
     return type(error)(f"{prefix}.{key}" if key else prefix, error.value, error.rule, error.remedy)
-
-
-#: How alike two spellings must be, 0 to 1; more where one may type a word of the trade that is no misspelt key.
-_ALIKE, _ALIKE_KEYS = 0.5, 0.65
-
-
-def nearest(
-    name: str, known: Iterable[str], lists_all: str = "", words: Callable[[str], Meaning | None] | None = None
-) -> str:
-    """Return a remedy that says which known name is nearest to `name` if one is, and lists them or says what does.
-
-    Parameters
-    ----------
-    name : str
-    known : iterable of str
-    lists_all : str
-        What lists all of them, where they are too many for a sentence.
-    words : callable, optional
-        ``words(name)`` -> what a word of the trade means, which comes before its spelling.
-    """
-    names = sorted(known)
-    listed = f"known here: {', '.join(names)}" if names else "none is known here"
-    listed = f"{lists_all} lists all {len(names)}" if lists_all else listed
-    meaning = words(name) if words else None
-    if meaning is not None:
-        return f"{meaning.remedy(names)}; {listed}"
-    near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE_KEYS if words else _ALIKE)
-    return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed
-
-
-def check_references(scene: Scene) -> None:
-    """Refuse names that nothing in the case has, whether or not a wanted result reads them.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Raises
-    ------
-    InputError
-        With the nearest name.
-    """
-    case, train = scene.case, scene.case.train
-    known: dict[str, Collection[str]] = {
-        "gear": scene.gears, "spur gear": scene.spur_gears, "pair": scene.pairs, "spur pair": scene.spur_pairs,
-        "body": train.body if train else (), "mesh": train.mesh if train else (),
-    }  # fmt: skip
-    for key, name, kind in _references(case):
-        if name is not None and name not in known[kind]:
-            raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known[kind]))
-
-
-def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
-    """Key, name and kind of everything that is referred to."""
-    yield "stiffness.gear", case.stiffness.gear, "gear"
-    yield "stiffness.pair", case.stiffness.pair, "pair"
-    yield "cost.gear", case.cost.gear, "spur gear"
-    yield "cost.pair", case.cost.pair, "pair"
-    if case.study is not None:
-        yield "study.gear", case.study.gear, "spur gear"
-    if case.design is not None:
-        yield "design.pair", case.design.pair, "spur pair"
-    if case.loading is not None:
-        yield "loading.pair", case.loading.pair, "spur pair"
-    for name, part in case.transmissibility.items():
-        error = part.excitation.transmission_error if part.excitation else None
-        key = f"transmissibility.{name}.excitation.transmission_error.pair"
-        yield key, error.pair if error else None, "pair"
-        yield f"transmissibility.{name}.mesh.pair", part.mesh.pair, "pair"
-    if case.train is not None:
-        yield from _of_train(case.train)
-        dynamics = case.dynamics
-        yield "dynamics.speed_of", dynamics.speed_of, "body"
-        yield "dynamics.loss_taken_by", dynamics.loss_taken_by, "body"
-        yield "dynamics.chart.mesh", dynamics.chart.mesh if dynamics.chart else None, "mesh"
-
-
-def _of_train(part: TrainPart) -> Iterator[tuple[str, str | None, str]]:
-    for name, body in part.body.items():
-        yield from ((f"train.body.{name}.gears", gear, "gear") for gear in body.gears or ())
-    for name, shaft in part.shaft.items():
-        yield from ((f"train.shaft.{name}.{end}", getattr(shaft, end), "body") for end in ("a", "b"))
-    for name, mesh in part.mesh.items():
-        yield from ((f"train.mesh.{name}.{role}", getattr(mesh, role), "body") for role in ("driver", "driven"))
-        yield f"train.mesh.{name}.pair", part.pair_of(name), "pair"
-        yield f"train.mesh.{name}.like.pair", part.loaded_pair_of(name), "pair"
-    for name, damper in part.damper.items():
-        yield from ((f"train.damper.{name}.{end}", getattr(damper, end), "body") for end in ("a", "b"))
-    yield from (("train.torque", torque, "body") for torque in part.torque)
-    for name, ripple in part.torque_ripple.items():
-        yield from ((f"train.torque_ripple.{name}.{end}", getattr(ripple, end), "body") for end in ("body", "order_of"))
-    yield "train.balance", part.balance, "body"

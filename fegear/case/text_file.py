@@ -1,32 +1,21 @@
-"""Text files that a user names: case files and tables, in the one encoding that both have.
-
-CSV files that a case names: columns with units in their heads, as fegear itself writes them.
-"""
+"""Text files that a user names: case files and tables, in the one encoding that both have."""
 
 from __future__ import annotations
 
 import codecs
 import contextlib
-import csv
 import errno
 import hashlib
 import json
-import math
 import os
-import re
 import stat
 import tempfile
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fegear.base.errors import PATH, InputError, shown
-from fegear.base.unit_text import plain_number
-from fegear.base.units import unit_size
 
 #: Largest file that is read [bytes]; a table of a million lines is smaller.
 _LARGEST = 100_000_000
@@ -238,83 +227,6 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
-
-
-#: Most lines of a table: some seconds of reading.
-_MOST_LINES = 400_000
-_HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
-
-
-def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[str, NDArray[np.float64]]:
-    """Read the columns that are known by name into SI; others are passed over.
-
-    Parameters
-    ----------
-    path : Path
-        The first line that does not start with ``#`` holds the heads, ``name [unit]``; entries are parted by commas,
-        or by what parts the heads: semicolons or tabs.
-    key : str
-        Where the case names the file, for messages.
-    dimensions : mapping
-        Dimension of each column that may be there; empty for plain numbers.
-
-    Raises
-    ------
-    InputError
-        If the file is no such table: its encoding, a head's unit, two columns of one name, a line with more or fewer
-        entries than heads, an entry that is no finite number.
-    """
-    numbered = _lines(path, key)
-    (_, heads), rows = numbered[0], numbered[1:]
-    for number, row in rows:
-        if len(row) != len(heads):
-            raise InputError(
-                key, f'"{path.name}"', f"has {len(row)} entries in line {number} under {len(heads)} heads",
-                "decimal commas? write points",
-            )  # fmt: skip
-    columns: dict[str, NDArray[np.float64]] = {}
-    for i, head in enumerate(heads):
-        match = _HEAD.fullmatch(head)
-        if match is None or match["name"] not in dimensions:
-            continue
-        name = match["name"]
-        if name in columns:
-            raise InputError(key, f'"{path.name}"', f"has two columns {name}", "leave one of them out")
-        if not dimensions[name] and match["unit"]:
-            raise InputError(key, f'"{path.name}"', f"has a unit over column {name}, a plain number", "leave it out")
-        dimension = dimensions[name]
-        scale = unit_size(match["unit"] or "", dimension, f"{key}, column {name}") if dimension else 1.0
-        columns[name] = scale * np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
-    return columns
-
-
-def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
-    """Heads and rows with the numbers of their lines, the last entry of each without the empty one behind a comma."""
-    every = read_text(path, key).splitlines()
-    if len(every) > _MOST_LINES:
-        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "drop every second")
-    lines = [(number, line) for number, line in enumerate(every, start=1) if line.strip()]
-    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    if len(lines) < 2:
-        raise InputError(key, f'"{path.name}"', "has no heads with numbers below them")
-    head = lines[0][1]
-    parting = next((sign for sign in ",;\t" if sign in head), ",")
-    try:
-        rows = [(number, next(csv.reader([line], delimiter=parting, strict=True))) for number, line in lines]
-    except csv.Error as error:
-        raise InputError(key, f'"{path.name}"', f"is no table that can be read ({error})") from None
-    if all(not row[-1].strip() for _, row in rows):
-        rows = [(number, row[:-1]) for number, row in rows]
-    return rows
-
-
-def _entry(text: str, path: Path, key: str, where: str) -> float:
-    value = plain_number(text)
-    if value is None:
-        raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is no number")
-    if not math.isfinite(value):
-        raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
-    return value
 
 
 def toml_string(text: str) -> str:

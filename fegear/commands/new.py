@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.commands.common import Quiet, Voice, leave, two_columns
+from fegear.commands.common import Quiet, Voice, leave
+from fegear.commands.help_texts import two_columns
 from fegear.commands.schema import SCHEMA_FILE, write_schema
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 def complete_kinds(incomplete: str) -> list[str]:
     """What a kind that is being typed may become."""
-    from fegear.case.drafts.answers import KINDS
+    from fegear.case.drafts.kinds import KINDS
 
     return [name for name in KINDS if name.startswith(incomplete)]
 
@@ -195,7 +196,8 @@ def case_file(name: str, *, force: bool) -> Path:
 
 def _asked() -> Answers:
     """Ask on the terminal; every answer is checked before the next question."""
-    from fegear.case.drafts.answers import KINDS, Answers, check, questions
+    from fegear.case.drafts.answers import Answers, check, questions
+    from fegear.case.drafts.kinds import KINDS
 
     def ask(prompt: str, default: str, judge: Callable[[str], object]) -> str:
         while text := input(f"{prompt} [{default}]: ").strip():

@@ -64,10 +64,12 @@ def run(
     from fegear.engine.extras import missing
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
-    from fegear.output.figures import Drawing, PictureProcess
-    from fegear.output.folder import STEPS, default_folder, whole_or_nothing, write_results
+    from fegear.output.figures import Drawing
+    from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.numbers import beyond_tolerance
+    from fegear.output.picture_process import PictureProcess
     from fegear.output.report.page import begin_page
+    from fegear.output.run_files import STEPS, write_results
     from fegear.output.tables import sheet_lines
     from fegear.results.catalogue import STAGES
 
@@ -117,7 +119,8 @@ def run(
 def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_json: AsJson = False) -> None:
     """Show what a case would compute and why, with which settings, in about how long, and what it would not."""
     from fegear.case.reading import read_scene
-    from fegear.engine.plan import make_plan, plan_content, plan_lines
+    from fegear.engine.plan import make_plan
+    from fegear.engine.plan_in_words import plan_content, plan_lines
     from fegear.results.catalogue import STAGES
 
     voice = Voice(as_json=as_json)

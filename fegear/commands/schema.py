@@ -14,7 +14,8 @@ from typing import Annotated
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.commands.common import AsJson, Voice, out_option, two_columns
+from fegear.commands.common import AsJson, Voice, out_option
+from fegear.commands.help_texts import two_columns
 from fegear.engine.stage import Stage
 
 #: Name by which drafted cases ask for it.

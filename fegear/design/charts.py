@@ -1,15 +1,8 @@
-"""Design charts: Harris maps, and excitation over amount, length and load of the relief (TM-89901, Figs. 7 to 11).
-
-How a relief holds up when load, spacing and grinding are not what the drawing says.
-
-Transmission error of many reliefs, loads and errors at once, on one grid evaluated once.
-"""
+"""Design charts: Harris maps, and excitation over amount, length and load of the relief (TM-89901, Figs. 7 to 11)."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -18,12 +11,10 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
-from fegear.contact.fourier import Panels, effective_error, fourier_series, panels
 from fegear.contact.plane.engagement import Engagement, Loaded
-from fegear.contact.plane.load_sharing import share_load
-from fegear.contact.plane.roll_grids import RollGrid
+from fegear.design.relief_bench import bench
 from fegear.geometry.pair import GearPair
-from fegear.geometry.relief import Relief, Shape, roll_of_radius
+from fegear.geometry.relief import Shape, roll_of_radius
 
 Metric = Literal["effective_error", "peak_to_peak"]
 
@@ -186,169 +177,3 @@ def unit_amount(engagement: Engagement, load: float) -> float:
     if 1.0 <= engagement.pair.contact_ratio < 2.0:
         return welbourn_amount(engagement, load)
     return float(transmission_error(engagement.unmodified(), load, 12).values.max())
-
-
-@dataclass(frozen=True)
-class Robustness:
-    """Excitation over every combination of the deviations asked for.
-
-    Shapes (A,), (B,), (C,) of the deviations, and (A, B, C) of the metric.
-    """
-
-    load_factors: Array = shown("", "load over design load", name="load_factor", label="load over design load")
-    spacing_errors: Array = shown("um", "of every second pair", name="spacing_error")
-    relief_errors: Array = shown("", "relative error of the relief's depth", name="relief_error")
-    values: Array = shown("um", "excitation")
-    nominal: float = shown("um", "without deviations")
-
-    @property
-    def worst(self) -> float:
-        """Largest value of all [m]."""
-        return float(self.values.max())
-
-    @property
-    def worst_case(self) -> tuple[float, float, float]:
-        """Load factor, spacing error [m] and relief error that give it."""
-        i, j, k = np.unravel_index(int(self.values.argmax()), self.values.shape)
-        return float(self.load_factors[i]), float(self.spacing_errors[j]), float(self.relief_errors[k])
-
-
-def robustness(
-    engagement: Engagement,
-    load: float,
-    load_factors: ArrayLike = (0.7, 0.85, 1.0, 1.15, 1.3),
-    spacing_errors: ArrayLike = (0.0,),
-    relief_errors: ArrayLike = (-0.2, 0.0, 0.2),
-    metric: Metric = "peak_to_peak",
-) -> Robustness:
-    """Try every combination of load, spacing error and relief tolerance.
-
-    Parameters
-    ----------
-    engagement : Engagement
-        With the reliefs to be tried.
-    load : float
-        Nominal load [N].
-    load_factors : array_like
-        Loads over the nominal one, positive.
-    spacing_errors : array_like
-        Removal on every second pair [m]: neighbours then differ by it, and with either sign.
-    relief_errors : array_like
-        Relative error of the depth of both reliefs: 0.1 is 10 % too deep.
-    metric : {"peak_to_peak", "effective_error"}
-    """
-    w, e, d = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (load_factors, spacing_errors, relief_errors))
-    if (w <= 0.0).any():
-        raise InputError("design.load_factors", float(w.min()), "must be positive")
-    # Peaks sit at kinks of the reliefs and where pairs part: break points at the former, many positions for the latter.
-    table = bench(engagement, waves=48, breaks=engagement.breaks)
-    m = table.removal(engagement.driver_relief, engagement.driven_relief)
-    second = (table.grid.contacts.number % 2 == 1).astype(float)[:, None]
-    cases, loads = [], []
-    for factor, error, depth in product(w, e, d):
-        for parity in (second, 1.0 - second) if error != 0.0 else (second,):
-            cases.append(m * (1.0 + depth) + error * parity)
-            loads.append(load * factor)
-    values = table.errors(np.stack(cases, axis=2), np.array(loads)).of(metric)
-    table_of_values, position = np.empty((w.size, e.size, d.size)), 0
-    for i, j, k in np.ndindex(table_of_values.shape):
-        count = 2 if e[j] != 0.0 else 1
-        table_of_values[i, j, k] = values[position : position + count].max()
-        position += count
-    nominal = float(table.errors(m[:, :, None], load).of(metric)[0])
-    return Robustness(w, e, d, table_of_values, nominal)
-
-
-_BATCH = 40_000
-
-
-@dataclass(frozen=True)
-class Bench:
-    """A gear pair set up for trying modifications: contacts and compliances stay, only the separations change.
-
-    Parameters
-    ----------
-    engagement : Engagement
-    points : Panels
-        Quadrature points with breaks where pairs enter and leave; kinks of the reliefs tried are not break points, so
-        harmonics are good to about 1e-3 of the peak-to-peak value, which `transmission_error` improves on.
-    grid : RollGrid
-    """
-
-    engagement: Engagement
-    points: Panels
-    grid: RollGrid
-
-    def removal(self, driver: Relief, driven: Relief) -> Array:
-        """Modification of every pair, shape (n, P) [m]."""
-        c = self.grid.contacts
-        return np.asarray(driver.removal(c.roll_driver) + driven.removal(c.roll_driven))
-
-    def errors(self, modifications: Array, load: ArrayLike) -> Metrics:
-        """Transmission error metrics of C cases.
-
-        Parameters
-        ----------
-        modifications : ndarray, shape (n, P, C)
-            m_j, spacing errors included [m].
-        load : array_like, shape () or (C,)
-            [N].
-        """
-        contacts, m = self.grid.contacts, self.grid.matrices
-        base = np.where(contacts.present, contacts.gap, np.inf)[:, :, None]
-        cases = modifications.shape[2]
-        loads = np.broadcast_to(np.asarray(load, dtype=float), (cases,))
-        step = max(1, _BATCH // self.points.x.size)
-        te = np.empty((self.points.x.size, cases))
-        for first in range(0, cases, step):
-            part = slice(first, min(first + step, cases))
-            e = base + np.where(contacts.present[:, :, None], modifications[:, :, part], 0.0)
-            te[:, part] = share_load(
-                m.compliance, e, loads[part], m.log_slope, m.reference_load, m.edges, m.power
-            ).transmission_error
-        series = fourier_series(self.points, te, 12)
-        return Metrics(effective_error(series), np.ptp(te, axis=0), np.asarray(series.mean), te)
-
-
-@dataclass(frozen=True, slots=True)
-class Metrics:
-    """What excites, of C cases.
-
-    Parameters
-    ----------
-    effective_error : ndarray, shape (C,)
-        A_e [m].
-    peak_to_peak : ndarray, shape (C,)
-        Over the points [m].
-    mean : ndarray, shape (C,)
-        [m].
-    transmission_error : ndarray, shape (P, C)
-        [m].
-    """
-
-    effective_error: Array
-    peak_to_peak: Array
-    mean: Array
-    transmission_error: Array
-
-    def of(self, name: str) -> Array:
-        """`effective_error` or `peak_to_peak`."""
-        return self.effective_error if name == "effective_error" else self.peak_to_peak
-
-
-def bench(engagement: Engagement, order: int = 12, waves: int = 12, breaks: Sequence[float] = ()) -> Bench:
-    """Set up a pair for trying modifications.
-
-    Parameters
-    ----------
-    engagement : Engagement
-        Its own modifications are not used.
-    order, waves : int
-        See `panels`.
-    breaks : sequence of float
-        Further break points [m].
-    """
-    pair = engagement.pair
-    places = engagement.meshing.reduced([pair.x_start, pair.x_end, *breaks])
-    points = panels(pair.x_start, pair.base_pitch, places, waves=waves, order=order)
-    return Bench(engagement, points, engagement.grid(points.x))

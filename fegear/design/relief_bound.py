@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.geometry.plausible import DEEPEST_RELIEF, deepest_relief
+from fegear.geometry.plausible_flanks import DEEPEST_RELIEF, deepest_relief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.base.arrays import Array
-    from fegear.design.minimum_excitation import MinimumExcitationRelief
+    from fegear.design.excitation_relief import MinimumExcitationRelief
 
 
 def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:

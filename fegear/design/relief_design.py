@@ -10,18 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement, Loaded
-from fegear.contact.plane.transmission_error import TransmissionError, roll_positions, transmission_error
+from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.design.charts import Metric
+from fegear.design.excitation_relief import MinimumExcitationRelief
 from fegear.design.loading import LoadingFunction
-from fegear.design.minimum_excitation import (
-    MinimumExcitationRelief,
-    OilFilm,
-    ReliefTable,
-    minimum_excitation,
-    relief_nodes,
-    relief_table,
-)
+from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, relief_nodes, relief_table
+from fegear.design.oil_film import OilFilm
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
 from fegear.geometry.pair import MEMBERS, Member

@@ -11,10 +11,10 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import columns_declared, declared
 from fegear.base.units import from_si
-from fegear.engine.figure.figure import Axis
+from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Curve
-from fegear.engine.outcome import Value
 from fegear.engine.table import Column
+from fegear.engine.value import Value
 
 
 def _class(owner: object) -> type:

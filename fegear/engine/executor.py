@@ -17,7 +17,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
 from fegear.engine.processes import Job, Reply, cores, here, on_cores, opened
-from fegear.engine.stage import Progress
+from fegear.engine.progress import Progress
 
 Todo = Mapping[int, object]
 

@@ -16,10 +16,12 @@ from fegear.case.reading import Scene
 from fegear.engine.executor import Executor
 from fegear.engine.extras import require
 from fegear.engine.figure.figure import DeferredFigure, Figure
-from fegear.engine.outcome import Named, Outcome, Value
+from fegear.engine.named import Named
+from fegear.engine.outcome import Outcome
 from fegear.engine.plan import ON_REQUEST, Plan, Step
 from fegear.engine.stage import Task, Work
 from fegear.engine.table import Table
+from fegear.engine.value import Value
 
 NOTHING_FOR_A_CLUSTER = (
     "--scheduler is of no use here: no result of this run consists of points that a cluster could compute, and this "

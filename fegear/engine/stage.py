@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+
+from fegear.engine.progress import Progress
 
 if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
@@ -27,13 +29,6 @@ class Task(NamedTuple):
     def __str__(self) -> str:
         """``stage of subject``."""
         return f"{self.stage} of {self.subject}" if self.subject else self.stage
-
-
-class Progress(Protocol):
-    """Where a running stage reports how far it is."""
-
-    def __call__(self, fraction: float) -> None:
-        """Report the fraction done, 0 to 1."""
 
 
 #: What the tasks that a task needs have computed, by task.

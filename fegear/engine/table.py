@@ -10,8 +10,8 @@ import numpy as np
 from fegear.base.arrays import Alike
 from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError, UnknownNameError
 from fegear.base.units import from_si, quantity
-from fegear.case.part import nearest
-from fegear.engine.outcome import ROWS, html_table, short
+from fegear.case.nearest import nearest
+from fegear.engine.html_table import ROWS, html_table, short
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -21,15 +21,10 @@ von Stirnradverzahnungen, thesis, TU München 2006 (load even along all contact 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from fegear.formulas.lubricant import Oil
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,6 +32,10 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.geometry.pair import GearPair
+
+if TYPE_CHECKING:
+    from fegear.formulas.lubricant import Oil
+
 
 MeanLaw = Literal["schlenk", "iso-6336-20", "iso-6336-21", "iso-6336-22"]
 

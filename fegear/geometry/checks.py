@@ -1,107 +1,14 @@
-"""Rules of thumb that a drawing is compared with first: tips, roots, clearances, contact ratio.
-
-Whether a tip runs into the mating fillet, from the exact path of its corner past the trochoid (ISO 21771, 5.4.5).
-"""
+"""Rules of thumb that a drawing is compared with first: tips, roots, clearances, contact ratio."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
 from fegear.geometry.gear import Gear
-from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.tip_interference import interference
 from fegear.geometry.tooth import Tooth
-
-
-@dataclass(frozen=True, slots=True)
-class Interference:
-    """What the tip corner of one gear does near the mating root.
-
-    Parameters
-    ----------
-    tip_of : {"driver", "driven"}
-        The gear whose tip is looked at.
-    below_form_circle : bool
-        Whether that tip would touch the mate below the start of its involute; the path of contact then ends early.
-    fillet_gap : float
-        Smallest distance between the tip corner's path and the mating fillet [m]; negative where it cuts into it. In an
-        internal pair, where the tip touches the fillet only below the start of the involute, it is infinite.
-    root_clearance : float
-        Room between the tip circle and the mating root circle [m].
-    """
-
-    tip_of: Member
-    below_form_circle: bool
-    fillet_gap: float
-    root_clearance: float
-
-    @property
-    def sentence(self) -> str:
-        """What a designer should know, in one sentence; empty when all is well."""
-        tip = f"the tip of the {self.tip_of} gear"
-        if self.root_clearance <= 0.0:
-            return f"{tip} cuts {-self.root_clearance * 1e3:.4g} mm into the mating root circle"
-        if self.fillet_gap < 0.0:
-            return f"{tip} cuts {-self.fillet_gap * 1e3:.4g} mm into the mating fillet"
-        if self.below_form_circle:
-            return f"{tip} reaches below the start of the mating involute; the path of contact ends there"
-        return ""
-
-
-def interference(pair: GearPair, tip_of: Member, samples: int = 721) -> Interference:
-    """Follow the tip corner of one gear through the mating tooth space.
-
-    Parameters
-    ----------
-    pair : GearPair
-    tip_of : {"driver", "driven"}
-        The gear whose tip corner is followed.
-    samples : int
-        Positions of the corner and points of the fillet.
-
-    Returns
-    -------
-    Interference
-    """
-    gear = pair.gear(tip_of)
-    mate_name: Member = "driven" if tip_of == "driver" else "driver"
-    mate = pair.gear(mate_name)
-    tip, form = gear.involute_tip_radius, mate.form_radius
-    reach = float(pair.x_of_radius(tip, tip_of))
-    limit = float(pair.x_of_radius(form, mate_name))
-    below = reach > limit if tip_of == "driver" else reach < limit
-    if pair.internal:
-        return Interference(tip_of, below, math.inf, pair.tip_clearance(tip_of))
-
-    # Mate below with its centre at the origin, gear above; the gear pushes the mate's right flank to the left. At
-    # theta = 0 the flanks touch at the pitch point; the gear then turns clockwise, the mate counterclockwise.
-    a, rb_g = pair.centre_distance, gear.base_radius
-    roll_tip = math.sqrt((tip - rb_g) * (tip + rb_g)) / rb_g
-    alpha_w = pair.working_pressure_angle
-    # The corner lies behind the point of its flank on the pitch circle by the difference of the involutes' angles.
-    corner0 = (roll_tip - math.atan(roll_tip)) - (math.tan(alpha_w) - alpha_w)
-    theta = np.linspace(-0.75, 0.75, samples) * 2.0 * math.pi / gear.teeth * 1.5
-    angle = corner0 - theta
-    px, py = tip * np.sin(angle), a - tip * np.cos(angle)
-    turn = theta * gear.teeth / mate.teeth
-    # The mate's tooth centre line starts half a tooth to the left of the pitch point and turns further left.
-    half = mate.tooth.base_half_angle - (math.tan(alpha_w) - alpha_w)
-    s, c = np.sin(half + turn), np.cos(half + turn)
-    x, y = c * px + s * py, c * py - s * px
-    radius, polar = np.hypot(x, y) / mate.module, np.arctan2(x, y)
-    fillet = mate.tooth.fillet
-    beta = np.linspace(fillet.start, fillet.end, samples)
-    fx, fy = fillet.points(beta)
-    fillet_radius, fillet_polar = np.hypot(fx, fy), np.arctan2(fx, fy)
-    inside = (radius > fillet_radius[0]) & (radius < fillet_radius[-1])
-    if not inside.any():
-        return Interference(tip_of, below, math.inf, pair.tip_clearance(tip_of))
-    gap = (polar[inside] - np.interp(radius[inside], fillet_radius, fillet_polar)) * radius[inside]
-    return Interference(tip_of, below, float(gap.min()) * mate.module, pair.tip_clearance(tip_of))
-
 
 #: Least normal tooth thickness at the tip circle in modules; case-hardened teeth want 0.4.
 LEAST_TIP_THICKNESS = 0.2

@@ -119,9 +119,9 @@ class Gear:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise GeometryError(name, value, "must be positive and finite")
-        if not is_of_pure_numbers(self.material):
+        if not is_of_pure_numbers(self.material.young_modulus):
             refuse_size(self.module, self.face_width)
-            refuse_material(self.material)
+            refuse_material(self.material.young_modulus, self.material.density)
         self._check_held_radius()
         if self.body is not None:
             self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius, self.teeth)

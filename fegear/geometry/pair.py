@@ -5,15 +5,10 @@ What happens along the path of contact: its points A to E, the diameters that it
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from fegear.geometry.internal_interference import InternalCheck
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +20,10 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 from fegear.geometry.tooth import Tooth
+
+if TYPE_CHECKING:
+    from fegear.geometry.internal_interference import InternalCheck
+
 
 Member = Literal["driver", "driven"]
 

@@ -10,9 +10,10 @@ import fegear
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
-from fegear.output.tables import write_json, write_table
+from fegear.output.summary import write_json
+from fegear.output.tables import write_table
 from fegear.studies.comparison.compare import Comparison
-from fegear.studies.comparison.joined import comparison_figures
+from fegear.studies.comparison.drawn import comparison_figures
 
 
 def comparison_page(comparison: Comparison) -> Page:

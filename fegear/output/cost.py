@@ -16,7 +16,8 @@ from fegear.engine.figure.figure import Figure
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.blocks import Block, DataTable, Facts, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
-from fegear.output.tables import write_json, write_table
+from fegear.output.summary import write_json
+from fegear.output.tables import write_table
 from fegear.studies.cost.result import ALL, TOLERANCES, CostResults
 from fegear.studies.cost.tables import cost_figures, tables
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import install
 from fegear.engine.figure.items import Skin, Spot, Surface
-from fegear.output.numbers import SEQUENTIAL, shade
+from fegear.output.shades import SEQUENTIAL, shade
 
 _SIZE = (1400, 900)
 #: How far a body moves to the left for the scale of colours, of half the picture's width.

@@ -21,7 +21,8 @@ from fegear.output.folder import SUMMARY, files_in
 from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import Block, DataTable, Facts, Folded, Grid, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
-from fegear.output.tables import write_json, write_table
+from fegear.output.summary import write_json
+from fegear.output.tables import write_table
 from fegear.studies.comparison.compare import Pairing
 from fegear.studies.effects import EffectCurve, Fixed, Switched, clearest_curve, effect_figure
 

@@ -15,7 +15,7 @@ from fegear.base.errors import InputError
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.tooth_influence import mesh_settings, own_sector_mesh
-from fegear.case.part import nearest
+from fegear.case.nearest import nearest
 from fegear.engine.table import Column, Table
 from fegear.geometry.outline import relieved_outline
 from fegear.geometry.pair import MEMBERS, active_profile

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.engine.figure.figure import Axis, Figure, MeshField, Panel, SolidMeshField
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, MeshField, SolidMeshField
 from fegear.engine.figure.items import Skin, TriangleField
+from fegear.engine.figure.panel import Panel
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:

@@ -14,9 +14,10 @@ from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.fem.plane.gear_section import gear_section, uneven_section
 from fegear.fem.plane.imported_mesh import write_mesh_file, write_vtu
+from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.settings import MeshSettings
-from fegear.fem.plane.whole_gear import WholeGear, loaded_gear, nodal_fields
+from fegear.fem.plane.whole_gear import WholeGear
 from fegear.fem.solid.extruded import SolidMesh, extruded, graded_stations, pressed_band
 from fegear.geometry.gear import Gear
 from fegear.output.dxf import AS_GENERATED

@@ -21,8 +21,8 @@ from fegear.base.errors import PATH, InputError, shown
 from fegear.base.units import PER_SI
 from fegear.case.json_file import read_json
 from fegear.case.text_file import leads_to, read_text
-from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.output.folder import SUMMARY
 from fegear.studies.comparison.compare import Side
 

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
-from fegear.engine.plan import Catalogue, Entry
+from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage
 
 # fmt: off

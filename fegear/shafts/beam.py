@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.shafts.carried import carry
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -262,13 +263,3 @@ class Shaft:
         both = self._alone_compliance(np.concatenate([z, seats]))
         at = np.tensordot(both[: z.size, :, z.size :], root, 2).reshape(6 * z.size, -1)
         return both[: z.size, :, : z.size] - (at @ np.linalg.solve(held, at.T)).reshape(z.size, 6, z.size, 6)
-
-
-def carry(lever: ArrayLike) -> Array:
-    """B(l): what a force (F, M) is at a section a distance l before it along z, shape (..., 6, 6)."""
-    arm = np.asarray(lever, dtype=float)
-    found = np.zeros((*arm.shape, 6, 6))
-    found[..., range(6), range(6)] = 1.0
-    found[..., 3, 1] = -arm
-    found[..., 4, 0] = arm
-    return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.fem.revolved_body import RevolvedBody, condensed
-from fegear.shafts.beam import carry
+from fegear.shafts.carried import carry
 
 #: Of the six motions of a section, those across the axis and their tilts, d/dz of each, in both planes.
 _PLANES = ((0, 4, 1.0), (1, 3, -1.0))

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
-from fegear.shafts.beam import carry
+from fegear.shafts.carried import carry
 from fegear.shafts.held import Held, LoadedShaft, groups_of, held_by
 from fegear.shafts.mesh import MeshPlace, straight_slope
 from fegear.shafts.solution import Deflection, deflect, response

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.shafts.beam import carry
+from fegear.shafts.carried import carry
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index

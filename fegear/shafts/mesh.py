@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.geometry.pair import MEMBERS
-from fegear.shafts.beam import carry
+from fegear.shafts.carried import carry
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

@@ -25,7 +25,7 @@ import numpy as np
 from fegear.base.arrays import distinct
 from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.shown import shown
-from fegear.shafts.beam import carry
+from fegear.shafts.carried import carry
 from fegear.shafts.held import LoadedShaft, held_by, refuse_loose, refuse_torque
 
 if TYPE_CHECKING:

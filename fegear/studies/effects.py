@@ -21,10 +21,12 @@ from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.tally import tallying
 from fegear.case.effects import EFFECTS, EffectsPart
-from fegear.case.part import nearest
+from fegear.case.nearest import nearest
 from fegear.case.reading import Scene, build_scene, case_text, read_document
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve
+from fegear.engine.figure.panel import Panel
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Results, run_plan
 from fegear.engine.table import Table

@@ -23,12 +23,12 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene, read_document, set_key, typed_value
 from fegear.case.text_file import digest_of_file
 from fegear.engine.executor import Executor, count_kept, map_points
-from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
 from fegear.engine.processes import Failure
+from fegear.engine.progress import Progress
 from fegear.engine.run import run_plan
-from fegear.engine.stage import Progress
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.catalogue import STAGES
 
 #: Points of a sweep beyond which its results do not fit into memory: some 10 GB.

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark, Points, few, ramp
+from fegear.engine.figure.panel import Panel
 from fegear.engine.processes import Failure
 from fegear.studies.sweep import Axis as SweepAxis
 from fegear.studies.sweep import Point, SweepResults

@@ -402,7 +402,8 @@ def _pressed(position: str, tilt: float) -> tuple[Any, Any]:
     """Lines and contact under 900 N, the driver tilted by so many um over the face."""
     from fegear.contact.wide.complementarity import solve_contact
     from fegear.contact.wide.compliance import flank_compliance
-    from fegear.contact.wide.lines import contact_lines, usual_gap
+    from fegear.contact.wide.lines import contact_lines
+    from fegear.contact.wide.tip_edges import usual_gap
 
     pair, gears = _flanks()
     roll, load = pair.x_start + _PLACES[position] * pair.base_pitch, 900.0

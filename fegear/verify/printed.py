@@ -160,7 +160,8 @@ def _spur(z: int, shift: float = 0.0, module: float = 1e-3) -> Gear:
 @ROWS.add("measures over pins and over teeth", "printed", _SDP)
 def pins_and_span() -> Iterator[Compared]:
     """Over pins of 1.7 mm, span over four teeth, and pins that touch at the V circle."""
-    from fegear.geometry.inspection import over_balls, span, touching_ball
+    from fegear.geometry.inspection import span
+    from fegear.geometry.over_balls import over_balls, touching_ball
 
     yield printed(over_balls(_spur(20), 1.7e-3).dimension * 1e3, "22.2941")
     yield printed(span(_spur(24, 0.4, 3e-3), 4) * 1e3, "32.8266")

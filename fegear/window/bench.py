@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import InputError
-from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.window.case_text import literal, with_value, with_values
 from fegear.window.computing import whole

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
-from fegear.case.schema import SchemaNodes, case_schema, help_of
+from fegear.case.known_keys import help_of
+from fegear.case.schema import case_schema
+from fegear.case.schema_nodes import SchemaNodes
 from fegear.results.catalogue import STAGES
 from fegear.window.case_text import as_typed, literal, value_at
 

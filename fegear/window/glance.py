@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.case.reading import Scene
-    from fegear.engine.outcome import Value
     from fegear.engine.plan import Plan
+    from fegear.engine.value import Value
 
 
 class Picture(NamedTuple):

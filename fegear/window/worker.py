@@ -20,7 +20,7 @@ from fegear.window.computing import SAME, Sent
 from fegear.window.designs import design_asked, designed, draft_of
 from fegear.window.drag_handles import hands_of
 from fegear.window.glance import field_tasks, glance_tasks, keys_of, numbers_of, plan_with
-from fegear.window.job_queue import Compare, Compute, Design, Export, Inbox, Said, Unwanted
+from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Said, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
 from fegear.window.order import HarrisMaps, in_order, load_now_of
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
-from fegear.window.job_queue import Asked, Job
+
 
 #: For so long a computation goes on while a value is being moved [s].
 _STROKE = 1.5
@@ -332,7 +332,8 @@ class Worker:
     def _export(self, job: Export) -> None:
         from fegear.engine.run import Silence
         from fegear.output.export import export_gears
-        from fegear.output.folder import whole_or_nothing, write_results
+        from fegear.output.folder import whole_or_nothing
+        from fegear.output.run_files import write_results
         from fegear.output.tables import write_table
 
         target = Path(job.target)
@@ -355,7 +356,7 @@ class Worker:
         from fegear.output.report.blocks import DataTable, Plot
         from fegear.output.report.page import fragment
         from fegear.studies.comparison.compare import compare, side_of
-        from fegear.studies.comparison.joined import comparison_figures
+        from fegear.studies.comparison.drawn import comparison_figures
 
         found = compare(side_of(self._results(job.first), "pinned"), side_of(self._results(job.second), "now"), 1e-9)
         figures = comparison_figures(found)

@@ -13,7 +13,8 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import Scene, build_scene
 from fegear.geometry import gear as geometry
-from fegear.workbench.given import Length, brief, name_of, table, taken, working_folder
+from fegear.workbench.given import name_of, table, taken, working_folder
+from fegear.workbench.quantities import Length, brief
 from fegear.workbench.results import Results
 from fegear.workbench.run import run_scene
 
@@ -140,6 +141,6 @@ class Gear(Described):
 
     def _repr_html_(self) -> str:
         """Show the drawing and its data in a notebook."""
-        from fegear.workbench.plots import gear_html
+        from fegear.workbench.drawn_gears import gear_html
 
-        return gear_html(self)
+        return gear_html(self.name, self.geometry, self.data)

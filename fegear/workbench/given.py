@@ -1,28 +1,20 @@
 """What a script gives, taken as a case file would have it: plain tables, lists, numbers and texts of its own.
 
 Nothing of the caller is kept: what he changes afterwards changes no gear.
-
-What a script may write for a quantity.
 """
 
 from __future__ import annotations
 
 import os
-import reprlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
-from fegear.base.units import as_text, to_si
 from fegear.case.text_file import named_path
-
-if TYPE_CHECKING:
-    import pint
-
 
 #: Tables in tables; a case has five.
 _DEEPEST = 20
@@ -177,50 +169,3 @@ def working_folder() -> Path:
         return Path.cwd()
     except OSError:
         return Path()
-
-
-#: A text with its unit (``"3 mm"``), a quantity of pint, or a number in SI.
-Quantity: TypeAlias = "str | float | pint.Quantity[Any]"
-
-
-Length: TypeAlias = Quantity
-
-
-Torque: TypeAlias = Quantity
-
-
-Force: TypeAlias = Quantity
-
-
-Speed: TypeAlias = Quantity
-
-
-_brief = reprlib.Repr()
-
-
-_brief.maxlist = _brief.maxdict = 4
-
-
-_brief.maxstring = _brief.maxother = 60
-
-
-def brief(value: object) -> str:
-    """Write what was given, long lists cut short."""
-    return _brief.repr(value)
-
-
-def in_si(value: Quantity, dimension: str, key: str) -> float:
-    """A quantity in SI.
-
-    Raises
-    ------
-    InputError
-        If it has another dimension or cannot be read.
-    """
-    return to_si(as_text(value, dimension, bare_si=True), dimension, key)
-
-
-def listed(value: Any, key: str) -> list[Any] | None:
-    """The members of a list, tuple, range or array of quantities; None for a single one."""
-    found = taken(value, key)
-    return found if isinstance(found, list) else None

@@ -8,7 +8,8 @@ from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
 from fegear.results.pair.root_stress_history import table_names
 from fegear.workbench.gear import Described, Gear
-from fegear.workbench.given import Length, brief, name_of, table, taken
+from fegear.workbench.given import name_of, table, taken
+from fegear.workbench.quantities import Length, brief
 from fegear.workbench.results import Results
 
 if TYPE_CHECKING:
@@ -187,9 +188,9 @@ class Pair(Described):
 
     def _repr_html_(self) -> str:
         """Show the gears and the pair's data in a notebook."""
-        from fegear.workbench.plots import pair_html
+        from fegear.workbench.drawn_gears import pair_html
 
-        return pair_html(self)
+        return pair_html(self.data)
 
 
 def _apart(names: tuple[str, str]) -> tuple[str, str]:

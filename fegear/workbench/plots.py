@@ -1,34 +1,20 @@
-"""Figures of a run: a notebook shows them, a script writes or opens them.
-
-Gears and pairs as a notebook shows them: the drawing, and the data that it carries.
-"""
+"""Figures of a run: a notebook shows them, a script writes or opens them."""
 
 from __future__ import annotations
 
-import math
 import tempfile
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.base.errors import PATH, InputError, shown
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
-from fegear.engine.figure.items import outline
-from fegear.geometry.outline import gear_outline
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.output.draw_plotly.notebook import page_html, still_html
 from fegear.workbench.given import folder_of
 
 if TYPE_CHECKING:
     import os
-
-    from fegear.base.arrays import Array
-    from fegear.geometry import gear as geometry
-    from fegear.workbench.gear import Gear
-    from fegear.workbench.pair import Pair
-    from fegear.workbench.results import Results
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,43 +85,3 @@ class Plots:
         except OSError as error:
             raise InputError("folder", shown(str(target), PATH), f"cannot be made ({error.strerror})") from None
         return [picture.path for figure in self.figures for picture in draw_pictures(figure.made(), target, kind)]
-
-
-#: Chords of a drawn outline stay this close to it [modules].
-_CHORD = 1e-3
-
-
-def _circle(radius: float) -> Array:
-    angle = np.linspace(0.0, 2.0 * math.pi, 361)
-    return radius * np.stack([np.cos(angle), np.sin(angle)])
-
-
-def gear_figure(name: str, gear: geometry.Gear) -> Figure:
-    """The whole gear: outline, pitch circle, and where the body is held."""
-    points = gear_outline(gear, _CHORD) * 1e3
-    lines = (
-        outline(np.hstack([points, points[:, :1]]), name, width=1.4),
-        outline(_circle(gear.pitch_radius * 1e3), "pitch circle", "grey", dash="dashdot", width=0.8),
-        outline(_circle(gear.bore_radius * 1e3), "held", "grey", width=0.8),
-    )
-    return Figure(
-        f"gear_{name}", f"Gear {name}",
-        f"{gear.teeth} teeth, module {gear.module * 1e3:.6g} mm, profile shift {gear.tooth.profile_shift:.4g}"
-        + (f"; the section across the axis, {gear.hand} hand." if gear.helix_angle else "."),
-        (Panel(Axis("x", "mm"), Axis("y", "mm"), lines, equal=True, height=1.5),),
-    )  # fmt: skip
-
-
-def _data_html(data: Results) -> str:
-    values = data._repr_html_() if data.values else ""
-    return values + "".join(table._repr_html_() for table in data.tables)
-
-
-def gear_html(gear: Gear) -> str:
-    """Drawing and data of a gear."""
-    return still_html(gear_figure(gear.name, gear.geometry)) + _data_html(gear.data)
-
-
-def pair_html(pair: Pair) -> str:
-    """Drawing and data of a pair."""
-    return "".join(still_html(figure.made()) for figure in pair.data.figures) + _data_html(pair.data)

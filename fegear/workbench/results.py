@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError
-from fegear.engine.outcome import Named, Value, html_table
+from fegear.engine.html_table import html_table
+from fegear.engine.named import Named
 from fegear.engine.run import Results as Found
 from fegear.engine.run import Silence
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
 from fegear.workbench.given import folder_of, texts
@@ -192,7 +194,8 @@ class Results(Found):
         InputError
             If the folder cannot be made or written to.
         """
-        from fegear.output.folder import whole_or_nothing, write_results
+        from fegear.output.folder import whole_or_nothing
+        from fegear.output.run_files import write_results
 
         target = folder_of(folder)
         with whole_or_nothing(target, "folder") as scratch:

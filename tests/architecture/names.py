@@ -8,7 +8,8 @@ import json
 from pathlib import Path
 
 import fegear
-from fegear.case.schema import SchemaNodes, case_schema
+from fegear.case.schema import case_schema
+from fegear.case.schema_nodes import SchemaNodes
 from fegear.results.catalogue import RESULTS
 
 FILE = Path(__file__).with_name("names.json")

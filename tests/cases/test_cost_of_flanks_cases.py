@@ -16,10 +16,10 @@ from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import build_scene, read_scene
 from fegear.output.cost import write_cost
 from fegear.results.pair.loaded_flanks import load_flanks
-from fegear.studies.cost.answers import OF_FLANKS
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.ladder import ALONE, BODIES, FlankConfiguration, flank_ladder
 from fegear.studies.cost.measure import solve_bodies
+from fegear.studies.cost.quantities import OF_FLANKS
 from fegear.studies.cost.study import study_cost
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"

@@ -16,8 +16,9 @@ from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.reading import read_scene
 from fegear.cli import app
-from fegear.contact.compared.crosscheck import pair_compliance_answers, root_stress_answers, virtual_root_stress
+from fegear.contact.compared.crosscheck import pair_compliance_answers, root_stress_answers
 from fegear.contact.compared.root_stress_study import root_stress_study, variants, verdict
+from fegear.contact.compared.virtual_gear import virtual_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.plane.settings import MeshSettings

@@ -10,8 +10,9 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
 from fegear.contact.wide.compliance import flank_compliance
+from fegear.design.flanks.scatter import Scatter
 from fegear.design.flanks.topography import lines_at
-from fegear.design.flanks.trials import FlankTrials, Scatter
+from fegear.design.flanks.trials import FlankTrials
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task

@@ -11,7 +11,8 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene, read_scene
-from fegear.engine.plan import forecast_seconds, make_plan, plan_lines
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import forecast_seconds, plan_lines
 from fegear.engine.stage import Stage, Task
 from fegear.results.catalogue import STAGES
 

@@ -12,7 +12,6 @@ from fegear.case.reading import read_scene
 from fegear.contact.fourier import fourier_series, panels
 from fegear.contact.wide.complementarity import hat_averages
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import roll_points
 from fegear.contact.wide.load_factors import (
     even_along_the_lines,
     iso_face_load_factor,
@@ -21,6 +20,7 @@ from fegear.contact.wide.load_factors import (
     transverse_load_factor,
 )
 from fegear.contact.wide.pair_history import separation
+from fegear.contact.wide.roll_points import roll_points
 from fegear.contact.wide.root_stress import rooted_lines
 from fegear.contact.wide.transmission_error import curve_through, flank_transmission_errors, from_half
 from fegear.engine.plan import make_plan

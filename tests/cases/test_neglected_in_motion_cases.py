@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from solved_once import CACHE
 
-from fegear.case.built.neglected_effects import contact_loss_changes, friction_changes
+from fegear.case.built.neglected_in_motion import contact_loss_changes, friction_changes
 from fegear.case.built.train import motion_inputs
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan

@@ -16,6 +16,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 #: Pages that hooks of docs/ make; the finished site is searched for dead links when it is built.
 MADE_PAGES = {"how-to/index.md", "theory/index.md", "sources/index.md", "readme.md", "changelog.md"}
+MADE_PAGES |= {f"sources/{source.stem}.md" for source in (ROOT / "docs" / "sources").glob("*.toml")}
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 

@@ -19,7 +19,7 @@ from fegear.case.reading import read_scene
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
-from fegear.output.folder import write_results
+from fegear.output.run_files import write_results
 from fegear.output.sweep import write_sweep
 from fegear.results.catalogue import STAGES
 from fegear.studies.sweep import read_axis, sweep_case

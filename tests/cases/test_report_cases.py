@@ -23,11 +23,11 @@ from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
 from fegear.geometry import outline
-from fegear.output.exchange import RECORD
 from fegear.output.figures import described
-from fegear.output.folder import write_results
+from fegear.output.new_for_old import RECORD
 from fegear.output.report.blocks import value_cells
 from fegear.output.report.run import write_report
+from fegear.output.run_files import write_results
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -150,7 +150,7 @@ def test_the_report_needs_neither_plotly_nor_matplotlib_and_plane_gears_are_draw
         "import sys; from pathlib import Path; from fegear.case.reading import read_scene;"
         "from fegear.engine.run import *;"
         "from fegear.engine.plan import make_plan; from fegear.results.catalogue import STAGES;"
-        "from fegear.output.folder import write_results;"
+        "from fegear.output.run_files import write_results;"
         f"scene = read_scene({str(CASES / 'litvin_lead.toml')!r}, ['tooth_contact.positions=20']);"
         "results = run_plan(scene, make_plan(scene, STAGES));"
         f"write_results(results, Path({str(tmp_path / 'report')!r}), Silence(), plots=False);"
@@ -217,7 +217,7 @@ def test_a_picture_that_cannot_be_drawn_is_a_remark_not_a_failure(made, tmp_path
     def missing(*_arguments):
         raise MissingLibraryError("the deformed gear cannot be drawn; run: apt-get install libegl1")
 
-    monkeypatch.setattr("fegear.fem.plane.whole_gear.loaded_gear", missing)
+    monkeypatch.setattr("fegear.fem.plane.loaded_gear.loaded_gear", missing)
     remarks = write_results(made[0], tmp_path, Silence())
     assert remarks[-1] == "the deformed gear cannot be drawn; run: apt-get install libegl1."
     assert re.search("apt-get install libegl1", (tmp_path / "report.html").read_text(encoding="utf-8"))

@@ -13,7 +13,7 @@ from solved_once import CACHE
 from fegear.base.errors import InputError
 from fegear.case.pair import RootStressName
 from fegear.case.reading import read_scene
-from fegear.contact.plane.closed_form_compliance import formula_root_stress
+from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.sources import ROOT_STRESS_SOURCES

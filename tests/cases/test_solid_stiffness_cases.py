@@ -19,7 +19,7 @@ from fegear.fem.solid.bands import bands
 from fegear.fem.solid.table import solid_table
 from fegear.geometry.gear import Gear
 from fegear.output.draw_png import draw_pictures
-from fegear.output.figures import _write_field
+from fegear.output.fields import write_field
 from fegear.results.catalogue import STAGES
 from fegear.results.gear.load_positions import stiffness_inputs
 from fegear.studies.cost import knobs
@@ -148,7 +148,7 @@ def test_pictures_and_field(results, tmp_path):
     assert set(made) == {"flank_a", "root_stress_over_face_a", "deformed_tooth_a"}
     tooth = made["deformed_tooth_a"]
     assert not tooth.drawable_in_page
-    _write_field(tooth.field, tmp_path)
+    write_field(tooth, tmp_path)
     mesh = pyvista.read(tmp_path / "a_tooth.vtu")
     assert set(mesh.celltypes) == {pyvista.CellType.QUADRATIC_WEDGE}
     assert np.ptp(mesh.points[:, 2]) == pytest.approx(8.0)

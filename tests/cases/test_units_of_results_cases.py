@@ -12,7 +12,8 @@ import pytest
 from solved_once import CACHE
 
 import fegear
-from fegear.output.tables import summary, table_text
+from fegear.output.summary import summary
+from fegear.output.tables import table_text
 
 CASES = Path(__file__).parents[2] / "cases"
 COARSE = {"accuracy.tolerance": 0.05}

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from scipy.special import ellipe, ellipk
 
 from fegear.base.errors import InputError
-from fegear.contact.unloaded.contact_ellipse import contact_ellipse, parting
+from fegear.contact.unloaded.contact_ellipse import contact_ellipse
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-from fegear.contact.unloaded.separation import Placement
-from fegear.contact.unloaded.tooth_contact import pair_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
+from fegear.contact.unloaded.parting import parting
+from fegear.contact.unloaded.placement import Placement
 
 
 def test_circle_is_the_ball_on_a_plane():

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from fegear.base.errors import InputError
 from fegear.contact.unloaded.contact_lines import aligned, contact_lines, line_contact, line_ends, line_length
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-from fegear.contact.unloaded.tooth_contact import pair_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
 from fegear.geometry.helicoid import InvoluteHelicoid
 
 DEG = math.pi / 180.0

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
-from fegear.contact.plane.fe_compliance import spline
+from fegear.contact.plane.spline import spline
 
 
 @given(st.integers(4, 40), st.integers(0, 10**6))

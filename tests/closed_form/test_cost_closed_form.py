@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.studies.cost.answers import miss
+from fegear.studies.cost.quantities import miss
 from fegear.studies.cost.result import cheapest, observed_order, pareto_front
 
 number = st.floats(1e-9, 1e3) | st.just(math.nan)

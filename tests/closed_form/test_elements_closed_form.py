@@ -13,11 +13,11 @@ from scipy.sparse.linalg import splu
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.gear_field import _nodal_stress
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.plane.ring import close_ring
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import LEVEL_RATIO, MeshSettings
-from fegear.fem.plane.whole_gear import _nodal_stress
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 

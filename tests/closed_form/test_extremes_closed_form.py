@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from fegear.base.errors import GeometryError
 from fegear.contact.unloaded.extremes import extremes
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-from fegear.contact.unloaded.tooth_contact import pair_contact, tooth_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
+from fegear.contact.unloaded.tooth_contact import tooth_contact
 
 DEG, ARCMIN = math.pi / 180.0, math.pi / 10800.0
 

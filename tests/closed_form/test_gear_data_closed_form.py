@@ -11,8 +11,9 @@ from matplotlib.path import Path
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.reading import build_scene
 from fegear.geometry.gear import Gear
-from fegear.geometry.inspection import over_balls, span, touching_ball, usual_ball
+from fegear.geometry.inspection import span
 from fegear.geometry.outline import gear_outline
+from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import GearPair, active_profile, path_points, specific_sliding
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth

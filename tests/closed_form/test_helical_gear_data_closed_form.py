@@ -14,7 +14,8 @@ from fegear.contact.unloaded.pair import HelicalPair, Misalignment
 from fegear.contact.unloaded.tooth_contact import mesh_cycle
 from fegear.geometry.gear import Gear
 from fegear.geometry.helicoid import InvoluteHelicoid
-from fegear.geometry.inspection import over_balls, span, span_teeth, touching_ball, usual_ball, usual_span
+from fegear.geometry.inspection import span, span_teeth, usual_span
+from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import GearPair
 
 DEG = math.pi / 180.0

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.unloaded.separation import Placement
+from fegear.contact.unloaded.placement import Placement
 
 #: Two crowned, helical flanks on shafts that cross at ten degrees: no cosine is nearly one.
 PLACE = Placement(

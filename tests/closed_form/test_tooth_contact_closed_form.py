@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from scipy.optimize import root
 
 from fegear.base.errors import GeometryError
-from fegear.contact.unloaded.extremes import falling_bracket, falling_root
 from fegear.contact.unloaded.manufacture import as_cut
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-from fegear.contact.unloaded.tooth_contact import mesh_cycle, pair_contact, tooth_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
+from fegear.contact.unloaded.roots import falling_bracket, falling_root
+from fegear.contact.unloaded.tooth_contact import mesh_cycle, tooth_contact
 from fegear.geometry.rack_cutter import RackFlank
 
 DEG, ARCMIN, ARCSEC = math.pi / 180.0, math.pi / 10800.0, math.pi / 648000.0

@@ -10,8 +10,9 @@ from scipy.spatial.transform import Rotation
 from fegear.contact.unloaded.manufacture import CutRemoval
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
 from fegear.contact.unloaded.tooth_contact import mesh_cycle
-from fegear.contact.wide.gaps import FlankGaps, beside_the_lines, touching_gaps, unloaded_error
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
+from fegear.contact.wide.rigid_flanks import beside_the_lines, touching_gaps, unloaded_error
 from fegear.geometry.flank_modification import LeadCrowning
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.helicoid import InvoluteHelicoid

@@ -21,7 +21,7 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import contact_changes, transmission_error
-from fegear.design.charts import bench
+from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief, relief_over_path
 from fegear.design.tip_relief.search import _even
 from fegear.design.tip_relief.trials import Trials
@@ -29,7 +29,7 @@ from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import roll_of_radius
 from fegear.geometry.tooth import Tooth

@@ -22,10 +22,12 @@ from mutations import STRANGE, failures, mutated, processor_seconds, sentence, t
 
 import fegear
 from fegear.base.errors import FegearError, shown
-from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, parse_document
-from fegear.engine.plan import make_plan, plan_lines
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import plan_lines
 from fegear.engine.run import Results, run_plan
 from fegear.results.catalogue import STAGES
 from fegear.workbench import run as workbench_run

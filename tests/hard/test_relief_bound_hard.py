@@ -17,7 +17,7 @@ from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 

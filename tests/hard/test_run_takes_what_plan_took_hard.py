@@ -12,7 +12,8 @@ import pytest
 from mutations import processor_seconds
 
 from fegear.base.errors import FegearError, InputError
-from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
 from fegear.case.text_file import toml_string

@@ -28,7 +28,7 @@ from fegear.case.built import solid_influence
 from fegear.case.reading import build_scene
 from fegear.contact.plane import loaded_pair
 from fegear.contact.wide import over_pitch
-from fegear.engine.outcome import error_columns
+from fegear.engine.least_errors import error_columns
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.solid.settings import solid_settings

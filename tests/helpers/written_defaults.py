@@ -6,8 +6,10 @@ import copy
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from fegear.case.known_keys import Node, part_models
 from fegear.case.model import Case
-from fegear.case.schema import Node, SchemaNodes, case_schema, part_models
+from fegear.case.schema import case_schema
+from fegear.case.schema_nodes import SchemaNodes
 
 if TYPE_CHECKING:
     from pydantic import BaseModel

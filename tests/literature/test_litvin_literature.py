@@ -15,8 +15,9 @@ from fegear.base.errors import RangeError
 from fegear.contact.unloaded.contact_ellipse import bearing_contact
 from fegear.contact.unloaded.manufacture import as_cut
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.pair_contact import pair_contact
 from fegear.contact.unloaded.predesign import absorb_linear_error, linear_error
-from fegear.contact.unloaded.tooth_contact import mesh_cycle, pair_contact, tooth_contact
+from fegear.contact.unloaded.tooth_contact import mesh_cycle, tooth_contact
 
 INCH, ARCMIN, ARCSEC = 0.0254, math.pi / 10800.0, math.pi / 648000.0
 

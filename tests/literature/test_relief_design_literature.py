@@ -12,9 +12,11 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
-from fegear.design.charts import harris_map, relief_chart, robustness
+from fegear.design.charts import harris_map, relief_chart
+from fegear.design.held_relief import robustness
 from fegear.design.loading import LoadingFunction, Ramp
-from fegear.design.minimum_excitation import OilFilm, minimum_excitation, relief_table
+from fegear.design.minimum_excitation import minimum_excitation, relief_table
+from fegear.design.oil_film import OilFilm
 from fegear.design.root_stress_loading import Allowed, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief
 from fegear.fem.plane.settings import MeshSettings

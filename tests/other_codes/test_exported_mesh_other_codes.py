@@ -11,10 +11,12 @@ import meshio
 import numpy as np
 import pytest
 
+from fegear.fem.plane.gear_field import gear_field
+from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
-from fegear.fem.plane.whole_gear import gear_field, loaded_gear, nodal_fields, whole_gear
+from fegear.fem.plane.whole_gear import whole_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fegear.engine.plan import Catalogue
+from fegear.engine.catalogue import Catalogue
 from fegear.engine.stage import Stage
 from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
 
@@ -29,7 +29,8 @@ from fegear.case.part import Part
 from fegear.case.reading import read_scene
 scene = read_scene(sys.argv[1], [])
 print(*(part.__name__ for part in Part.__subclasses__() if part.__pydantic_complete__))
-from fegear.engine.plan import make_plan, plan_lines
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import plan_lines
 from fegear.results.catalogue import STAGES
 list(plan_lines(scene, make_plan(scene, STAGES)))
 print(*(m.removeprefix("fegear.") for m in sys.modules if m.startswith("fegear.")))

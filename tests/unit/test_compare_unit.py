@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 import fegear.cli
-from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.output.run_folder import read_side
 from fegear.studies.comparison.compare import Side, compare, different_inputs, paired
-from fegear.studies.comparison.joined import comparison_figures, join
+from fegear.studies.comparison.drawn import comparison_figures
+from fegear.studies.comparison.joined import join
 
 CASE = """
 results = ["geometry", "load-sharing"]

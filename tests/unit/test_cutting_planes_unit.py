@@ -7,7 +7,7 @@ from scipy.optimize import linprog, minimize
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.design.charts import bench
+from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.cutting_planes import least_in_box
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.gear import Gear

@@ -17,7 +17,8 @@ from fegear.base.errors import FegearError
 from fegear.case.gear import GearPart
 from fegear.case.reading import build_scene
 from fegear.case.shaft import BearingPart
-from fegear.engine.plan import make_plan, plan_content
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import plan_content
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -7,8 +7,14 @@ import pytest
 
 from fegear.dynamics.train.dynamic_factor import factor_line
 from fegear.engine.figure.items import Curve, Points
-from fegear.results.train.design_chart import DesignChartData, UnequalRelief
-from fegear.results.train.design_chart_tables import chart_tables, chart_values, design_chart_figures, line_remark
+from fegear.results.train.design_chart_tables import (
+    DesignChartData,
+    UnequalRelief,
+    chart_tables,
+    chart_values,
+    design_chart_figures,
+    line_remark,
+)
 
 LENGTHS = np.array([0.5, 0.75, 1.0, 1.25])
 FACTOR = np.array([[1.8, 1.7, 1.6, 1.5], [1.6, 1.3, 1.1, 1.2], [1.4, 1.05, 1.5, 1.9]])

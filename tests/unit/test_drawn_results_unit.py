@@ -12,16 +12,17 @@ import pytest
 from fegear.dynamics.train.charts import SpeedChart
 from fegear.dynamics.train.modes import Campbell
 from fegear.dynamics.train.spectra import MeshForceSpectrum
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, Points, Stems
+from fegear.engine.figure.panel import Panel
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.output.draw_plotly.layout import plotly_json
 from fegear.output.draw_png.sheet import Sheet
-from fegear.results.gear.drawing import pair_figure, path_marks, roll_marks
-from fegear.results.gear.geometry import Drawing
+from fegear.results.gear.drawing import Drawing, pair_figure, path_marks, roll_marks
 from fegear.results.pair.loaded_teeth import pitch_marks
 from fegear.results.train.dynamic_factor import _figure as _factor_figure
 from fegear.results.train.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures

@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from fegear.engine.outcome import Named, Value
+from fegear.engine.named import Named
+from fegear.engine.value import Value
 from fegear.output.effects import effects_page, effects_table, sentence
 from fegear.studies.effects import Measured, Switched
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fegear.contact.plane.shifted_compliance import _no_less_than_beside, _of_effective
+from fegear.contact.plane.shifted_loads import _no_less_than_beside, _of_effective
 
 
 def test_a_harmonic_in_which_changes_cancel_has_an_error_as_those_beside_it():

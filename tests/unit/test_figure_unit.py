@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from fegear.base.errors import MissingLibraryError
 from fegear.engine.colours import ROLES
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale, View, round_numbers
+from fegear.engine.figure.axis import Axis, Scale, round_numbers
+from fegear.engine.figure.figure import DeferredFigure, Figure, View
 from fegear.engine.figure.items import (
     Bars,
     Curve,
@@ -27,11 +28,12 @@ from fegear.engine.figure.items import (
     Zone,
     few,
 )
+from fegear.engine.figure.panel import Panel
 from fegear.output.draw_plotly.layout import darker, plotly_json, template
 from fegear.output.draw_plotly.notebook import notebook_bundle, page_html
 from fegear.output.draw_png import draw_pictures
 from fegear.output.draw_png.sheet import Sheet
-from fegear.output.numbers import shade
+from fegear.output.shades import shade
 
 
 def array(spec: dict) -> np.ndarray:

@@ -15,13 +15,15 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.contact.wide import complementarity, compliance
 from fegear.contact.wide import over_pitch as over_pitch_module
-from fegear.contact.wide.complementarity import GAUSS, averages, hat_averages, solve_contact
+from fegear.contact.wide.averages import GAUSS, averages
+from fegear.contact.wide.complementarity import hat_averages, solve_contact
 from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
 from fegear.contact.wide.error import flank_error
-from fegear.contact.wide.gaps import FlankGaps, unloaded_error
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines, contact_lines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import over_pitch
+from fegear.contact.wide.rigid_flanks import unloaded_error
 from fegear.contact.wide.root_stress import rooted_lines
 from fegear.fem.plane.root_stress import extreme
 from fegear.fem.plane.solution import solve_gear

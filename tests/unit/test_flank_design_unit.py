@@ -15,8 +15,12 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages, solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.loaded import FlankPair
-from fegear.design.flanks.forms import FAMILIES, LENGTHS, NUMBERS, FormsAt, GroundRelief, ReliefGrid, held_by
-from fegear.design.flanks.search import best_of_family, descend, quick_values
+from fegear.design.flanks.families import best_of_family, quick_values
+from fegear.design.flanks.forms import LENGTHS, NUMBERS, FormsAt, GroundRelief
+from fegear.design.flanks.grid import FAMILIES, ReliefGrid, held_by
+from fegear.design.flanks.quick import quick_flanks
+from fegear.design.flanks.scatter import NOMINAL, normal_scatter
+from fegear.design.flanks.search import descend
 from fegear.design.flanks.topography import (
     FlankLoading,
     design_lines,
@@ -25,7 +29,7 @@ from fegear.design.flanks.topography import (
     tabulated,
     topography,
 )
-from fegear.design.flanks.trials import NOMINAL, FlankTrials, normal_scatter, quick_flanks
+from fegear.design.flanks.trials import FlankTrials
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation
 from fegear.fem.plane.solution import solve_gear

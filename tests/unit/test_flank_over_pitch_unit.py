@@ -14,15 +14,15 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import usual_gap
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import likely_peaks, over_pitch
 from fegear.contact.wide.spots import missed_of_spots
+from fegear.contact.wide.tip_edges import usual_gap
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
-from fegear.geometry.plausible import heavy_load
+from fegear.geometry.plausible_flanks import heavy_load
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 

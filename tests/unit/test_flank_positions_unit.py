@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.wide.lines import _shared, contact_lines, line_breaks, roll_points, shortest_line
-from fegear.contact.wide.load_factors import _loads_below, load_below, swept_mean
+from fegear.contact.wide.along_lines import _loads_below, load_below, swept_mean
+from fegear.contact.wide.lines import contact_lines, shortest_line
+from fegear.contact.wide.roll_points import _shared, line_breaks, roll_points
 from fegear.contact.wide.transmission_error import curve_through, from_half
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.contact.wide.gaps import FlankGaps, ShaftGaps
+from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.on_shafts import EvenForces, FlankForces, LoadedShafts, load_gearbox
+from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.design.flanks.trials import FlankTrials
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fegear.case.reading import build_scene
-from fegear.engine.outcome import Value
-from fegear.output.report.run import rated_columns
+from fegear.engine.value import Value
+from fegear.output.report.gear_data import rated_columns
 from fegear.results.gear.geometry import drawing_of, pair_table
 
 

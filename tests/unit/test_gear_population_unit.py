@@ -7,7 +7,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.contact.compared.formula_reach import NEAR, reach, sentence
-from fegear.contact.compared.root_stress_study import LOADS, drawn_gears, share_error, unevenness
+from fegear.contact.compared.population import LOADS, drawn_gears, share_error, unevenness
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth

@@ -9,7 +9,8 @@ from fegear.base.errors import GeometryError, InputError, RangeError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
-from fegear.contact.unloaded.tooth_contact import pair_contact, tooth_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
+from fegear.contact.unloaded.tooth_contact import tooth_contact
 from fegear.formulas.iso6336.part1_stiffness import pair_stiffness, theoretical_stiffness
 from fegear.formulas.iso6336.part3_pair import RatingChoice, rate_spur
 from fegear.formulas.iso6336.part3_root_stress import virtual_teeth

@@ -11,7 +11,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.fem.plane.inner_stress import inner_stress
-from fegear.fem.plane.whole_gear import loaded_gear
+from fegear.fem.plane.loaded_gear import loaded_gear
 from fegear.results.catalogue import STAGES
 from fegear.window.on_gears import on_the_gears
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from fegear.case.known_keys import part_models
 from fegear.case.model import Case
-from fegear.case.schema import part_models
 from fegear.window.form import fields, form
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import pytest
 from fegear.contact.wide.complementarity import hat_averages, solve_contact
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import contact_lines, roll_points
+from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 from fegear.contact.wide.mesh_matrix import (
     even_moments,
@@ -17,6 +17,7 @@ from fegear.contact.wide.mesh_matrix import (
     rigid_motion_rows,
     tilt_lever,
 )
+from fegear.contact.wide.roll_points import roll_points
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.gear import Gear, Material

@@ -11,8 +11,9 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.csv_file import read_columns
 from fegear.case.reading import read_scene
-from fegear.case.text_file import read_columns, read_file, write_file
+from fegear.case.text_file import read_file, write_file
 
 CASE = """
 title = "Zähne"

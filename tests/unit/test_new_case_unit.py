@@ -17,7 +17,8 @@ import pytest
 import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case import examples
-from fegear.case.drafts.answers import KINDS, Answers, questions
+from fegear.case.drafts.answers import Answers, questions
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
 from fegear.engine.plan import make_plan

@@ -15,8 +15,9 @@ from pathlib import Path
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.output.exchange import HOLDER, JOURNAL, RECORD, claimed, folder_for
 from fegear.output.folder import default_folder, whole_or_nothing
+from fegear.output.held_folder import HOLDER, claimed, folder_for
+from fegear.output.new_for_old import JOURNAL, RECORD
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
 
@@ -186,7 +187,7 @@ def test_two_runs_at_once_are_refused_with_the_holder(tmp_path):
 def test_folders_of_work_are_held_by_one_at_a_time(tmp_path):
     """Many processes at once: each sees the folder empty, so no two were ever in it together."""
     program = (
-        "import sys, time\nfrom pathlib import Path\nfrom fegear.output.exchange import HeldError, claimed\n"
+        "import sys, time\nfrom pathlib import Path\nfrom fegear.output.held_folder import HeldError, claimed\n"
         "done = 0\n"
         "while done < 20:\n"
         "    try:\n"

@@ -17,15 +17,17 @@ from in_process import fegear
 import fegear as fegear_package
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.plan import Plan
 from fegear.engine.run import Results, Silence, Timing
 from fegear.engine.stage import Task
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.output.dataset import write_dataset
-from fegear.output.exchange import RECORD
-from fegear.output.folder import whole_or_nothing, write_results
-from fegear.output.tables import summary
+from fegear.output.folder import whole_or_nothing
+from fegear.output.new_for_old import RECORD
+from fegear.output.run_files import write_results
+from fegear.output.summary import summary
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -212,7 +214,7 @@ def test_the_dataset_follows_the_cf_conventions(tmp_path):
 def test_units_are_those_that_the_conventions_read():
     """Spellings that UDUNITS 2.2.28 reads; it knows no ``deg``, and no unit that starts with a number."""
     from fegear.base.units import PER_SI
-    from fegear.output.dataset import UDUNITS
+    from fegear.output.netcdf import UDUNITS
 
     known = {"mm", "um", "degree", "rad", "N", "N^2", "N.m", "s", "MPa", "GPa", "N/mm", "N/um", "um/N", "um.mm/N",
              "MPa.mm/N", "MPa/N", "Hz", "rpm", "arcsec", "N/(mm.um)", "mm-1", "m/s", "W", "kW", "h",

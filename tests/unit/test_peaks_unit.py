@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fegear.contact.plane.pair_history import refined_peaks
+from fegear.contact.plane.peaks import refined_peaks
 
 X = np.linspace(0.0, 1.0, 33)
 

@@ -13,12 +13,15 @@ from typer.testing import CliRunner
 
 from fegear.base.errors import MissingLibraryError
 from fegear.cli import app
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Surface
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Task
 from fegear.output.draw_png import draw_pictures
-from fegear.output.figures import Drawing, PictureProcess
+from fegear.output.figures import Drawing
+from fegear.output.picture_process import PictureProcess
 
 CASE = Path(__file__).parents[2] / "cases" / "lin_table1.toml"
 #: A case of which nothing costs anything to compute.
@@ -35,7 +38,7 @@ def started():
     """A process, started although matplotlib is loaded here."""
     with contextlib.ExitStack() as stack:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("fegear.output.figures._pays", lambda: True)
+            patch.setattr("fegear.output.picture_process._pays", lambda: True)
             process = stack.enter_context(PictureProcess())
         assert process._child is not None
         yield process
@@ -97,7 +100,7 @@ def test_when_it_dies_the_pictures_are_drawn_here(tmp_path):
 
 
 def test_leaving_ends_it_whatever_it_draws(monkeypatch, tmp_path):
-    monkeypatch.setattr("fegear.output.figures._pays", lambda: True)
+    monkeypatch.setattr("fegear.output.picture_process._pays", lambda: True)
     with PictureProcess() as process:
         waiting = [process.draw(figure(str(i), 200_000), tmp_path) for i in range(50)]
     assert process._child is not None
@@ -111,7 +114,7 @@ def test_where_no_process_is_to_be_had_everything_is_drawn_here(held, monkeypatc
     def refuse(*_arguments, **_more):
         raise OSError(11, "no more processes")
 
-    monkeypatch.setattr("fegear.output.figures.cores", lambda: 1 if held == "cores" else 2)
+    monkeypatch.setattr("fegear.output.picture_process.cores", lambda: 1 if held == "cores" else 2)
     if held != "matplotlib":
         monkeypatch.delitem(sys.modules, "matplotlib", raising=False)
     else:
@@ -119,7 +122,7 @@ def test_where_no_process_is_to_be_had_everything_is_drawn_here(held, monkeypatc
 
         assert mpl
     if held == "system":
-        monkeypatch.setattr("fegear.output.figures.subprocess.Popen", refuse)
+        monkeypatch.setattr("fegear.output.picture_process.subprocess.Popen", refuse)
     with PictureProcess() as process:
         monkeypatch.undo()
         assert process._child is None
@@ -131,7 +134,7 @@ def test_without_plots_none_is_started(monkeypatch, tmp_path):
     def refuse(*_arguments):
         raise AssertionError("started")
 
-    monkeypatch.setattr("fegear.output.figures._started", refuse)
+    monkeypatch.setattr("fegear.output.picture_process._started", refuse)
     arguments = ["run", str(CASE), *QUICK, "--out", str(tmp_path / "out")]
     result = CliRunner().invoke(app, [*arguments, "--no-plots"], catch_exceptions=False)
     assert result.exit_code == 0
@@ -142,7 +145,7 @@ def test_without_plots_none_is_started(monkeypatch, tmp_path):
 def test_none_outlives_a_killed_parent_nor_complains(tmp_path):
     program = (
         "import time\n"
-        "from fegear.output.figures import PictureProcess\n"
+        "from fegear.output.picture_process import PictureProcess\n"
         "with PictureProcess() as process:\n"
         "    if process._child is not None:\n"
         "        process._child.stdin.write(bytes([128, 4, 149]))\n"  # the first bytes of a figure

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from fegear.engine.figure.figure import Axis, Panel
+from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Surface
+from fegear.engine.figure.panel import Panel
 from fegear.output.draw_png.sheet import Sheet
 
 

@@ -11,11 +11,13 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.reading import build_scene
-from fegear.engine.outcome import Outcome, Value
-from fegear.engine.plan import Catalogue, Entry, make_plan
+from fegear.engine.catalogue import Catalogue, Entry
+from fegear.engine.outcome import Outcome
+from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Need, Stage, Task
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.fem.plane.settings import MeshSettings
 from fegear.results.catalogue import STAGES
 

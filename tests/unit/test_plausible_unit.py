@@ -21,7 +21,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
-from fegear.geometry.plausible import deepest_relief, refuse_deep_relief
+from fegear.geometry.plausible_flanks import deepest_relief, refuse_deep_relief
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import roll_of_radius, tip_relief
 from fegear.geometry.tooth import Tooth

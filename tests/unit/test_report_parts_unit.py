@@ -17,11 +17,13 @@ import pytest
 
 from fegear.case.reading import read_scene
 from fegear.engine.citation import bibliography
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Points
-from fegear.engine.outcome import Value
+from fegear.engine.figure.panel import Panel
 from fegear.engine.plan import make_plan
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.output.draw_png import Picture
 from fegear.output.numbers import beyond_tolerance, plain_number, pretty_unit, with_error
 from fegear.output.report.blocks import (  # fmt: skip

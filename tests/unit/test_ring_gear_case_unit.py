@@ -17,8 +17,8 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.solid.step_model import write_step
 from fegear.formulas.cornell import tooth_compliance
-from fegear.geometry.inspection import over_balls, touching_ball
 from fegear.geometry.outline import gear_outline, relieved_outline, tool_in_space, tooth_outline
+from fegear.geometry.over_balls import over_balls, touching_ball
 from fegear.geometry.relief import CombinedRelief, tip_relief
 from fegear.output.dxf import write_dxf
 from fegear.results.catalogue import STAGES

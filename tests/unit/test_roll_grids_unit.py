@@ -11,7 +11,8 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrids
-from fegear.contact.plane.root_stress_history import StressRows, root_stress_history
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.stress_rows import StressRows
 from fegear.contact.plane.transmission_error import pair_stiffness, quick_transmission_errors, transmission_error
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair

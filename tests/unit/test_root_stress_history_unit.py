@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fegear.contact.plane.closed_form_compliance import formula_root_stress
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress

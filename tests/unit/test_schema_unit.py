@@ -14,10 +14,11 @@ import pytest
 
 import fegear.cli
 from fegear.base.errors import FegearError
-from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
+from fegear.case.known_keys import flat
 from fegear.case.reading import build_scene
-from fegear.case.schema import flat
 from fegear.commands.schema import schema_text
 from fegear.results.catalogue import RESULTS, STAGES
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from fegear.case.accuracy import AccuracyPart
-from fegear.engine.outcome import ROUND_OFF, Outcome, Value
+from fegear.engine.least_errors import ROUND_OFF
+from fegear.engine.outcome import Outcome
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.gear.stiffness import tolerance_remarks
 
 

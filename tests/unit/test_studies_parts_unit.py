@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from fegear.contact.fourier import FourierSeries
-from fegear.engine.outcome import Named
+from fegear.engine.named import Named
 from fegear.engine.table import Column, Table
 from fegear.studies import effects
 from fegear.studies.cost import knobs, measure
-from fegear.studies.cost.answers import Quantity, miss
+from fegear.studies.cost.answers import Quantity
+from fegear.studies.cost.quantities import miss
 from fegear.studies.cost.result import Seconds
 from fegear.studies.effects import Measured, Switched
 

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.case.built.gear_strength import gear_strength
 from fegear.case.built.rated_duty import bore_remarks
-from fegear.case.built.rated_pair import gear_strength
 from fegear.case.reading import build_scene
-from fegear.contact.compared.crosscheck import rated_spur_pair
+from fegear.contact.compared.rated_gears import rated_spur_pair
 from fegear.fem.solid.settings import solid_settings
 from fegear.formulas.iso6336.part3_pair import RatingChoice
 from fegear.geometry.gear import Gear

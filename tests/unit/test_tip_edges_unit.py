@@ -12,10 +12,12 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.error import flank_error
-from fegear.contact.wide.gaps import FlankGaps, touching_gaps
-from fegear.contact.wide.lines import contact_lines, edge_reach, usual_gap
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import over_pitch
+from fegear.contact.wide.rigid_flanks import touching_gaps
+from fegear.contact.wide.tip_edges import edge_reach, usual_gap
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid

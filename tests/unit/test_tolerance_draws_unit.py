@@ -10,10 +10,11 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.flank_errors import limits_of, untold
+from fegear.case.built.tolerances import limits_of, untold
 from fegear.case.reading import build_scene
-from fegear.contact.plane.closed_form_compliance import closed_form_compliance, formula_root_stress
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.robustness.deviated_pair import OUTCOMES, bench, deviated, drawn_outcomes, loaded, quadrature
 from fegear.design.robustness.draw_statistics import influences, percentile, sure_of_less, together
@@ -93,7 +94,7 @@ def test_draws_fill_their_distributions():
 
 
 def test_pitch_tolerances_are_those_along_the_line_of_action():
-    from fegear.case.built.flank_errors import limits_of
+    from fegear.case.built.tolerances import limits_of
     from fegear.case.reading import read_scene
     from fegear.formulas.iso1328 import tolerances_of
 

@@ -8,9 +8,9 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case import trade_words
+from fegear.case.known_keys import keys_at
 from fegear.case.model import Case
 from fegear.case.reading import build_scene, set_key
-from fegear.case.schema import keys_at
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 

@@ -18,7 +18,7 @@ import pytest
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
-from fegear.output.folder import write_results
+from fegear.output.run_files import write_results
 from fegear.results.catalogue import STAGES
 from fegear.window.bench import Bench
 from fegear.window.computing import whole

@@ -25,10 +25,11 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
+from fegear.case.known_keys import flat
 from fegear.case.reading import read_scene
-from fegear.case.schema import flat
 from fegear.case.text_file import named_path
 from fegear.engine.plan import make_plan
 from fegear.engine.processes import loading

@@ -1,36 +1,23 @@
-"""What a case says of the errors of a pair over its face: shafts, the pinion's cutting, and whatever a table holds.
-
-Deviations of a gear's flanks: its own, measured or agreed, and those of its tolerance class where it has none.
-
-What a case says of the tolerances that deviations are drawn inside.
-"""
+"""What a case says of the errors of a pair over its face: shafts, the pinion's cutting, and whatever a table holds."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, distinct
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of, on_shafts
+from fegear.case.csv_file import read_columns
 from fegear.case.part import at
-from fegear.case.text_file import read_columns
-from fegear.contact.wide.gaps import RIGID, ShaftGaps
-from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
 from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from fegear.case.gear import GearPart
     from fegear.case.reading import Scene
-    from fegear.case.studies import TolerancePart
-    from fegear.design.robustness.tolerance_draws import Kind, Limits
     from fegear.geometry.flank_modification import FlankModification
-    from fegear.geometry.gear import Gear
 
 
 #: Points of a crowned line error: between them its chords are off by 2e-7 of the crowning, less than any spot is flat.
@@ -155,160 +142,3 @@ def _line_gap(scene: Scene, name: str) -> tuple[Array, Array]:
         z, old = distinct(z, columns["z"]), z
         gap = np.interp(z, old, gap) + np.interp(z, columns["z"], columns["gap"])
     return z, gap
-
-
-#: f_pb along the line of action, f_Halpha, f_falpha and f_Hbeta, as ``deviations`` of a gear names them.
-Deviation = Literal["base_pitch", "profile_slope", "profile_form", "helix_slope"]
-
-
-def own_deviation(part: GearPart, kind: Deviation) -> float | None:
-    """What the case itself says of a deviation [m]; None where it says nothing."""
-    found: float | None = getattr(part.deviations, kind, None)
-    return found
-
-
-def gear_deviations(
-    part: GearPart, made: Gear, grade: int | None, kinds: Collection[Deviation], *, rounded: bool = False
-) -> dict[Deviation, float]:
-    """Deviations of some kinds [m]: the gear's own, else by class; kinds that neither tells are left out.
-
-    Parameters
-    ----------
-    part : GearPart
-    made : Gear
-    grade : int or None
-        Flank tolerance class; None where the gear has none.
-    kinds : collection of str
-    rounded : bool
-        Whether tolerances are rounded as ISO 1328-1:2013 prints them.
-
-    Raises
-    ------
-    RangeError
-        If a class is asked of a gear outside the sizes of the standard; a gear whose own deviations say all is not.
-    """
-    from fegear.formulas.iso1328 import tolerances_of
-
-    own = {kind: value for kind in kinds if (value := own_deviation(part, kind)) is not None}
-    if grade is None or len(own) == len(kinds):
-        return own
-    allowed = tolerances_of(made, grade)
-    allowed = allowed.rounded if rounded else allowed
-    by_class: dict[Deviation, float] = {
-        "base_pitch": allowed.base_pitch(made.transverse_pressure_angle), "profile_slope": allowed.profile_slope,
-        "profile_form": allowed.profile_form, "helix_slope": allowed.helix_slope,
-    }  # fmt: skip
-    return {kind: own.get(kind, by_class[kind]) for kind in kinds}
-
-
-#: Deviations of a gear by the kinds that are drawn.
-_NAMES: dict[Kind, Deviation] = {
-    "profile-slope": "profile_slope", "profile-form": "profile_form", "helix-slope": "helix_slope",
-    "pitch": "base_pitch",
-}  # fmt: skip
-
-
-def tolerance_part(scene: Scene) -> TolerancePart:
-    """``[robustness]``, which the case must have."""
-    if scene.case.robustness is None:
-        raise InputError("robustness", "(not given)", "is needed to draw deviations", "write a table [robustness]")
-    return scene.case.robustness
-
-
-def chosen_pair(scene: Scene) -> tuple[str, ...]:
-    """The pair that ``[robustness]`` names, or the only one; none without the table."""
-    part = scene.case.robustness
-    if part is None:
-        return ()
-    if part.pair is not None:
-        if part.pair not in scene.pairs:
-            raise InputError("robustness.pair", f'"{part.pair}"', "is no pair of this case")
-        return (part.pair,)
-    if len(scene.pairs) != 1:
-        raise InputError(
-            "robustness.pair", "(not given)", f"is needed in a case of {len(scene.pairs)} pairs", "name one of them"
-        )
-    return tuple(scene.pairs)
-
-
-def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
-    """Refuse a pair none of whose wanted deviations has a tolerance."""
-    pairs = (limits.profile_slope, limits.profile_form, limits.helix_slope, limits.pitch)
-    if not limits.centre_distance and not any(any(pair) for pair in pairs):
-        raise InputError(
-            "robustness", "no tolerance", "leaves nothing to draw",
-            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class or deviations",
-        )  # fmt: skip
-
-
-def refuse_jammed(pair: GearPair, name: str, limits: Limits) -> None:
-    """Refuse deviations of the centre distance at which the teeth of the drawing touch on both flanks."""
-    room = pair.side * (pair.centre_distance - pair.tight_centre_distance)
-    other = "smaller" if pair.internal else "larger"
-    if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
-        raise InputError(
-            "robustness.centre_distance", f"{limits.centre_distance * 1e3:.6g} mm",
-            f"jams the teeth: pair {name} has {room * 1e3:.4g} mm until they touch on both flanks",
-            f"give a gear of pair {name} a thickness_allowance, or the pair a {other} centre_distance",
-        )  # fmt: skip
-
-
-def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
-    """Largest deviations of a pair, of the kinds that the case names or else of the usual ones.
-
-    A gear's own deviations take the place of those of its class. f_pT is an arc of the reference circle; flanks meet
-    that deviation along the line of action, where it is shorter.
-
-    Raises
-    ------
-    InputError
-        If a class is asked of a gear outside the sizes of ISO 1328-1.
-    """
-    from fegear.design.robustness.tolerance_draws import Limits
-    # DROP
-
-    part = tolerance_part(scene)
-    kinds = _of_flanks(part, usual)
-    found: list[dict[Deviation, float]] = []
-    for member in MEMBERS:
-        gear = gear_name(scene, name, member)
-        drawn = scene.case.gear[gear]
-        try:
-            found.append(gear_deviations(drawn, scene.gears[gear], drawn.tolerance_class, kinds))
-        except InputError as error:
-            missing = ", ".join(one for one in kinds if own_deviation(drawn, one) is None)
-            remedy = f"give {missing} of gear.{gear}.deviations, or name other robustness.deviations"
-            error = type(error)(error.key, error.value, error.rule, remedy)
-            raise at(f"gear.{gear}", error, None if drawn.is_helical else {"normal_module": "module"}) from None
-
-    def both(kind: Deviation) -> tuple[float, float]:
-        return found[0].get(kind, 0.0), found[1].get(kind, 0.0)
-
-    wanted = "centre-distance" in (part.deviations or usual)
-    return Limits(
-        part.centre_distance if wanted else 0.0, both("profile_slope"), both("profile_form"), both("helix_slope"),
-        both("base_pitch"),
-    )  # fmt: skip
-
-
-def untold(scene: Scene, gears: tuple[str, str], usual: tuple[Kind, ...]) -> tuple[str, ...]:
-    """Sentences on deviations that are not drawn, for the case says nothing of them."""
-    kinds, told = _of_flanks(tolerance_part(scene), usual), []
-    for gear in dict.fromkeys(gears):
-        part = scene.case.gear[gear]
-        if part.tolerance_class is not None:
-            continue
-        missing = [kind for kind in kinds if own_deviation(part, kind) is None]
-        if len(missing) == len(kinds):
-            told.append(f"Gear {gear} has no tolerance_class: its flanks are taken as the drawing's in every draw.")
-        elif missing:
-            told.append(
-                f"Gear {gear} has no tolerance_class, and no {', '.join(missing)} among its own deviations: those are "
-                "taken as the drawing's in every draw."
-            )
-    return tuple(told)
-
-
-def _of_flanks(part: TolerancePart, usual: tuple[Kind, ...]) -> tuple[Deviation, ...]:
-    """Kinds that a gear's tolerances tell."""
-    return tuple(_NAMES[kind] for kind in (part.deviations or usual) if kind != "centre-distance")

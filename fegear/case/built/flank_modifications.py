@@ -14,10 +14,10 @@ from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import build_relief
 from fegear.case.built.pair_inputs import gear_flanks, gear_name, one_column
+from fegear.case.csv_file import read_columns
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.case.relief import BiasPart, LeadPart, TopographyPart
-from fegear.case.text_file import read_columns
 from fegear.geometry.flank_modification import (
     Bias,
     FlankModification,
@@ -29,7 +29,7 @@ from fegear.geometry.flank_modification import (
 )
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.geometry.plausible import DEEPEST_RELIEF
+from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
 from fegear.geometry.relief import Relief, roll_of_radius
 
 #: Part of the face that a table over it may leave out at either end.

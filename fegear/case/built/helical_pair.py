@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.case.csv_file import read_columns
 from fegear.case.part import at
 from fegear.case.reading import Scene
-from fegear.case.text_file import read_columns
 from fegear.case.transmissibility import TransmissibilityPart
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
 from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel

@@ -16,10 +16,11 @@ from fegear.case.built.solid_influence import check_solid_gear, check_source
 from fegear.case.effects import WIDE_EFFECTS, EffectsPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
-from fegear.contact.wide.gaps import FlankGaps, ShaftGaps
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.flank_modification import FlankModification
 from fegear.geometry.pair import MEMBERS, GearPair
-from fegear.geometry.plausible import refuse_load
+from fegear.geometry.plausible_flanks import refuse_load
 
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0

@@ -15,7 +15,7 @@ from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import Flanks, PairInputs, gear_name, pair_inputs, refuse_formulas
 from fegear.case.part import at
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.geometry.plausible import refuse_deep_relief, refuse_load, refuse_relief_elsewhere
+from fegear.geometry.plausible_flanks import refuse_deep_relief, refuse_load, refuse_relief_elsewhere
 from fegear.geometry.relief import (
     CombinedRelief,
     Crowning,

@@ -9,9 +9,9 @@ import numpy as np
 
 from fegear.base.arrays import Array, distinct
 from fegear.base.errors import InputError
+from fegear.case.csv_file import read_columns
 from fegear.case.reading import Scene
 from fegear.case.relief import MeasuredPart
-from fegear.case.text_file import read_columns
 from fegear.formulas.iso1328_traces import TraceDeviations, cutoff, evaluate, filtered, helix_range, profile_range
 from fegear.geometry.flank_modification import LeadTable, Topography
 from fegear.geometry.gear import Gear

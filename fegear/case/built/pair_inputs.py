@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.case.csv_file import read_columns
 from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
 from fegear.case.part import at
 from fegear.case.relief import ReliefPart, ReliefTablePart
-from fegear.case.text_file import read_columns
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.geometry.plausible import heavy_load, refuse_spacing_errors
+from fegear.geometry.plausible_flanks import heavy_load, refuse_spacing_errors
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.pair import CompliancePart
     from fegear.case.reading import Scene
-    from fegear.contact.plane.closed_form_compliance import FormulaRootStress
     from fegear.contact.plane.compliance import RootStressInfluence
+    from fegear.contact.plane.formula_root_stress import FormulaRootStress
     from fegear.fem.plane.gear import GearInfluence
     from fegear.geometry.gear import Gear
 
@@ -200,7 +200,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> Flanks:
 def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
     from fegear.case.built.rated_duty import bore_remarks, width_remarks
-    from fegear.geometry.checks import interference
+    from fegear.geometry.tip_interference import interference
 
     remarks, effects = [], scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
@@ -448,7 +448,7 @@ def check_formulas(scene: Scene, name: str, *, tips: bool) -> None:
 
 
 def _formula(source: str, pair: GearPair, member: Member, tips: bool, *points: int) -> FormulaRootStress:
-    from fegear.contact.plane.closed_form_compliance import formula_root_stress
+    from fegear.contact.plane.formula_root_stress import formula_root_stress
 
     own = pair.gear(member)
     low, high = sorted(float(pair.radius(x, member)) for x in (pair.x_start, pair.x_end))

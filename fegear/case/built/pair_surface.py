@@ -291,7 +291,7 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
     InputError
         If oil, roughness, speed or load are missing.
     """
-    from fegear.case.built.rated_pair import blank_factor
+    from fegear.case.built.rated_body import blank_factor
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
     from fegear.formulas.iso6336.rated import STRUCTURE_FACTOR, SUPPLY_FACTOR, RatedSurface
 
@@ -337,7 +337,7 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
 
 def _with_running_in(scene: Scene, name: str, relief: Both, told: list[str]) -> Both:
     """C_a of driver and driven: by design, else what running in leaves, which depends on both materials."""
-    from fegear.case.built.rated_pair import gear_strength
+    from fegear.case.built.gear_strength import gear_strength
     from fegear.formulas.iso6336.part1_dynamic import running_in_relief
 
     part = scene.case.pair[name]

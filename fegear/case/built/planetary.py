@@ -10,7 +10,8 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.part import at
-from fegear.case.planetary import MESHES, angles_of, set_pair, set_teeth
+from fegear.case.planetary import MESHES, angles_of, set_pair
+from fegear.case.set_pairs import set_teeth
 from fegear.dynamics.planetary.kinematics import Running, running
 from fegear.dynamics.planetary.phases import Phases, mesh_phases
 from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.part import at, nearest
+from fegear.case.nearest import nearest
+from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.geometry.plausible import THICKEST_BELOW_GEARS
 

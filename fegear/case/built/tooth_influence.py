@@ -7,17 +7,10 @@ From ``[accuracy]`` to the settings of the finite-element part.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.fem.plane.gear import GearInfluence
-    from fegear.fem.plane.mesh import SectorMesh
-
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import RangeError
 from fegear.base.solution_cache import SolutionCache
@@ -26,6 +19,11 @@ from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.fem.plane.settings import MeshSettings, Solver, level_for, settings_at
 from fegear.geometry.gear import Gear
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.mesh import SectorMesh
 
 
 def needed_reach(scene: Scene, name: str) -> int:

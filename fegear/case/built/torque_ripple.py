@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.text_file import read_columns
+from fegear.case.csv_file import read_columns
 from fegear.dynamics.train.torque_ripple import TorqueRipple, ripple_of_curve
 
 if TYPE_CHECKING:

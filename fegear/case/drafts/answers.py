@@ -1,7 +1,4 @@
-"""What is asked before a case is drafted: questions, their defaults, and answers that have been checked.
-
-The kinds of cases that can be drafted, and what has to be known for each.
-"""
+"""What is asked before a case is drafted: questions, their defaults, and answers that have been checked."""
 
 from __future__ import annotations
 
@@ -9,13 +6,13 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import NamedTuple
 
 from fegear.base.errors import InputError
 from fegear.base.unit_text import plain_number
 from fegear.base.units import to_si
-from fegear.case.part import nearest
+from fegear.case.drafts.kinds import KINDS
+from fegear.case.nearest import nearest
 from fegear.geometry.rack import BasicRack
 
 #: Line load that is assumed where no torque is given [N/m]: what case-hardened gears carry for ever.
@@ -214,46 +211,3 @@ def _readable(text: str, dimension: str) -> float:
         return to_si(text, dimension)
     except InputError:
         return math.nan
-
-
-class Kind(NamedTuple):
-    """A kind of case.
-
-    Attributes
-    ----------
-    about : str
-        What it is for.
-    gears : tuple of str
-        Names of its gears.
-    asks : tuple of str
-        Names of the questions that it asks besides the numbers of teeth and the module.
-    """
-
-    about: str
-    gears: tuple[str, ...]
-    asks: tuple[str, ...]
-
-
-_TOOTH = ("pressure_angle", "profile_shift", "rack", "face_width")
-
-
-_LOADED = (*_TOOTH, "torque", "speed")
-
-
-_RELIEVED = (*_LOADED, "tip_relief", "relief_length")
-
-
-#: Kinds by name.
-KINDS: Mapping[str, Kind] = MappingProxyType({
-    "gear": Kind("one gear: its tooth's stiffness and root stress, and the standards' formulas", ("gear",), _TOOTH),
-    "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _RELIEVED),
-    "relief": Kind("a pair whose profile relief is to be designed", ("pinion", "wheel"), _LOADED),
-    "helical": Kind("a helical pair: where its face carries, transmission error, errors of its assembly",
-                    ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
-    "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _RELIEVED),
-    "planetary": Kind("a planetary set: load sharing of its planets, phases, modes, vibration", ("sun", "planet"),
-                      _LOADED),
-    "ring": Kind("a ring gear: stiffness and root stress of its internal teeth", ("ring",),
-                 ("pressure_angle", "profile_shift", "face_width")),
-    "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
-})  # fmt: skip

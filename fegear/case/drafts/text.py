@@ -11,7 +11,8 @@ from importlib.resources import files
 from string import Template
 
 from fegear.base.units import from_si
-from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 

@@ -15,10 +15,10 @@ from scipy.interpolate import CubicSpline
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
+from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.root_stress_history import superposed_stress
 from fegear.contact.plane.tooth_stress import with_peaks
-from fegear.contact.plane.transmission_error import roll_positions
 from fegear.fem.plane.influence import Side
 from fegear.geometry.pair import Member
 

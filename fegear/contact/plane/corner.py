@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.tally import tallied
-from fegear.contact.plane.fe_compliance import Spline, spline
+from fegear.contact.plane.spline import Spline, spline
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute import polar_angle
 from fegear.geometry.pair import GearPair, Member

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.tally import note
-from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
+from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent, share_load
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrid, RollGrids
@@ -221,3 +221,11 @@ class Engagement:
             if not found or found[-1] + apart < x < pair.x_start + pair.base_pitch - apart:
                 found.append(x)
         return tuple(found)
+
+
+def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
+    """Solve with another engagement's compliances at the same contacts, loads and separations."""
+    grid = loaded.grid
+    m = other.compliance.matrices(grid.contacts)
+    shared = share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.edges, m.power)
+    return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)

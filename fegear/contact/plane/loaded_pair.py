@@ -20,19 +20,17 @@ from fegear.contact.loaded_teeth import (
     Neglected,
     RootStressInMesh,
 )
+from fegear.contact.plane.base_pitch import mean_secant_stiffness, roll_positions, secant_stiffness
 from fegear.contact.plane.compliance import RootStressInfluence
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
-from fegear.contact.plane.shifted_compliance import load_shift, transmission_error_shift
+from fegear.contact.plane.shifted_loads import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
 from fegear.contact.plane.transmission_error import (
-    mean_secant_stiffness,
     pair_stiffness,
     quick_transmission_errors,
     revolution,
-    roll_positions,
-    secant_stiffness,
     transmission_error,
 )
 from fegear.contact.surface import FrictionLaw

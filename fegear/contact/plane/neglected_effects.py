@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.contact.loaded_teeth import Answer, Change
 from fegear.contact.plane.engagement import Engagement, Loaded
-from fegear.contact.plane.pair_history import refined_peaks
+from fegear.contact.plane.peaks import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
 

@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, first_of_largest
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_stress
-from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.engagement import Engagement, Loaded, solve_again
 from fegear.contact.plane.independent_errors import independent_errors
-from fegear.contact.plane.pair_history import refined_peaks
+from fegear.contact.plane.peaks import refined_peaks
 from fegear.contact.plane.root_stress_history import RootStressHistory, root_stress_history
-from fegear.contact.plane.shifted_compliance import solve_again
 from fegear.geometry.pair import Member
 
 #: Both fillets of a tooth, and the sign of the stress that is looked for.

@@ -1,7 +1,4 @@
-"""Loaded static transmission error over a base pitch, with its Fourier series to quadrature accuracy.
-
-A loaded pair over one base pitch: the roll positions of its curves, and the secant stiffness along them.
-"""
+"""Loaded static transmission error over a base pitch, with its Fourier series to quadrature accuracy."""
 
 from __future__ import annotations
 
@@ -261,42 +258,3 @@ def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int,
     n, period = np.arange(harmonics + 1), cycles * pair.base_pitch
     within = np.exp(-2j * math.pi / period * np.multiply.outer(n, points.x)) * points.weights / period
     return FourierSeries((within * over_pitches[:, n % cycles].T).sum(axis=1), period)
-
-
-#: Distance from a jump at which both sides of it are looked at [base pitches].
-BESIDE = 1e-7
-
-
-def secant_stiffness(loaded: Loaded) -> Array:
-    """K_T = sum of K_Sj over the pairs in contact, with the secant compliances of their loads, shape (P, L) [N/m].
-
-    It is W / transmission error of the same pairs without modifications and errors (Mark, A.11).
-    """
-    secant = loaded.grid.matrices.at_load(loaded.loads)
-    active = loaded.loads > 0.0
-    n = active.shape[0]
-    c = np.where(active[:, None] & active[None, :], secant, np.eye(n)[:, :, None, None])
-    right = np.moveaxis(active.astype(float), 0, -1)[..., None]
-    return np.asarray(np.linalg.solve(np.moveaxis(c, (0, 1), (-2, -1)), right)[..., 0].sum(axis=-1))
-
-
-def mean_secant_stiffness(te: TransmissionError) -> float:
-    """Mean of `secant_stiffness` over the base pitch, under the load of a transmission error [N/m]."""
-    return float(secant_stiffness(te.loaded)[:, 0] @ te.points.weights / te.points.period)
-
-
-def roll_positions(engagement: Engagement, count: int) -> Array:
-    """Evenly over one base pitch from the start of contact, and on either side of every jump [m].
-
-    Parameters
-    ----------
-    engagement : Engagement
-    count : int
-        Even steps over the base pitch.
-    """
-    start, pitch = engagement.pair.x_start, engagement.pair.base_pitch
-    beside = np.array([b + side * BESIDE * pitch for b in engagement.breaks for side in (-1.0, 1.0)])
-    x = np.concatenate([np.linspace(start, start + pitch, count + 1), beside])
-    inside = (x > start + 0.5 * BESIDE * pitch) & (x < start + (1.0 - 0.5 * BESIDE) * pitch)
-    ends = np.array([start + BESIDE * pitch, start + (1.0 - BESIDE) * pitch])
-    return np.unique(np.concatenate([x[inside], ends]))

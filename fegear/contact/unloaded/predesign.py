@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.contact.unloaded.pair import HelicalPair
-from fegear.contact.unloaded.tooth_contact import pair_contact
+from fegear.contact.unloaded.pair_contact import pair_contact
 
 
 @dataclass(frozen=True, slots=True)

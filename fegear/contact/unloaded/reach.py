@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.unloaded.extremes import falling_root
+from fegear.contact.unloaded.roots import falling_root
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array, Complex, Mask
-    from fegear.contact.unloaded.separation import Placement
+    from fegear.contact.unloaded.placement import Placement
     from fegear.geometry.rack_cutter import RackFlank
 
     Codes = NDArray[np.int8]

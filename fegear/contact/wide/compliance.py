@@ -21,7 +21,7 @@ from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
-from fegear.contact.wide.complementarity import Averages, averages
+from fegear.contact.wide.averages import Averages, averages
 from fegear.contact.wide.lines import ContactLines
 from fegear.fem.solid.bands import Bands, bands
 from fegear.fem.solid.flank_body import FlankBody, FlankLines

@@ -4,18 +4,6 @@ In the plane of action, x along the transverse line of action and z along the ax
 roll position x_0 is straight: x = x_0 + j p_bt - z tan(beta_b), the twist of the driver positive for a right hand (of
 a ring for a left one). It ends at the tips and form circles in use and at the ends of the common face (ISO 21771, 5.4),
 or goes on along the tip edges (`fegear.contact.wide.lines`).
-
-Roll positions over a base pitch: a quadrature whose pieces end where contact lines begin and end.
-
-Between those places everything that roll positions show is smooth. At them pairs come and go, and largest and smallest
-transmission errors stand beside them, so both sides are looked at: Lobatto's points on each piece, its ends included.
-
-Contact along tip edges: where the flanks go on touching beyond the ends of the plane of action.
-
-Across parallel axes a helical tooth is its transverse section, turned along the axis, and what turns the gears closes
-the gap of every section by itself. So the gap between a tip edge and its mate's flank at a height z is that of the
-plane corner at its distance beyond the path of contact (`fegear.contact.plane.corner`), and the contact line goes on in
-the coordinates of the plane of action, x = x_0 + j p_bt - z tan(beta_b), with a gap that grows from zero.
 """
 
 from __future__ import annotations
@@ -24,7 +12,6 @@ import itertools
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,8 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
-from fegear.contact.fourier import Panels
-from fegear.contact.plane.meshing import Meshing
+from fegear.contact.wide.tip_edges import TipEdges, edge_reach, tip_edges
 from fegear.geometry.pair import GearPair, Member
 
 #: A contact line shorter than this is left out [modules]: it is no longer long beside its Hertzian width.
@@ -262,157 +248,3 @@ def _limits(
         return (-half, half, (False, False)) if inside else (0.0, -1.0, (False, False))
     ends = sorted(((x - path[1]) / slope, (x - path[0]) / slope))
     return max(-half, ends[0]), min(half, ends[1]), (ends[0] > -half, ends[1] < half)
-
-
-#: Points on a piece, at least; pieces shorter than this share of a base pitch have none of their own.
-_FEWEST, _SHORTEST = 3, 5e-3
-#: Pieces whose points stand equally far apart to this share are alike.
-_ALIKE = 1e-9
-
-
-#: How far beside the end of a piece its outermost points stand, as a share of a base pitch.
-_BESIDE = 1e-7
-
-
-def line_breaks(pair: GearPair, beyond: tuple[float, float] = (0.0, 0.0)) -> Array:
-    """Roll positions in one base pitch from x_start on at which contact lines begin, end, or reach a corner [m].
-
-    Along tip edges lines go on `beyond` start and end of the path [m].
-    """
-    reach = abs(base_twist(pair)) * 0.5 * pair.face_width
-    late = abs(base_twist(pair)) * shortest_line(pair)  # a line counts once it is as long as that
-    start, end = pair.x_start - beyond[0], pair.x_end + beyond[1]
-    places = [start - reach + late, pair.x_start + reach, pair.x_end - reach, end + reach - late]
-    return np.unique(np.mod(np.array(places) - pair.x_start, pair.base_pitch)) + pair.x_start
-
-
-def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0)) -> Panels:
-    """Roll positions and what part of a base pitch each stands for.
-
-    Parameters
-    ----------
-    pair : GearPair
-    count : int
-        Number of positions. With fewer than three to a piece they are the middles of equal parts of the base pitch.
-    beyond : (float, float)
-        How far lines go on along tip edges before the start and after the end of the path [m].
-
-    Returns
-    -------
-    Panels
-    """
-    pitch = pair.base_pitch
-    breaks = line_breaks(pair, beyond)
-    ends = np.append(breaks, breaks[0] + pitch)
-    pieces = [(a, b) for a, b in pairwise(ends.tolist()) if b - a > _SHORTEST * pitch]
-    if count < _FEWEST * len(pieces):
-        x = pair.x_start + pitch * (np.arange(count) + 0.5) / count
-        return Panels(x, np.full(count, pitch / count), pitch, ends)
-    places: list[Array] = []
-    weight: list[Array] = []
-    for (a, b), n in zip(pieces, _shared([b - a for a, b in pieces], count), strict=True):
-        at, w = _lobatto(n)
-        inside = 1.0 - 2.0 * _BESIDE * pitch / (b - a)
-        places.append(0.5 * (a + b) + 0.5 * (b - a) * inside * at)
-        weight.append(0.5 * (b - a) * w)
-    for i, ((_, end), (start, _)) in enumerate(zip(pieces, [*pieces[1:], (pieces[0][0] + pitch, 0.0)], strict=True)):
-        weight[i][-1] += 0.5 * (start - end)  # what lies between two pieces, by the trapezoidal rule
-        weight[(i + 1) % len(pieces)][0] += 0.5 * (start - end)
-    return Panels(np.concatenate(places), np.concatenate(weight), pitch, ends)
-
-
-def _shared(lengths: list[float], count: int) -> list[int]:
-    """Points on each piece, so that they stand equally dense.
-
-    Pieces that are alike have as many, as long as any other can take what is left: no last digit chooses between them,
-    and not which of both gears drives.
-    """
-    points = np.full(len(lengths), _FEWEST)
-    while (left := count - int(points.sum())) > 0:
-        apart = np.array(lengths) / (points - 1)
-        alike = np.abs(apart[:, None] - apart) < _ALIKE * apart
-        fits = np.where(alike.sum(axis=1) <= left, apart, 0.0)
-        chosen = (
-            alike[int(np.argmax(fits > (1.0 - _ALIKE) * fits.max()))] if fits.any() else np.arange(len(lengths)) == 0
-        )
-        points[chosen] += 1
-    found: list[int] = points.tolist()
-    return found
-
-
-def _lobatto(count: int) -> tuple[Array, Array]:
-    """Points and weights of Lobatto's rule on (-1, 1), both ends among them."""
-    legendre = np.polynomial.legendre.Legendre.basis(count - 1)
-    x = np.concatenate([[-1.0], np.sort(np.real(legendre.deriv().roots())), [1.0]])
-    return x, 2.0 / (count * (count - 1) * legendre(x) ** 2)
-
-
-#: Points on which the reach of an edge is looked up, and how much of a base pitch it covers at most.
-_POINTS, _MOST = 400, 0.9
-
-
-#: Approach of a tooth pair times Young's modulus over the load per face width: 15 to 20, and as much again.
-_SOFTNESS = 40.0
-
-
-@dataclass(frozen=True)
-class TipEdges(ReadOnlyArrays):
-    """Contact of stations on the path and along both gears' tip edges; arrays of shape (P, M).
-
-    Parameters
-    ----------
-    gap : ndarray
-        Between an edge and its mate's unmodified flank, along the line of action [m]; 0 on the path.
-    driver_length, driven_length : ndarray
-        Roll lengths of the places that touch: on the path the flanks' radii of curvature [m].
-    relative_radius : ndarray
-        In the transverse section [m]: beyond the path that of the edge's rounding, or of the flank that a sharp edge
-        ends, with the mate's flank.
-    tilt : ndarray
-        Slope at which the flanks part inward from the nearest sharp edge times the relative radius [m]: minus the
-        distance from the edge on the path; minus infinity where edges are rounded.
-    """
-
-    gap: Array
-    driver_length: Array
-    driven_length: Array
-    relative_radius: Array
-    tilt: Array
-
-    def length(self, member: Member) -> Array:
-        """Roll lengths of one gear, shape (P, M) [m]."""
-        return self.driver_length if member == "driver" else self.driven_length
-
-
-def edge_reach(pair: GearPair, most_gap: float) -> tuple[float, float]:
-    """How far beyond the start and the end of the path [m] a tip edge is no farther from its mate than a gap [m]."""
-    if most_gap <= 0.0:
-        return 0.0, 0.0
-    found = []
-    for corner in Meshing(pair, corner_contact=True).corners:
-        if not corner.exists:
-            found.append(0.0)
-            continue
-        beyond = np.linspace(0.0, min(corner.reach, _MOST * pair.base_pitch), _POINTS)
-        gap = corner.locate(beyond)[0]
-        found.append(float(np.interp(most_gap, gap, beyond)))
-    return found[0], found[1]
-
-
-def usual_gap(pair: GearPair, load: float) -> float:
-    """Gap [m] that a load [N] does not close at any tip edge of a pair of solid steel gears whose load is even."""
-    modulus = min(gear.material.young_modulus for gear in (pair.driver, pair.driven))
-    return _SOFTNESS * load / (modulus * pair.face_width)
-
-
-def tip_edges(pair: GearPair, x: ArrayLike) -> TipEdges:
-    """Contact at places along the line of action, on the path or beyond it.
-
-    Parameters
-    ----------
-    pair : GearPair
-    x : array_like, shape (P, M)
-        [m].
-    """
-    at = Meshing(pair, corner_contact=True).touching(np.asarray(x, dtype=float))
-    return TipEdges(at.gap, at.driver_length, at.driven_length, at.relative_radius, at.edge)

@@ -15,8 +15,8 @@ import numpy as np
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.contact.fourier import Panels
+from fegear.contact.wide.along_lines import swept_mean
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.load_factors import swept_mean
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 
 #: Roll positions of which means are taken, at least.

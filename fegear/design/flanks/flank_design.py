@@ -13,9 +13,11 @@ from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
-from fegear.design.flanks.forms import FAMILIES, Family, GroundRelief, ReliefGrid, held_by, usual_grid
+from fegear.design.flanks.families import FamilyBest, best_of_family, led_on, settled
+from fegear.design.flanks.forms import GroundRelief
+from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import SEARCHED, FlankJudge, Judged, flank_judge
-from fegear.design.flanks.search import FamilyBest, best_of_family, led_on, settled
+from fegear.design.flanks.scatter import Scatter
 from fegear.design.flanks.topography import (
     FlankLoading,
     StationRelief,
@@ -27,7 +29,7 @@ from fegear.design.flanks.topography import (
     tabulated,
     topography,
 )
-from fegear.design.flanks.trials import FlankTrials, Scatter, Tried
+from fegear.design.flanks.trials import FlankTrials, Tried
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.flank_modification import Topography
 from fegear.geometry.pair import Member

@@ -19,9 +19,11 @@ from fegear.base.one_thread import one_thread
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import ContactLines, contact_lines, roll_points
+from fegear.contact.wide.lines import ContactLines, contact_lines
 from fegear.contact.wide.loaded import FlankPair
-from fegear.design.flanks.trials import NOMINAL, FlankTrials, Scatter, Tried
+from fegear.contact.wide.roll_points import roll_points
+from fegear.design.flanks.scatter import NOMINAL, Scatter
+from fegear.design.flanks.trials import FlankTrials, Tried
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.pair import Member
 

@@ -1,10 +1,4 @@
-"""The modification of a family that leaves the least: all combinations of a grid, then descent from the best of them.
-
-Every combination is loaded with `QuickFlanks`; the best are loaded exactly, in the order of what the quick way found,
-until the next is so much above the least found that no error of the quick way seen so far could make up for it. The
-least of the grid is thereby known, not guessed. From the best few, a descent within the box of the grid leads on.
-
-From one ground relief down to the least of its valley: linear programmes within a region of trust.
+"""From one ground relief down to the least of its valley: linear programmes within a region of trust.
 
 What a relief leaves is the largest of many smooth functions: differences of transmission errors at two roll positions.
 At its least several of them are equal, as many as there are free numbers or nearly, so that the least of the linear
@@ -19,15 +13,12 @@ R. Fletcher, Practical Methods of Optimization, 2nd ed. (1987), sections 14.4 an
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index
-from fegear.base.errors import RangeError
-from fegear.design.flanks.forms import FAMILIES, GROUPS, Family, GroundRelief, ReliefGrid
-from fegear.design.flanks.trials import FlankTrials, QuickFlanks, Tried, quick_flanks
+from fegear.design.flanks.trials import FlankTrials, Tried
 
 #: Extent of the first region of trust over the box and the one that ends a descent; its growth and its shrinking.
 _TRUST, _NO_TRUST, _GROWS, _SHRINKS = 0.1, 1e-7, 1.6, 0.3
@@ -166,189 +157,3 @@ class _Straight:
         if found.x is None:
             return np.zeros(n), trials.value(self.tried.peak_to_peak)
         return found.x[:n] * reach, float(found.fun) * _UNIT
-
-
-#: Candidates loaded exactly, at least and at most; those from which a descent starts; coarse panels over the face.
-_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 24, 240, 6, 5
-#: Promised gain, over the value, that ends descents from the grid: they tell valleys apart, the best is led on.
-_SCOUTED = 2e-3
-#: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
-_HELD, _FACTOR_SLACK = 4096, 1.05
-
-
-@dataclass(frozen=True, slots=True)
-class FamilyBest:
-    """The best modification of a family.
-
-    Parameters
-    ----------
-    family : str
-    on_grid : GroundRelief
-        Best of all combinations of the grid.
-    value_on_grid : float
-        What it leaves [m], see `FlankTrials.value`.
-    relief : GroundRelief
-        Best of all, after the descents.
-    value : float
-        [m].
-    candidates, exact : int
-        Combinations tried, and those of them that were loaded exactly.
-    quick_error : float
-        By how much the quick way was too high at most among those [m].
-    proven : bool
-        Whether no combination left to the quick way could be better with an error as large as that.
-    """
-
-    family: Family
-    on_grid: GroundRelief
-    value_on_grid: float
-    relief: GroundRelief
-    value: float
-    candidates: int
-    exact: int
-    quick_error: float
-    proven: bool
-
-
-def quick_values(
-    quick: QuickFlanks, trials: FlankTrials, family: Family, grid: ReliefGrid
-) -> tuple[Array, Array, Array]:
-    """Load all combinations of a family's grid the quick way.
-
-    Returns
-    -------
-    numbers : ndarray, shape (C, 9)
-    value : ndarray, shape (C,)
-        See `FlankTrials.value` [m].
-    factor : ndarray, shape (C,)
-        Largest K_Hbeta over misalignments and loads.
-    """
-    combinations = grid.combinations(family)
-    numbers = grid.numbers(family, combinations)
-    # Modifications add up: each choice of a group is averaged over the stations once.
-    parts = []
-    for group in FAMILIES[family]:
-        choices = np.zeros((grid.choices(group).shape[0], numbers.shape[1]))
-        choices[:, GROUPS[group]] = grid.choices(group)
-        parts.append(quick.gaps(np.stack([trials.gap(one) for one in choices])))
-    alike = trials.apart.ndim == 2
-    apart = [quick.gaps(trials.apart_under(i) + trials.deviations) for i in range(1 if alike else trials.loads.size)]
-    value, factor = np.empty(len(numbers)), np.empty(len(numbers))
-    for first in range(0, len(numbers), _HELD):
-        some = slice(first, first + _HELD)
-        gap = np.sum([part[combinations[some, column]] for column, part in enumerate(parts)], axis=0)
-        ripple = np.zeros((len(gap), trials.loads.size))
-        largest = np.zeros(len(gap))
-        for number, weight in enumerate(trials.scatter.weights):
-            for i, load in enumerate(trials.loads):
-                approach, k = quick.solve(gap + apart[0 if alike else i][number], float(load))
-                ripple[:, i] += weight * np.ptp(approach, axis=1)
-                largest = np.maximum(largest, k)
-        value[some], factor[some] = (ripple * trials.proportion).max(axis=1), largest
-    return numbers, value, factor
-
-
-def best_of_family(
-    trials: FlankTrials,
-    family: Family,
-    grid: ReliefGrid,
-    force: Array,
-    most_factor: float = np.inf,
-    starts: Sequence[GroundRelief] = (),
-    scan: FlankTrials | None = None,
-) -> FamilyBest:
-    """Find the modification of a family that leaves the least.
-
-    Parameters
-    ----------
-    trials : FlankTrials
-    family : str
-    grid : ReliefGrid
-    force : ndarray, shape (P, M)
-        Design forces at the stations of `scan`, about which the quick way takes compliances as straight [N].
-    most_factor : float
-        Largest K_Hbeta that is allowed, at all loads and misalignments.
-    starts : sequence of GroundRelief
-        Further starts of descents: a best one of a smaller family, so that more freedom never leaves more.
-    scan : FlankTrials, optional
-        Fewer roll positions at which all combinations are tried the quick way; those of `trials` without.
-
-    Raises
-    ------
-    RangeError
-        If no combination keeps to the largest K_Hbeta.
-    """
-    few = scan or trials
-    quick = quick_flanks(few.known, force, _PANELS, few.cells)
-    numbers, rough, factor = quick_values(quick, few, family, grid)
-    allowed = factor <= most_factor * _FACTOR_SLACK
-    order = np.argsort(np.where(allowed, rough, np.inf), kind="stable")[: int(allowed.sum())]
-    seen: list[tuple[float, int]] = []
-    error, exact = 0.0, 0
-    for i in order[:_MOST_EXACT].tolist():
-        if exact >= _LEAST_EXACT and seen and rough[i] - error > seen[0][0]:
-            break
-        tried = trials.of_numbers(numbers[i])
-        exact += 1
-        value = trials.value(tried.peak_to_peak)
-        error = max(error, rough[i] - value)
-        # K_Hbeta costs as much as the contact: asked only of those that a descent might start from.
-        if (len(seen) < _STARTS or value < seen[-1][0]) and _keeps(tried, most_factor):
-            seen = sorted([*seen, (value, i)])[:_STARTS]
-    if not seen:
-        raise RangeError(
-            "flank_design.largest_face_load_factor", f"{most_factor:.4g}",
-            f"is kept by none of the {len(numbers)} combinations of {family}: the least is about {factor.min():.4g}",
-            "allow more, or give the grid more crowning, end relief or slope",
-        )  # fmt: skip
-    on_grid = seen[0]
-    proven = exact == len(order) or float(rough[order[exact]]) - error > on_grid[0]
-    low, high = grid.limits(family)
-    reached = [descend(trials, numbers[i], value, (low, high), most_factor, _SCOUTED) for value, i in seen]
-    value, at = min(reached, key=lambda found: found[0])
-    best = FamilyBest(
-        family, GroundRelief.of(numbers[on_grid[1]]), on_grid[0], GroundRelief.of(at), value, len(numbers), exact,
-        error, proven,
-    )  # fmt: skip
-    for start in starts:
-        best = led_on(trials, best, grid, start, most_factor)
-    return best
-
-
-def led_on(
-    trials: FlankTrials, best: FamilyBest, grid: ReliefGrid, start: GroundRelief, most_factor: float = np.inf
-) -> FamilyBest:
-    """Try a further start of the same family; the best of both."""
-    low, high = grid.limits(best.family)
-    at = np.clip(start.numbers, low, high)
-    tried = trials.of_numbers(at)
-    if not _keeps(tried, most_factor):
-        return best
-    value, at = descend(trials, at, trials.value(tried.peak_to_peak), (low, high), most_factor)
-    return replace(best, relief=GroundRelief.of(at), value=value) if value < best.value else best
-
-
-def settled(
-    trials: FlankTrials, best: FamilyBest, grid: ReliefGrid, starts: Sequence[GroundRelief], most_factor: float = np.inf
-) -> FamilyBest:
-    """Lead what a search on few roll positions found on to a minimum of more of them; the best of all starts.
-
-    Parameters
-    ----------
-    trials : FlankTrials
-        At more roll positions.
-    best : FamilyBest
-    grid : ReliefGrid
-    starts : sequence of GroundRelief
-        Further starts, see `best_of_family`.
-    most_factor : float
-        Where the relief found keeps to it no more, it stays as it is.
-    """
-    found = replace(best, value=trials.value(trials.of_numbers(best.relief.numbers).peak_to_peak))
-    for start in (best.relief, *starts):
-        found = led_on(trials, found, grid, start, most_factor)
-    return found
-
-
-def _keeps(tried: Tried, most_factor: float) -> bool:
-    return most_factor == np.inf or float(tried.face_load_factor.max()) <= most_factor

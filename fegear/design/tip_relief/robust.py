@@ -24,7 +24,7 @@ from fegear.design.robustness.deviated_pair import Bench, deviated
 from fegear.design.robustness.tolerance_draws import Deviations
 from fegear.design.tip_relief.grindable import relief_over_path
 from fegear.geometry.pair import MEMBERS, Member
-from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 
 _Numbers = tuple[float, float, float, float]

@@ -25,12 +25,12 @@ from fegear.base.arrays import Floats, Index, Mask
 from fegear.contact.fourier import Panels
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.design.charts import Bench, bench
+from fegear.design.relief_bench import Bench, bench
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.ground import refine
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.pair import MEMBERS, GearPair
-from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
 #: Reliefs that leave at most this much more than the least, over it, are equally good.

@@ -10,8 +10,8 @@ import numpy as np
 
 from fegear.base.arrays import Floats, Index, Mask
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
-from fegear.design.charts import Bench
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
+from fegear.design.relief_bench import Bench
 from fegear.design.tip_relief.between_positions import Bends
 from fegear.design.tip_relief.extremes import Between, removed
 from fegear.design.tip_relief.kinks import KinkQuadrature, Positions

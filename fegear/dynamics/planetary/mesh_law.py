@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.contact.plane.shifted_compliance import solve_again
+from fegear.contact.plane.engagement import solve_again
 from fegear.contact.plane.transmission_error import contact_changes
 
 if TYPE_CHECKING:

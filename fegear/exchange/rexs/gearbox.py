@@ -25,8 +25,9 @@ from fegear.exchange.rexs.places import (
     stages_of,
     turn_to_axes,
 )
+from fegear.exchange.rexs.planetary import planetary_of
 from fegear.exchange.rexs.said import Said
-from fegear.exchange.rexs.sets import planetary_of, set_tables
+from fegear.exchange.rexs.sets import set_tables
 from fegear.exchange.rexs.shafts import (
     OnShaft,
     coupling_of,
@@ -40,11 +41,12 @@ from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_s
 from fegear.geometry.involute import inv
 
 if TYPE_CHECKING:
-    from fegear.exchange.rexs.loads import Bins, Flow
+    from fegear.exchange.rexs.flow import Flow
+    from fegear.exchange.rexs.loads import Bins
     from fegear.exchange.rexs.model import Component, Model
     from fegear.exchange.rexs.modifications import End
     from fegear.exchange.rexs.places import Place, Stage
-    from fegear.exchange.rexs.sets import Planetary
+    from fegear.exchange.rexs.planetary import Planetary
 
 _RESULTS = ("geometry", "misalignment", "shaft-deflection", "load-distribution", "transmission-error", "rating")
 #: Rim below which a gear is no body of its own on its shaft [modules].

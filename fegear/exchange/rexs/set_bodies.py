@@ -20,11 +20,11 @@ from fegear.exchange.rexs.teeth import teeth_of
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from fegear.exchange.rexs.loads import Flow
+    from fegear.exchange.rexs.flow import Flow
     from fegear.exchange.rexs.model import Component
     from fegear.exchange.rexs.places import Stage
+    from fegear.exchange.rexs.planetary import Planetary
     from fegear.exchange.rexs.said import Said
-    from fegear.exchange.rexs.sets import Planetary
 
 #: Planets may stand so far off the places that the teeth allow, by the step of these, as lengths are rounded.
 _ROUNDED = 0.02

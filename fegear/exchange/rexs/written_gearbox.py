@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 
 from fegear.base.errors import InputError
 from fegear.case.pair import PairPart
-from fegear.case.planetary import MESHES, PlanetaryPart, angles_of, set_pair, set_teeth
+from fegear.case.planetary import MESHES, PlanetaryPart, angles_of, set_pair
 from fegear.case.reading import Scene
+from fegear.case.set_pairs import set_teeth
 from fegear.exchange.rexs.operation import OILS
 from fegear.exchange.rexs.written import Found, Part, Written
 from fegear.exchange.rexs.written_gears import left_out, write_gear

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.exchange.rexs.teeth import MATERIALS
 from fegear.geometry.gear import USUAL_RING_RIM
+from fegear.geometry.internal_tooth import InternalTooth
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from fegear.case.relief import EndReliefPart
     from fegear.exchange.rexs.written import Part, Written
     from fegear.geometry.gear import Gear
-from fegear.geometry.internal_tooth import InternalTooth
+
 
 #: Keys of a gear and of its tables that are written, or have no meaning outside fegear.
 _GEAR = frozenset(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,10 @@ import numpy as np
 
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.estimate import QUANTITIES, Estimate
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.tooth_on_pins import over_the_teeth
+from fegear.geometry.gear import Gear
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,8 +25,33 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.fem.plane.influence import Influence, Side
     from fegear.fem.plane.settings import MeshSettings
-    from fegear.fem.plane.solution import Round
     from fegear.geometry.gear import Gear
+
+
+@dataclass(frozen=True)
+class Round:
+    """One solution on the way to a tolerance.
+
+    Attributes
+    ----------
+    settings : MeshSettings
+    unknowns : int
+        Of one sector.
+    errors : mapping of str to float
+        Largest estimated relative error over the flank of c_self, c_neighbour (over c_self), root_tension and
+        root_compression.
+    seconds : float
+    """
+
+    settings: MeshSettings
+    unknowns: int
+    errors: Mapping[str, float]
+    seconds: float
+
+    @property
+    def error(self) -> float:
+        """The largest of them."""
+        return max(self.errors.values())
 
 
 @dataclass(frozen=True)

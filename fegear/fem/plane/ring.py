@@ -28,48 +28,10 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError
+from fegear.fem.plane.chain import chain_coupling
 from fegear.fem.plane.condensation import Condensed, condense
 from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.mesh import SectorMesh
-
-
-def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, Array], dict[int, Array]]:
-    """Motion of the sides of a row of equal sectors, both ends free, the middle one loaded.
-
-    Parameters
-    ----------
-    condensed : ndarray, shape (2 m, 2 m)
-        Stiffness of one sector between its sides A and B, in polar components.
-    teeth : int
-        Sectors of the row; of an even number the first of the middle two is loaded.
-    reach : int
-        At most (teeth - 1) // 2.
-
-    Returns
-    -------
-    from_a, from_b : dict of int to ndarray, shape (m, m)
-        Motion of side A of sector k under forces on side A, and on side B, of sector 0, for k = -reach..reach + 1.
-    """
-    m = condensed.shape[0] // 2
-    aa, ab, bb = condensed[:m, :m], condensed[:m, m:], condensed[m:, m:]
-    middle = (teeth - 1) // 2
-    # Stiffness of a side with all sectors on its left (on its right) behind it.
-    left = [np.zeros((m, m))]
-    right = [np.zeros((m, m))]
-    for _ in range(teeth):
-        left.append(bb - ab.T @ np.linalg.solve(aa + left[-1], ab))
-        right.append(aa - ab @ np.linalg.solve(bb + right[-1], ab.T))
-    right.reverse()
-    found = []
-    for loaded in (middle, middle + 1):
-        motion = {loaded: np.linalg.inv(left[loaded] + right[loaded])}
-        for side in range(loaded + 1, teeth + 1):
-            motion[side] = -np.linalg.solve(bb + right[side], ab.T @ motion[side - 1])
-        for side in range(loaded - 1, -1, -1):
-            motion[side] = -np.linalg.solve(aa + left[side], ab @ motion[side + 1])
-        found.append({k: motion[middle + k] for k in range(-reach, reach + 2)})
-    return found[0], found[1]
-
 
 #: Motions of a side, shape (m,) or (m, d), in which a ring that nothing holds turns, and moves: harmonics 0 and 1.
 RigidSides = tuple[NDArray[np.inexact], NDArray[np.inexact]]

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
 from fegear.fem.plane.estimate import Estimate
-from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.gear import GearInfluence, Round
 from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.rim import PinForces
@@ -31,32 +31,6 @@ Progress = Callable[[str], None]
 
 #: How many solutions are tried at most.
 _MOST_ROUNDS = 4
-
-
-@dataclass(frozen=True)
-class Round:
-    """One solution on the way to a tolerance.
-
-    Attributes
-    ----------
-    settings : MeshSettings
-    unknowns : int
-        Of one sector.
-    errors : mapping of str to float
-        Largest estimated relative error over the flank of c_self, c_neighbour (over c_self), root_tension and
-        root_compression.
-    seconds : float
-    """
-
-    settings: MeshSettings
-    unknowns: int
-    errors: Mapping[str, float]
-    seconds: float
-
-    @property
-    def error(self) -> float:
-        """The largest of them."""
-        return max(self.errors.values())
 
 
 def influence_of_shape(

@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
-    from fegear.fem.solid.flank_body import TwistedFlank
-    from fegear.fem.solid.solution import SolidSolution
+    from fegear.fem.solid.flank_body import SolidFlank, TwistedFlank
 
 #: Cosines along the face: so many to the shortest reach of a band. Those of a hat fall with the square of their number.
 _WAVES, _FEWEST_WAVES, _MOST_WAVES = 12.0, 64, 1500
@@ -54,7 +53,7 @@ class PressedLines:
 
     Parameters
     ----------
-    solution : SolidSolution
+    solution : SolidFlank
     line : Bands
         Bands of all lines, one line after the other, as wide as the section resolves
         (`SolidSolution.band_half_width`), with their lines' own slope (`SolidSolution.line_slope`).
@@ -67,7 +66,7 @@ class PressedLines:
         Of each line the integrals of products of its bands' profiles [1/module].
     """
 
-    def __init__(self, solution: SolidSolution, line: Bands, spans: Sequence[slice]) -> None:
+    def __init__(self, solution: SolidFlank, line: Bands, spans: Sequence[slice]) -> None:
         self._solution, self._line, self._spans = solution, line, spans
         self.common = [overlap(line.part(span)) for span in spans]
 
@@ -136,12 +135,12 @@ class PressedLines:
         return seen, moments
 
 
-def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike) -> Array:
+def line_compliance(solution: SolidFlank, line: Bands, half_width: ArrayLike) -> Array:
     """c_0 between the contacts of one contact line, shape (P, P) [1/(E module)].
 
     Parameters
     ----------
-    solution : SolidSolution
+    solution : SolidFlank
     line : Bands
         Bands of one contact line, as `PressedLines` takes them.
     half_width : array_like, shape (P,) or ()
@@ -173,14 +172,14 @@ def widened_by_curvature(
     return [0.5 * (bend[span, None] + bend[span]) * own for span, own in zip(spans, common, strict=True)]
 
 
-def _wave_numbers(solution: SolidSolution, line: Bands) -> Array:
+def _wave_numbers(solution: SolidFlank, line: Bands) -> Array:
     """Of the cosines along the contact line, which is longer than the face is wide, shape (n,) [1/module]."""
     shortest = float(np.maximum(line.before, line.after).min())
     count = int(np.clip(_WAVES * solution.width / shortest, _FEWEST_WAVES, _MOST_WAVES))
     return np.asarray(np.pi * np.arange(1, count + 1) / solution.width / solution.normal_length)
 
 
-def _short_waves(solution: SolidSolution, line: Bands, b: float) -> Array:
+def _short_waves(solution: SolidFlank, line: Bands, b: float) -> Array:
     """What waves as short as the contact is wide change of `_narrow`: its logarithm would turn negative, (P, P)."""
     k = _wave_numbers(solution, line)
     waves = band_cosines(line, solution.width, k.size)[:, 1:]
@@ -188,7 +187,7 @@ def _short_waves(solution: SolidSolution, line: Bands, b: float) -> Array:
     return np.asarray(2.0 / solution.width * (waves * spectrum) @ waves.T)
 
 
-def _narrow(solution: SolidSolution, line: Bands) -> Array:
+def _narrow(solution: SolidFlank, line: Bands) -> Array:
     """What a half-space makes of contacts of half-width 1 in the limit of narrow ones, but for its slope, (P, P)."""
     k = _wave_numbers(solution, line)
     waves = band_cosines(line, solution.width, k.size)[:, 1:]
@@ -196,7 +195,7 @@ def _narrow(solution: SolidSolution, line: Bands) -> Array:
     return np.asarray(2.0 / solution.width * (waves * spectrum) @ waves.T)
 
 
-def _at_the_faces(solution: SolidSolution, line: Bands, b: float) -> Array:
+def _at_the_faces(solution: SolidFlank, line: Bands, b: float) -> Array:
     """What end faces without traction add to their mirrors, by a logarithm beside them, (P, P)."""
     half = 0.5 * solution.width
     x, w = 0.5 + 0.5 * _END_POINTS[0], 0.5 * _END_POINTS[1]

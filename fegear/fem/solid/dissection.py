@@ -9,16 +9,16 @@ its elements, and the block between two functions along the face is a multiple o
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.fem.plane.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
-from fegear.fem.solid.scikit_fem_solver import condense_whole
+from fegear.fem.solid.unknowns import Unknowns
+from fegear.fem.solid.whole_sector import condense_whole
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index, Mask
+    from fegear.base.arrays import Array, Index
     from fegear.fem.solid.face import FaceFunctions, JoinedFunctions
     from fegear.fem.solid.section import Section
 
@@ -26,46 +26,6 @@ if TYPE_CHECKING:
 _SMALLEST_PART = 30
 #: Directions in which cuts are tried, the least share of the elements on one side, and how much an uneven cut counts.
 _DIRECTIONS, _LEAST_SHARE, _UNEVEN = 12, 0.3, 2.0
-
-
-@dataclass(frozen=True)
-class Unknowns:
-    """Unknowns of the solid: which functions along the face each unknown of the section has.
-
-    Parameters
-    ----------
-    number : ndarray of int, shape (size of the section, functions)
-        Number of the unknown, section by section unknown; -1 where there is none.
-    """
-
-    number: Index
-
-    @property
-    def size(self) -> int:
-        """Number of unknowns."""
-        return int(self.number.max()) + 1
-
-    def split(self, mask: Mask) -> tuple[Unknowns, Unknowns]:
-        """Those within a mask of shape (size of the section, functions), and the others, each numbered anew."""
-        has = self.number >= 0
-        return unknowns(has & mask), unknowns(has & ~mask)
-
-    def of(self, section_unknowns: Index) -> Index:
-        """Unknowns of some of the section's, one after the other, short waves last."""
-        found = self.number[section_unknowns]
-        return found[found >= 0]
-
-
-def unknowns(has: Mask) -> Unknowns:
-    """Number the unknowns.
-
-    Parameters
-    ----------
-    has : ndarray of bool, shape (size of the section, functions)
-    """
-    number = np.full(has.shape, -1, dtype=np.int64)
-    number[has] = np.arange(int(has.sum()))
-    return Unknowns(number)
 
 
 def condense_solid(

@@ -14,9 +14,9 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index, Mask
 from fegear.fem.plane.elements import line_functions
-from fegear.fem.solid.dissection import Unknowns, unknowns
 from fegear.fem.solid.section import Section, upward
 from fegear.fem.solid.settings import SolidSettings, whole
+from fegear.fem.solid.unknowns import Unknowns, unknowns
 from fegear.geometry.gear_body import GearBody
 
 #: By what length along the axis is greater than places, at these.

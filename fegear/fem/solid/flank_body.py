@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,11 @@ from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands
 from fegear.fem.solid.settings import SolidSettings
 from fegear.geometry.involute_tooth import InvoluteTooth
+
+if TYPE_CHECKING:
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.solid.face import FaceFunctions
+    from fegear.fem.solid.fillet import SolidFillet
 
 #: A pressure is at least this share of the flank wide, however little room there is to its end.
 _NARROWEST = 0.02
@@ -120,3 +125,16 @@ class TwistedFlank:
         rb = self.tooth.base_radius
         r = np.atleast_1d(np.asarray(radius, dtype=float))
         return np.asarray(-self.tau * np.sqrt(np.maximum(r**2 - rb**2, 0.0)))
+
+
+class SolidFlank(TwistedFlank):
+    """What a solid ring has besides, for those who press its flank and look at its fillets."""
+
+    plane_strain: bool
+    face: FaceFunctions
+    fillets: Mapping[Side, SolidFillet]
+    displacement: Mapping[tuple[int, Side], Array]
+
+    def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
+        """See `SolidSolution.root_end`."""
+        raise NotImplementedError

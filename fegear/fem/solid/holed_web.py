@@ -28,17 +28,18 @@ from fegear.fem.plane.body import RING
 from fegear.fem.plane.holed_ring import holed_ring
 from fegear.fem.plane.ring import harmonic_stiffness
 from fegear.fem.plane.trace import lagrange
-from fegear.fem.solid.dissection import condense_solid, unknowns
+from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.holed_teeth import HoledHalf, HoledRing
 from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings, whole
+from fegear.fem.solid.unknowns import unknowns
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.ring import Ring
-    from fegear.fem.solid.dissection import Unknowns
     from fegear.fem.solid.section import Section
+    from fegear.fem.solid.unknowns import Unknowns
     from fegear.geometry.gear_body import GearBody, WebHoles
 
 _GAUSS = np.polynomial.legendre.leggauss(12)

@@ -32,10 +32,10 @@ from fegear.base.arrays import Array, Index
 from fegear.fem.plane.trace import lagrange
 
 if TYPE_CHECKING:
-    from fegear.fem.solid.dissection import Unknowns
     from fegear.fem.solid.face import FaceFunctions
     from fegear.fem.solid.rim import FreeRing
     from fegear.fem.solid.section import Section
+    from fegear.fem.solid.unknowns import Unknowns
     from fegear.geometry.rim_support import RimSupport
 
 _GAUSS = np.polynomial.legendre.leggauss(12)

@@ -29,9 +29,9 @@ from fegear.fem.plane.trace import lagrange, lagrange_slope
 if TYPE_CHECKING:
     from fegear.fem.plane.condensation import Condensed
     from fegear.fem.plane.ring import RigidSides, Ring
-    from fegear.fem.solid.dissection import Unknowns
     from fegear.fem.solid.face import FaceFunctions
     from fegear.fem.solid.section import Section
+    from fegear.fem.solid.unknowns import Unknowns
 
 #: Motions of which plane strain has only those in the plane: two translations and the turn.
 _IN_PLANE = (0, 1, 5)

@@ -12,9 +12,9 @@ no volume changes. The hub has the functions of the places that the web leads to
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -29,13 +29,19 @@ from fegear.fem.solid.scikit_fem_solver import SectionMatrices, assembled_zones
 from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
 
-if TYPE_CHECKING:
-    from fegear.fem.solid.face import FaceFunctions, JoinedFunctions
-
 #: From where to where a disc fills the face: all of it.
 _WHOLE_FACE = ((-math.inf, math.inf),)
 #: Numbers of zones.
 WEB, HUB = 1, 2
+
+
+class AlongFace(Protocol):
+    """Functions along the face, or those of a body joined with those of its teeth."""
+
+    def products_over(
+        self, low: float, high: float, stretched: Callable[[Array], Array] | None = None
+    ) -> tuple[Array, Array, Array]:
+        """Integrals of products of all functions from one break to another."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +117,7 @@ class Section:
         found = [self.edge_nodes[name].ravel() for name in names if name in self.edge_nodes]
         return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
 
-    def products_along(self, face: FaceFunctions | JoinedFunctions) -> list[tuple[Array, Array, Array]]:
+    def products_along(self, face: AlongFace) -> list[tuple[Array, Array, Array]]:
         """Integrals of products of functions along the face over what each zone fills, as `FaceFunctions` has them."""
         hub = None if self.along is None else self.along.stretched
         return [face.products_over(*span, hub if zone == HUB else None) for zone, span in enumerate(self.spans)]

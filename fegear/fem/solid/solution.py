@@ -27,7 +27,7 @@ from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions, JoinedFunctions, face_functions, own_of_teeth, solid_unknowns
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
-from fegear.fem.solid.flank_body import TwistedFlank
+from fegear.fem.solid.flank_body import SolidFlank
 from fegear.fem.solid.holed_teeth import HoledHalf, HoledTeeth, holed_teeth
 from fegear.fem.solid.holed_web import holes_of
 from fegear.fem.solid.pinned_rim import pinned_response, pins_on
@@ -45,7 +45,7 @@ _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
 @dataclass(frozen=True)
-class SolidSolution(TwistedFlank):
+class SolidSolution(SolidFlank):
     """What one solid ring answers: deflections of the flank and of the fillets under forces on the flank.
 
     Parameters

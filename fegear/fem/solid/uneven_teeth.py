@@ -15,7 +15,7 @@ from fegear.fem.solid.fillet import surface_stress
 
 if TYPE_CHECKING:
     from fegear.fem.solid.bands import Bands
-    from fegear.fem.solid.solution import SolidSolution
+    from fegear.fem.solid.flank_body import SolidFlank
 
 #: Places along the face at which root stress is compared.
 _PLACES = 17
@@ -34,13 +34,13 @@ class UnevenTeeth(ReadOnlyArrays):
 
 
 def teeth_apart(
-    solution: SolidSolution, band: Bands, load: Array, approach: Array, moved: Mapping[Side, Array]
+    solution: SolidFlank, band: Bands, load: Array, approach: Array, moved: Mapping[Side, Array]
 ) -> UnevenTeeth:
     """Each tooth under one load, from how it departs from the mean over all.
 
     Parameters
     ----------
-    solution : SolidSolution
+    solution : SolidFlank
         The mean.
     band : Bands
     load : ndarray, shape (n,)

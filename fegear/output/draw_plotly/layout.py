@@ -10,10 +10,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fegear.engine.figure.figure import FEW_DECADES, Axis, Figure, Panel
+from fegear.engine.figure.axis import FEW_DECADES, Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import HeatMap, Mark, Which
+from fegear.engine.figure.panel import Panel
 from fegear.output.draw_plotly.traces import Spec, anchor, one_entry_each, rich, shared, titled, traces
-from fegear.output.numbers import DARK, LIGHT, pretty_unit, shade
+from fegear.output.numbers import pretty_unit
+from fegear.output.shades import DARK, LIGHT, shade
 
 #: Pixels: a panel alone, panels above each other, the room between them and around them.
 _ALONE, _STACKED, _GAP, _TITLED = 350, 240, 78, 22

@@ -11,7 +11,7 @@ import numpy as np
 
 from fegear.engine.figure.figure import Figure
 from fegear.output.draw_plotly.layout import plotly_json, template
-from fegear.output.numbers import LIGHT
+from fegear.output.shades import LIGHT
 
 #: What JupyterLab, VS Code and others draw as an interactive plot; who does not takes the picture.
 PLOTLY = "application/vnd.plotly.v1+json"

@@ -15,9 +15,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.engine.colours import look
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve, HeatMap, Points, Stems
-from fegear.output.numbers import DIVERGING, SEQUENTIAL, pretty_unit, shade
+from fegear.engine.figure.panel import Panel
+from fegear.output.numbers import pretty_unit
+from fegear.output.shades import DIVERGING, SEQUENTIAL, shade
 
 _DASHES = {"dashdot": "dashdot", "dot": "dot", "steps": "solid"}
 

@@ -12,23 +12,12 @@ from typing import Any
 import numpy as np
 
 from fegear.engine.colours import look
-from fegear.engine.figure.figure import Panel
 from fegear.engine.figure.items import Bars, Curve, Surface, TriangleField
-from fegear.output.draw_png.axes import (
-    DASHES,
-    SYMBOLS,
-    bar_label,
-    draw_items,
-    draw_marks,
-    dress,
-    lines_of,
-    longest_number,
-    maps_of,
-    plain_numbers,
-    set_scales,
-    words,
-)
-from fegear.output.numbers import shade
+from fegear.engine.figure.panel import Panel
+from fegear.output.draw_png.axes import draw_marks, dress, plain_numbers, set_scales
+from fegear.output.draw_png.items import DASHES, SYMBOLS, draw_items
+from fegear.output.draw_png.texts import bar_label, lines_of, longest_number, maps_of, words
+from fegear.output.shades import shade
 
 #: Inches: a panel alone, panels above each other, and around them.
 _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}

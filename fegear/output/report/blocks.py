@@ -11,8 +11,8 @@ from fegear.output.tables import cell, table_file
 
 if TYPE_CHECKING:
     from fegear.engine.figure.figure import Figure
-    from fegear.engine.outcome import Value
     from fegear.engine.table import Column, Table
+    from fegear.engine.value import Value
     from fegear.output.draw_png import Picture
 
 #: Rows of a table that stand in the page as text; the others are a click away.

@@ -1,29 +1,16 @@
-"""The page of a run: what was asked, the numbers and their errors, each stage's plots and tables, plan, cost.
-
-Accuracy and its cost: seconds, errors compared with the tolerance, settings.
-
-The data of the gears as on a drawing, and each pair drawn in mesh.
-"""
+"""The page of a run: what was asked, the numbers and their errors, each stage's plots and tables, plan, cost."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 import fegear
 from fegear.case.effects import EFFECTS
 from fegear.engine.citation import Citation, bibliography
-from fegear.engine.figure.figure import Axis, Figure, Panel
-from fegear.engine.figure.items import Mark, Points
-from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS
 from fegear.output.fields import field_file
 from fegear.output.file_names import file_name
-from fegear.output.numbers import plain_number
+from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
-    Bars,
     Block,
     Code,
     DataTable,
@@ -36,25 +23,16 @@ from fegear.output.report.blocks import (
     Notes,
     Paragraph,
     Plot,
-    Sheet,
-    SheetGroup,
     Still,
     Values,
-    relative_error,
-    value_cells,
 )
+from fegear.output.report.gear_data import gear_sections
 from fegear.output.report.page import Page, Section, write_page
-from fegear.output.tables import table_file
-from fegear.results.gear.body_section import body_figures
-from fegear.results.gear.drawing import pair_figure
-from fegear.results.gear.geometry import MEANINGS as MODIFICATIONS
-from fegear.results.gear.geometry import drawing_of, lone_table, pair_table, pair_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from fegear.engine.outcome import Value
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
     from fegear.output.figures import Drawn
@@ -209,164 +187,3 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
 def write_report(path: Path, results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -> None:
     """Write the page of a run; see `run_page`."""
     write_page(path, run_page(results, drawn, remarks))
-
-
-def _errors(results: Results) -> list[tuple[str, float]]:
-    found = [(value.name, relative_error(value)) for value in results.values]
-    return [(name, share) for name, share in found if share is not None]
-
-
-def _figure(found: list[tuple[str, float]], tolerance: float) -> Figure:
-    found = sorted(found, key=lambda item: item[1])
-    names, share = tuple(name for name, _ in found), np.array([share for _, share in found])
-    rows = np.arange(len(found))
-    points = tuple(
-        Points(share[here], rows[here], label, role, symbol, 9.0)
-        for here, label, role, symbol in (
-            (share <= tolerance, "within the tolerance", "green", "circle"),
-            (share > tolerance, "over the tolerance", "red", "diamond"),
-        )
-        if here.any()
-    )
-    axes = Axis("estimated relative error", log=True), Axis(categories=names)
-    return Figure(
-        "estimated_errors", "Estimated errors and the tolerance",
-        "Estimated error of every value over the value; left of the line it is within the case's tolerance.",
-        (Panel(*axes, points, (Mark("x", tolerance, "tolerance"),)),),
-    )  # fmt: skip
-
-
-def accuracy_blocks(results: Results) -> tuple[Block, ...]:
-    """Blocks on accuracy and its cost, from whatever the stages say of their settings."""
-    tolerance = results.scene.case.accuracy.tolerance
-    found = _errors(results)
-    estimated = [value for value in results.values if value.error is not None]
-    over = [name for name, share in found if share > tolerance]
-    exact = sum(not value.error for value in estimated)
-    kinds = (
-        (len(estimated) - exact, "carry an estimated error"),
-        (exact, "are exact" if exact != 1 else "is exact"),
-        (len(results.values) - len(estimated), "have no estimate"),
-    )
-    summary = f"The case asks for a relative error of {plain_number(tolerance)}. Of its {len(results.values)} values "
-    summary += ", ".join(f"{count} {words}" for count, words in kinds if count) + "."
-    if over:
-        summary += f" Over the tolerance: {', '.join(over)}."
-    elif found:
-        summary += " None of the estimates exceeds the tolerance."
-    settings = tuple(
-        Folded(f"Settings: {task}", (Facts(outcome.settings),))
-        for task, outcome in results.outcomes.items()
-        if outcome.settings
-    )
-    return (
-        *((Paragraph(summary),) if results.values else ()),
-        *(Paragraph(sentence) for sentence in _libraries(results)),
-        *((Plot(_figure(found, tolerance)),) if len(found) > 1 else ()),
-        Paragraph("Seconds of each task:", "table-title"),
-        Bars({str(task): seconds for task, seconds in results.seconds.items()}, "s"),
-        *settings,
-    )
-
-
-def _libraries(results: Results) -> tuple[str, ...]:
-    """Which library does what on the way to influence functions, where finite elements were solved."""
-    if not any(_has_solver(outcome.settings) for outcome in results.outcomes.values()):
-        return ()
-    solver = results.scene.case.accuracy.solver
-    first = "gmsh meshes one tooth; scikit-fem numbers its unknowns, maps and integrates its elements"
-    if solver == "scikit-fem":
-        rest = "assembles them and eliminates the inner unknowns; fegear closes the ring of all teeth"
-        return (f'{first}, {rest} (accuracy.solver = "scikit-fem").',)
-    rest = "fegear's nested dissection assembles and eliminates, and closes the ring of all teeth"
-    other = 'accuracy.solver = "scikit-fem" has scikit-fem do that too: same numbers, several times the CPU time'
-    return (f"{first}; {rest}. {other} (fegear check measures both).",)
-
-
-def _has_solver(settings: object) -> bool:
-    """Whether settings, or some within them, are those of finite elements."""
-    if not isinstance(settings, Mapping):
-        return False
-    return "solver" in settings or any(_has_solver(within) for within in settings.values())
-
-
-#: Which columns of the gear data stand together, in the order of a drawing.
-_GROUPS = (
-    ("Teeth", (
-        "gear", "teeth", "module", "pressure_angle", "helix_angle", "hand", "lead", "transverse_module",
-        "transverse_pressure_angle", "base_helix_angle", "profile_shift", "face_width",
-    )),
-    ("Diameters", (
-        "reference_diameter", "base_diameter", "tip_diameter", "tip_form_diameter", "active_tip_diameter",
-        "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
-    )),
-    ("Measurement", ("tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls")),
-    ("Modifications", tuple(MODIFICATIONS)),
-    ("In mesh", ("tip_clearance", "specific_sliding_start", "specific_sliding_end")),
-)  # fmt: skip
-
-
-def gear_sections(results: Results) -> tuple[Section, ...]:
-    """A section for each pair, that in question first, one for gears in no pair, one for bodies."""
-    drawing = drawing_of(results.scene)
-    written = {table.name for table in results.tables}
-    case = results.scene.case
-    first = next(
-        (n for n in (case.stiffness.pair, case.design.pair if case.design else None) if n in drawing.pairs), None
-    )
-    names = sorted(drawing.pairs, key=lambda name: name != first)
-    sections = []
-    for name in names:
-        table, pair = pair_table(name, drawing), drawing.pairs[name]
-        blocks = _blocks(table, pair_values(name, pair), written, _loaded(results, name))
-        sections.append(Section(f"Gear data: pair {name}", (*blocks, Plot(pair_figure(name, drawing)))))
-    lone = lone_table(drawing)
-    if lone is not None:
-        sections.append(Section("Gear data", _blocks(lone, (), written)))
-    if bodies := body_figures(drawing.gears):
-        sections.append(Section("Gear bodies", tuple(map(Plot, bodies))))
-    return tuple(sections)
-
-
-#: Values of the result ``rating`` that the data sheet shows, in its order.
-_SHOWN = {
-    "S_H": "safety against pitting S_H, ISO 6336",
-    "S_H_computed": "S_H, computed load distribution",
-    "S_H_spectrum": "S_H under the spectrum",
-    "S_H_agma": "S_H, AGMA 2101",
-    "S_F": "safety against tooth breakage S_F, ISO 6336",
-    "S_F_computed": "S_F, computed root stress",
-    "S_F_spectrum": "S_F under the spectrum",
-    "S_F_agma": "S_F, AGMA 2101",
-}
-
-
-def rated_columns(values: Sequence[Value], pair: str) -> tuple[Column, ...]:
-    """A column for every safety of driver and driven among the values of a run; none without a rating."""
-    known = {value.name: value.value for value in values}
-    rows = {key: [known.get(f"{pair}.{member}.{key}", np.nan) for member in MEMBERS] for key in _SHOWN}
-    return tuple(
-        Column(key, np.array([round(one, 3) for one in row]), "", _SHOWN[key])
-        for key, row in rows.items()
-        if not np.isnan(row).any()
-    )
-
-
-def _loaded(results: Results, name: str) -> tuple[SheetGroup, ...]:
-    """What the wanted results tell of a pair under load: a group for each."""
-    groups = (SheetGroup("Load capacity", rated_columns(results.values, name)),)
-    return tuple(group for group in groups if group.columns)
-
-
-def _blocks(
-    table: Table, values: Sequence[Value], written: set[str], more: Sequence[SheetGroup] = ()
-) -> tuple[Block, ...]:
-    columns = {column.name: column for column in table.columns}
-    heads = MEMBERS if values else tuple("" for _ in columns["gear"].values)
-    groups = [SheetGroup(title, tuple(columns[name] for name in names if name in columns)) for title, names in _GROUPS]
-    shared = tuple((value.meaning, value_cells(value)[0], value.unit) for value in values)
-    sheet = Sheet(heads, (*(group for group in groups if group.columns), *more), shared)
-    note = "" if table.name in written else 'The table itself is written with results = ["geometry"].'
-    if note:
-        return sheet, Paragraph(note, "note screen")
-    return sheet, Download(f"tables/{table_file(table)}")

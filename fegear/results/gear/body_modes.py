@@ -12,11 +12,14 @@ from fegear.base.errors import InputError
 from fegear.case.built.solid_influence import check_solid_gear, solid_settings_of
 from fegear.engine.citation import citing
 from fegear.engine.declared import column_of, error_column
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import TriangleField
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.outline import turned
 from fegear.results.forecasts import RING
 

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points, outline, polylines
+from fegear.engine.figure.panel import Panel
 from fegear.geometry.outline import tooth_outline, turned
 
 if TYPE_CHECKING:

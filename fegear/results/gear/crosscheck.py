@@ -18,11 +18,14 @@ import numpy as np
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, error_column, tiled
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, Zone
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_iso import (
@@ -41,7 +44,8 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RatedPair, RootStressAnswers
+    from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
+    from fegear.contact.compared.rated_gears import RatedPair
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
@@ -135,11 +139,10 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         contact_zone,
         pair_compliance_answers,
         pair_reference,
-        rated_helical_pair,
-        rated_spur_pair,
         root_stress_answers,
         tooth_compliance_answers,
     )
+    from fegear.contact.compared.rated_gears import rated_helical_pair, rated_spur_pair
     from fegear.formulas.cornell import radial_section_lengths
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt

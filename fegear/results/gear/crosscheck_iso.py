@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points, outline
-from fegear.engine.outcome import Value
+from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.outline import tooth_outline
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.compared.crosscheck import HelicalCheck, RatedPair
+    from fegear.contact.compared.rated_gears import HelicalCheck, RatedPair
     from fegear.fem.plane.settings import MeshSettings
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
@@ -50,7 +52,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     """Take from a scene what ISO 6336 needs of one pair."""
     part = scene.case.pair[name]
     names = (part.driver, part.driven)
-    from fegear.contact.compared.crosscheck import HelicalCheck
+    from fegear.contact.compared.rated_gears import HelicalCheck
     from fegear.formulas.iso6336.part3_pair import RatingChoice
 
     choice = RatingChoice(part.iso_6336.edition or 2006, part.iso_6336.accuracy_grade)
@@ -71,7 +73,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
 
 def _rim(scene: Scene, gear: str, said: list[str]) -> float | None:
     """s_R of a gear; Y_B refuses one that is too thin, as it does in a rating."""
-    from fegear.case.built.rated_pair import gear_body
+    from fegear.case.built.rated_body import gear_body
 
     try:
         return gear_body(scene, gear, said).rim_thickness

@@ -10,14 +10,18 @@ The tool rolling through one space of either gear of a pair in mesh: its positio
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
-from fegear.engine.figure.figure import Axis, Figure, MeshField, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, MeshField
 from fegear.engine.figure.items import Curve, Mark, Points, TriangleField, edges, outline, polylines
+from fegear.engine.figure.panel import Panel
+from fegear.geometry.gear import Gear
 from fegear.geometry.outline import tool_in_gear, tool_in_space, tooth_outline, turned
 from fegear.geometry.pair import MEMBERS, GearPair, Member, path_points, specific_sliding
 
@@ -27,7 +31,6 @@ if TYPE_CHECKING:
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Gear
-    from fegear.results.gear.geometry import Drawing
 
 
 #: Positions of the tool in the picture of a tooth.
@@ -44,6 +47,32 @@ _TOP = 99.5
 
 #: Chords of a drawn outline stay this close to it [modules].
 _CHORD = 1e-5
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Everything that a drawing would carry.
+
+    Parameters
+    ----------
+    gears : mapping of str to Gear
+    pairs : mapping of str to GearPair
+    members : mapping of str to (str, str)
+        Names of the driver and the driven gear of each pair.
+    balls : mapping of str to float
+        Diameters of the measuring balls or pins that the case names, by gear [m].
+    ground : mapping of str to mapping of str to float
+        What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
+    assumed : tuple of str
+        Sentences on bores and face widths that mass and inertia take for granted.
+    """
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, GearPair]
+    members: Mapping[str, tuple[str, str]]
+    balls: Mapping[str, float]
+    ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    assumed: tuple[str, ...] = ()
 
 
 def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
@@ -101,8 +130,8 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
 
 def deformed_figure(name: str, influence: GearInfluence, line_load: float) -> Figure:
     """The whole gear and the loaded tooth, deformed on a larger scale and coloured by von Mises stress."""
+    from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
     from fegear.fem.plane.mesh import GENERATED
-    from fegear.fem.plane.whole_gear import loaded_gear, nodal_fields
 
     gear, mesh = influence.gear, influence.fine.mesh
     whole, field = loaded_gear(gear, influence.settings, None if mesh.origin == GENERATED else mesh)

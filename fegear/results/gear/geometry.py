@@ -8,7 +8,6 @@ What is ground off the flanks of a gear, for its gear data: the amounts that a d
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -17,17 +16,20 @@ from fegear.case.gear import GearPart
 from fegear.case.reading import Scene
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_over, value_of
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
-from fegear.geometry.checks import interference, tip_thickness
+from fegear.engine.value import Value
+from fegear.geometry.checks import tip_thickness
 from fegear.geometry.gear import Gear
-from fegear.geometry.inspection import OverBalls, over_balls, touching_ball, usual_ball, usual_span
+from fegear.geometry.inspection import usual_span
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.over_balls import OverBalls, over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import MEMBERS, GearPair, active_profile, specific_sliding
+from fegear.geometry.tip_interference import interference
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.body_section import body_figures
-from fegear.results.gear.drawing import pair_figure
+from fegear.results.gear.drawing import Drawing, pair_figure
 
 #: Of a pair, as single values.
 _OF_PAIR = ("contact_ratio", "centre_distance", "working_pressure_angle", "path_length", "base_pitch")
@@ -87,32 +89,6 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
     tables = (table, bodies, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))
     figures = (*(pair_figure(name, drawing) for name in pairs), *body_figures(gears))
     return Outcome(drawing, tables, values, {}, (*remarks, *drawing.assumed, *unmeasured_remarks(drawing)), figures)
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """Everything that a drawing would carry.
-
-    Parameters
-    ----------
-    gears : mapping of str to Gear
-    pairs : mapping of str to GearPair
-    members : mapping of str to (str, str)
-        Names of the driver and the driven gear of each pair.
-    balls : mapping of str to float
-        Diameters of the measuring balls or pins that the case names, by gear [m].
-    ground : mapping of str to mapping of str to float
-        What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
-    assumed : tuple of str
-        Sentences on bores and face widths that mass and inertia take for granted.
-    """
-
-    gears: Mapping[str, Gear]
-    pairs: Mapping[str, GearPair]
-    members: Mapping[str, tuple[str, str]]
-    balls: Mapping[str, float]
-    ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    assumed: tuple[str, ...] = ()
 
 
 def drawing_of(scene: Scene) -> Drawing:

@@ -13,11 +13,14 @@ from fegear.case.built.flank_modifications import described_relief, gear_face
 from fegear.case.built.measured_flanks import MeasuredGear, Traces, measured_gear
 from fegear.case.reading import Scene
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.formulas.iso1328 import tolerances_of
 from fegear.formulas.iso1328_traces import TraceDeviations, tightest_class
 from fegear.geometry.gear import Gear

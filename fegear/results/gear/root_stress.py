@@ -10,8 +10,10 @@ import numpy as np
 
 from fegear.base.arrays import Array, first_of_largest
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Curve, Mark
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table

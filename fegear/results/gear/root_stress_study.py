@@ -15,11 +15,14 @@ from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import citing
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark, Points, Zone
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
 
@@ -141,7 +144,7 @@ def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: flo
 
 def _values(table: Table, names: tuple[str, ...], *, drawn: bool) -> tuple[Value, ...]:
     """Ratios and shares of all points; shares of drawn gears are those of their box within a standard error."""
-    from fegear.contact.compared.root_stress_study import LOADS, share_error
+    from fegear.contact.compared.population import LOADS, share_error
 
     values = []
     for name in names:
@@ -185,7 +188,8 @@ def _inputs(scene: Scene, _subject: str) -> StudyInputs:
 
 
 def _compute(asked: StudyInputs, _upstream: Upstream, work: Work) -> tuple[VariantStress, ...]:
-    from fegear.contact.compared.root_stress_study import drawn_gears, of_population, root_stress_study, variants
+    from fegear.contact.compared.population import drawn_gears
+    from fegear.contact.compared.root_stress_study import of_population, root_stress_study, variants
 
     study, tooth = asked.study, asked.base.external_tooth
     if study.samples:

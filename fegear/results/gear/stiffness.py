@@ -15,11 +15,14 @@ from fegear.base.arrays import Array, first_of_largest
 from fegear.case.built.tooth_influence import solution_settings
 from fegear.engine.citation import citing
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, value_of
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
+from fegear.engine.figure.axis import Axis, Scale
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.forecasts import HERTZ, PATCH, RING
 from fegear.results.gear.drawing import tooth_figure
 from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, chosen_gears, stiffness_inputs

@@ -16,11 +16,14 @@ from fegear.base.shown import declared
 from fegear.case.built.solid_influence import check_source
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, repeated, tiled, value_of
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import DeferredFigure, Figure, SolidMeshField
 from fegear.engine.figure.items import Curve, HeatMap, Skin
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Table
+from fegear.engine.value import Value
 from fegear.results.forecasts import RING
 from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, stiffness_inputs
 from fegear.results.gear.solved_gear import needs_solid_solution

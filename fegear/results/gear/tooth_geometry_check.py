@@ -9,11 +9,14 @@ import numpy as np
 
 from fegear.case.reading import Scene
 from fegear.engine.citation import citing
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Mark, Points
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.checks import Check, gear_checks, pair_checks
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair

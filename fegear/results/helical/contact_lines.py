@@ -17,11 +17,14 @@ from fegear.contact.unloaded.contact_lines import LineContact, LineLength
 from fegear.contact.unloaded.pair import HelicalPair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, value_of
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Curve, Mark, Surface, outline, ramp
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.results.helical.drawn_tooth_contact import solid_tooth
 from fegear.results.helical.tooth_contact import check_misalignment

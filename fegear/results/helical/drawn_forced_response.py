@@ -9,8 +9,10 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.dynamics.train.resolved_response import broken
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Stems, ramp
+from fegear.engine.figure.panel import Panel
 from fegear.results.helical.transmissibility import ends
 
 #: Forces and moments with their keys and units in tables, and as figures write them.

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.engine.colours import ROLES
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Curve, Item, Points, Spot, Surface, outline, polylines
+from fegear.engine.figure.panel import Panel
 from fegear.geometry.helicoid import InvoluteHelicoid
 
 if TYPE_CHECKING:

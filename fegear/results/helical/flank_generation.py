@@ -16,11 +16,14 @@ from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.case.reading import Scene
 from fegear.contact.unloaded.pair import HelicalPair
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Curve, Item, Mark, Points, Surface, outline, polylines
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack_cutter import RackCutter
 from fegear.results.helical.drawn_tooth_contact import section_figures

@@ -7,8 +7,10 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.dynamics.helical_pair.modal_indices import ModeTable
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve
+from fegear.engine.figure.panel import Panel
 
 #: Coordinates of q as bars have them.
 _NAMES = ("y", "z", "bθ_{x}", "aθ_{y}", "aθ_{z}")

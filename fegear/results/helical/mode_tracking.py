@@ -24,8 +24,10 @@ from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairMode
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, columns_of, repeated, stacked
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table

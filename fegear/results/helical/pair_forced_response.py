@@ -11,16 +11,17 @@ import numpy as np
 from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
 from fegear.case.built.helical_pair import HelicalPairInputs, helical_pair_inputs
+from fegear.case.csv_file import read_columns
 from fegear.case.pair_excitation import ExcitationPart, MeshErrorPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
-from fegear.case.text_file import read_columns
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.helical.drawn_forced_response import COMPONENTS, forces_figure, spectrum_figure
 from fegear.results.helical.transmissibility import mesh_needs, own_mesh
 from fegear.results.pair.mesh_stiffness_matrix import loaded_harmonics, mesh_stiffness_of

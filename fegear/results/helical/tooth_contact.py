@@ -12,17 +12,19 @@ from fegear.base.errors import InputError
 from fegear.case.part import at
 from fegear.contact.unloaded.manufacture import lead_angle_error_of_cut, lead_error_as_cut
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.helical.drawn_tooth_contact import tooth_contact_figures
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.unloaded.contact_ellipse import Bearing
     from fegear.contact.unloaded.pair import HelicalPair
+    from fegear.contact.unloaded.pair_contact import PairContact
     from fegear.contact.unloaded.predesign import Predesign
-    from fegear.contact.unloaded.tooth_contact import PairContact, ToothContact
+    from fegear.contact.unloaded.tooth_contact import ToothContact
 
 
 #: How far past an end of the face, over its width, an ellipse may reach without a remark.

@@ -23,11 +23,14 @@ from fegear.dynamics.helical_pair.model import COORDINATES, HelicalPairModel, Re
 from fegear.dynamics.helical_pair.transmissibility import ReducedTransmissibility, Transmissibility
 from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.helical.mode_shapes import mode_shape_figures
 from fegear.results.pair.mesh_stiffness_matrix import MeshStiffnessData, mesh_stiffness_of, needs_mesh_stiffness
 

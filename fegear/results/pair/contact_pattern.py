@@ -10,11 +10,14 @@ import numpy as np
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import HeatMap, few
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.load_distribution import flank_stage
 from fegear.results.pair.loaded_flanks import loaded_flanks

@@ -74,8 +74,8 @@ class DeformedInMeshData:
 
 
 def _deformed(asked: MeshInputs, upstream: Upstream, _work: Work) -> DeformedInMeshData:
+    from fegear.contact.plane.base_pitch import roll_positions
     from fegear.contact.plane.moved_outlines import moved_outline
-    from fegear.contact.plane.transmission_error import roll_positions
 
     found = loaded_pair(upstream, asked.name)
     e, pair = found.engagement, found.engagement.pair

@@ -12,20 +12,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.case.built.pair_surface import PairSurface
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, HeatMap, Mark, Skin
-from fegear.engine.outcome import Value
+from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.outline import tooth_outline, turned
 from fegear.geometry.pair import MEMBERS, GearPair, Member, specific_sliding
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.pair.flank_surface_data import FlankSurfaceData
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
-    from fegear.case.built.pair_surface import PairSurface
     from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.results.pair.flank_surface import FlankSurfaceData
 
 
 def over_face(values: Array, *, least: bool = False) -> Array:

@@ -22,11 +22,14 @@ from fegear.contact.surface import FrictionLaw
 from fegear.contact.tooth_loss import ToothLoss
 from fegear.engine.citation import Citation
 from fegear.engine.declared import column_of, column_over, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import GearPair
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage

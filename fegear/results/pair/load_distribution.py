@@ -16,11 +16,14 @@ from fegear.case.built.solid_influence import check_ends
 from fegear.contact.loaded_teeth import ErrorOverPitch, LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, error_column, value_of
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Curve, HeatMap, few, ramp
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.pair.flank_surface_tables import flank_pressure_figure

@@ -12,9 +12,10 @@ from fegear.base.shown import shown
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, error_column, value_of
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.load_distribution import flank_stage

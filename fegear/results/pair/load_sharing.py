@@ -8,10 +8,12 @@ from fegear.case.reading import Scene
 from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth, LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
-from fegear.engine.figure.figure import Figure, Panel
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Subject, Upstream, Work
 from fegear.engine.table import Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks

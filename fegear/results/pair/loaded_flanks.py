@@ -18,7 +18,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, Member
-from fegear.geometry.plausible import heavy_load
+from fegear.geometry.plausible_flanks import heavy_load
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.loaded_teeth import wide_pairs
@@ -91,8 +91,8 @@ def load_flanks(
     found : LoadedFlanks
         Under all loads.
     """
-    from fegear.contact.wide.lines import usual_gap
     from fegear.contact.wide.loaded import FlankPair
+    from fegear.contact.wide.tip_edges import usual_gap
 
     effects = asked.effects
     flanks = FlankPair(
@@ -111,9 +111,9 @@ def load_flanks(
 
 def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWidePair:
     from fegear.contact.wide.error import flank_error, no_estimate, with_misses
-    from fegear.contact.wide.gaps import beside_the_lines, unloaded_error
     from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
     from fegear.contact.wide.over_pitch import over_pitch
+    from fegear.contact.wide.rigid_flanks import beside_the_lines, unloaded_error
     from fegear.fem.solid.slice_laws import missed_by_slices
 
     effects = asked.effects
@@ -162,7 +162,7 @@ def _changes(sizes: tuple[float, float], stated: Stated, i: int, load: float) ->
 
 def _with_edges(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps, stated: Stated) -> tuple[float, float]:
     """What contact along tip edges changes, at no more roll positions than means over a base pitch need."""
-    from fegear.contact.wide.lines import usual_gap
+    from fegear.contact.wide.tip_edges import usual_gap
 
     edged = replace(flanks, positions=_FEW, most_gap=usual_gap(asked.pair, asked.nominal))
     found, i = edged.solve([asked.nominal], gaps), asked.loads.index(asked.nominal)

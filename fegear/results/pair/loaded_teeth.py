@@ -18,7 +18,7 @@ from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.declared import column_of, stacked
-from fegear.engine.figure.figure import Axis
+from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, few, ramp
 from fegear.engine.stage import Stage, Task, Upstream
 from fegear.geometry.pair import MEMBERS, GearPair, Member

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.loaded_teeth import HARMONICS
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve, Points
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,11 +13,14 @@ import numpy as np
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, HeatMap, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Subject, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import wide_pairs
 

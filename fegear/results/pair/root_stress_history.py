@@ -13,11 +13,13 @@ import numpy as np
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
 from fegear.engine.citation import Citation
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
-from fegear.engine.figure.figure import Figure, Panel
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import HeatMap, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS

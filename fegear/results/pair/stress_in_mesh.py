@@ -113,9 +113,9 @@ class StressInMeshData:
 
 
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:
+    from fegear.contact.plane.base_pitch import BESIDE, roll_positions
     from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
     from fegear.contact.plane.tooth_stress import with_peaks
-    from fegear.contact.plane.transmission_error import BESIDE, roll_positions
 
     found = loaded_pair(upstream, asked.name)
     e, pair = found.engagement, found.engagement.pair

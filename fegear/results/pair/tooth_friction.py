@@ -11,8 +11,10 @@ from fegear.case.built.train import friction_coefficient
 from fegear.contact.plane.pair_history import PairHistory
 from fegear.engine.citation import Citation
 from fegear.engine.declared import axis_of, column_of, column_over, columns_of, stacked, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, few, ramp
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
 from fegear.engine.table import Column, Table

@@ -18,11 +18,14 @@ from fegear.base.errors import InputError
 from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES, ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, error_column, value_of
-from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
+from fegear.engine.figure.axis import Axis, Scale
+from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.figure.items import Bars, Stems
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import (
     BASE_PITCH,

@@ -22,8 +22,10 @@ from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.dynamics.planetary.set_cycle import MeshedSet, mean_force, set_cycle
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table

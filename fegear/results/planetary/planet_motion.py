@@ -13,11 +13,14 @@ from fegear.base.shown import declared
 from fegear.case.built.planetary import pin_errors, planetary_part, set_inputs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import columns_of, drawn
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.planetary.planet_set import planetary_sets
 from fegear.results.planetary.planet_vibration import check_vibration
 

@@ -22,8 +22,10 @@ from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_over, error_column, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table

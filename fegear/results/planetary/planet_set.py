@@ -16,8 +16,10 @@ from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, columns_of, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve, Points
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage
 from fegear.engine.table import Column, Table

@@ -16,11 +16,14 @@ from fegear.case.planetary import MESHES, set_pair
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, error_column
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import loaded_pair
@@ -91,8 +94,9 @@ def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearS
 
 def _exactness(upstream: Upstream, name: str, load: float, harmonics: int) -> tuple[float, Array]:
     """Errors of a mesh's mean stiffness and of the amplitudes of its transmission error, as shares of them."""
-    from fegear.contact.plane.shifted_compliance import transmission_error_shift
-    from fegear.contact.plane.transmission_error import mean_secant_stiffness, transmission_error
+    from fegear.contact.plane.base_pitch import mean_secant_stiffness
+    from fegear.contact.plane.shifted_loads import transmission_error_shift
+    from fegear.contact.plane.transmission_error import transmission_error
 
     none = 0.0, np.zeros(harmonics)
     if Task("loaded-flanks", name) in upstream:

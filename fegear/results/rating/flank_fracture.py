@@ -18,11 +18,14 @@ from fegear.base.shown import shown
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, column_over, columns_of, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE, Exposure
 from fegear.formulas.iso6336.part5_materials import recommended
 from fegear.geometry.pair import MEMBERS, Member

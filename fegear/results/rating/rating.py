@@ -8,7 +8,7 @@ Remarks of the result ``rating``: what falls short first, then what is doubtful.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
@@ -21,6 +21,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.rating.rating_data import RatingData, RatingInputs
 from fegear.results.rating.rating_tables import (
     agma_table,
     factor_table,
@@ -42,14 +43,13 @@ from fegear.results.rating.shared_load import (
 )
 
 if TYPE_CHECKING:
-    from fegear.case.built.agma_pair import AgmaInputs
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.contact.wide.rated import Computed
     from fegear.formulas.agma.agma2101 import AgmaRating
     from fegear.formulas.iso6336.conditions import Conditions, Factor, PairRating, Replacement
     from fegear.formulas.iso6336.rated import Both, Duty
-    from fegear.formulas.iso6336.safety import Curves, SpectrumRating
+    from fegear.formulas.iso6336.safety import SpectrumRating
 
 
 #: Transverse contact ratio from which a plane pair has no point of single pair contact.
@@ -64,62 +64,6 @@ _NO_SINGLE = (
 
 #: Seconds of the formulas, and of one load on computed flanks.
 _FORMULAS, _FLANKS = 0.02, 1.0
-
-
-@dataclass(frozen=True)
-class RatingInputs:
-    """What the stage reads.
-
-    Parameters
-    ----------
-    asked : PairToRate
-    agma : AgmaInputs or None
-    computed : bool
-        Whether load distribution and root stress are computed.
-    said : tuple of str
-        What AGMA 2101 assumes, or why there is nothing of it.
-    alone : bool
-        Whether no other pair of the case is rated.
-    """
-
-    asked: PairToRate
-    agma: AgmaInputs | None
-    computed: bool
-    said: tuple[str, ...]
-    alone: bool
-
-
-@dataclass(frozen=True)
-class RatingData:
-    """What the stage finds.
-
-    Parameters
-    ----------
-    formula : PairRating
-        By ISO 6336 alone.
-    curves : Curves
-        S-N curves at the nominal speed.
-    spectrum : SpectrumRating or None
-    computed : Computed or None
-    by_computed : PairRating or None
-        With what was computed in the place of formulas.
-    spectrum_computed : SpectrumRating or None
-    agma : AgmaRating or None
-    why_not : tuple of str
-        Why something that was asked for is missing.
-    bent : (float, float) or None
-        Computed R of the pinion and the wheel of a pair with a planet, in the place of that of annex B.
-    """
-
-    formula: PairRating
-    curves: Curves
-    spectrum: SpectrumRating | None
-    computed: Computed | None
-    by_computed: PairRating | None
-    spectrum_computed: SpectrumRating | None
-    agma: AgmaRating | None
-    why_not: tuple[str, ...]
-    bent: tuple[float, float] | None = None
 
 
 def _inputs(scene: Scene, name: str) -> RatingInputs:

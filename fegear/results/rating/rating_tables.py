@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.units import from_si
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
-from fegear.engine.outcome import Value
+from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.formulas.symbols import AGMA_2101, ISO_6336
 from fegear.geometry.pair import MEMBERS, Member
 
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
     from fegear.formulas.iso6336.part6_spectrum import Bin, ServiceLife
     from fegear.formulas.iso6336.rated import Both
     from fegear.formulas.iso6336.safety import SpectrumRating
-    from fegear.results.rating.rating import RatingData
+    from fegear.results.rating.rating_data import RatingData
 
 
 #: What the formulas remark where a value of the case stands in.

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.planetary import MESHES, set_of_pair, set_pair, set_that_shares
+from fegear.case.planetary import MESHES, set_pair
+from fegear.case.set_pairs import set_of_pair, set_that_shares
 from fegear.engine.stage import Task, Upstream
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
     from fegear.results.planetary.planet_root_stress import PlanetStress
-    from fegear.results.rating.rating import RatingInputs
+    from fegear.results.rating.rating_data import RatingInputs
 
 #: Where annex B of ISO 6336-3 ends: lowest over highest stress.
 _MOST = -1.2

@@ -14,10 +14,12 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_flanks import flanks_to_load
 from fegear.case.built.pair_inputs import gear_name
-from fegear.case.design import FlankDesignPart
+from fegear.case.flank_design import FlankDesignPart
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Curve, HeatMap, Points, ramp
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, GearPair, Member
@@ -25,6 +27,7 @@ from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.relief.flank_design_tables import (
+    FlankDesignData,
     designs_table,
     keys_of,
     map_table,
@@ -38,8 +41,8 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.design.flanks.flank_design import FlankDesign, FlankDesignTask, FlankState
-    from fegear.design.flanks.forms import ReliefGrid
+    from fegear.design.flanks.flank_design import FlankDesignTask, FlankState
+    from fegear.design.flanks.grid import ReliefGrid
 
 
 #: Misalignments of a map: over the standard deviation of the scatter, or [m] without one.
@@ -66,15 +69,6 @@ class FlankDesignInputs:
     part: FlankDesignPart
     name: str
     gears: Mapping[Member, str]
-
-
-@dataclass(frozen=True)
-class FlankDesignData:
-    """A design and its pair."""
-
-    pair: GearPair
-    design: FlankDesign
-    on_shafts: bool = False
 
 
 def _part(scene: Scene) -> FlankDesignPart:
@@ -108,7 +102,7 @@ def _inputs(scene: Scene, name: str) -> FlankDesignInputs:
 
 
 def _grid(part: FlankDesignPart) -> ReliefGrid | None:
-    from fegear.design.flanks.forms import ReliefGrid
+    from fegear.design.flanks.grid import ReliefGrid
 
     if part.grid is None:
         return None
@@ -119,8 +113,8 @@ def _grid(part: FlankDesignPart) -> ReliefGrid | None:
 
 def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignTask:
     from fegear.design.flanks.flank_design import FlankDesignTask
+    from fegear.design.flanks.scatter import NOMINAL, normal_scatter
     from fegear.design.flanks.topography import FlankLoading
-    from fegear.design.flanks.trials import NOMINAL, normal_scatter
     from fegear.design.loading import LoadingFunction, Ramp
 
     length = part.length or (part.contact_ratio * pair.base_pitch if part.contact_ratio else pair.path_length)
@@ -213,7 +207,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    from fegear.design.flanks.forms import usual_grid
+    from fegear.design.flanks.grid import usual_grid
 
     part, asked = _part(scene), flanks_to_load(scene, name)
     pair = asked.pair

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,8 +10,8 @@ import numpy as np
 from fegear.base.shown import declared
 from fegear.contact.wide.lines import ContactLines
 from fegear.engine.declared import column_of, column_over, error_column, value_of
-from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
@@ -18,13 +19,21 @@ if TYPE_CHECKING:
 
     from fegear.design.flanks.flank_design import FlankDesign
     from fegear.design.flanks.forms import GroundRelief
-    from fegear.results.relief.flank_design import FlankDesignData
 
 
 #: What is stated of every relief; the last three where misalignment scatters.
 _JUDGED = (
     "peak_to_peak", "face_load_factor", "pressure", "mean_over_scatter", "most_over_scatter", "factor_over_scatter"
 )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FlankDesignData:
+    """A design and its pair."""
+
+    pair: GearPair
+    design: FlankDesign
+    on_shafts: bool = False
 
 
 def topography_table(name: str, gear: str, member: Member, share: float, data: FlankDesignData) -> Table:

@@ -17,11 +17,14 @@ from fegear.case.reading import Scene
 from fegear.design.loading import LoadingFunction, SlopeTradeOff, ToothResponse
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, column_over, columns_of, repeated, stacked, tiled, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, few, ramp
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 #: Positions on a ramp and over the path.

@@ -8,7 +8,7 @@ Figures of a designed relief: the reliefs, what they leave, and Harris maps.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,22 +16,25 @@ import numpy as np
 
 from fegear.base.errors import InputError, RangeError
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
-from fegear.case.built.pair_inputs import PairInputs, gear_name, pair_inputs
+from fegear.case.built.pair_inputs import gear_name, pair_inputs
 from fegear.case.design import DesignPart
-from fegear.case.effects import EffectsPart
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Curve, Zone
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, needs_teeth, pitch_marks
 from fegear.results.pair.root_stress_history import table_names
 from fegear.results.relief.relief_tables import (
+    ReliefInputs,
     grindable_table,
     harris_panel,
     harris_table,
@@ -73,33 +76,6 @@ class ReliefData:
     design: ReliefDesign
     neglected: Mapping[str, tuple[str, ...]]
     points: Mapping[Member, ReliefTable]
-
-
-@dataclass(frozen=True)
-class ReliefInputs:
-    """What the design of a pair's relief depends on.
-
-    Parameters
-    ----------
-    part : DesignPart
-    asked : PairInputs
-    tolerance : float
-        That neglected effects are compared with.
-    effects : EffectsPart
-        All of the case, for the remedies.
-    neglected : bool
-        Whether the sizes of effects that are off are estimated.
-    labels, gears : mapping of str to str
-        Names of the tables and of the gears by member.
-    """
-
-    part: DesignPart
-    asked: PairInputs
-    tolerance: float
-    effects: EffectsPart = field(compare=False)
-    neglected: bool
-    labels: Mapping[Member, str] = field(compare=False)
-    gears: Mapping[Member, str] = field(compare=False)
 
 
 def design_part(scene: Scene) -> DesignPart:
@@ -164,7 +140,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
 
 
 def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData:
-    from fegear.design.minimum_excitation import OilFilm
+    from fegear.design.oil_film import OilFilm
     from fegear.design.relief_design import DesignTask, design_relief, relief_at
     from fegear.design.root_stress_loading import Allowed
 

@@ -10,11 +10,14 @@ import numpy as np
 from fegear.base.shown import declared
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, columns_on_grid, drawn, stacked, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.relief.relief import ReliefData, design_pairs, design_part, relief_stage
@@ -26,7 +29,8 @@ if TYPE_CHECKING:
     from fegear.case.design import ChartPart, RobustnessPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.design.charts import Metric, ReliefChart, Robustness
+    from fegear.design.charts import Metric, ReliefChart
+    from fegear.design.held_relief import Robustness
     from fegear.design.tip_relief.grindable import TipReliefPair
 
 
@@ -153,7 +157,7 @@ def _robustness_inputs(scene: Scene, name: str) -> RobustnessInputs:
 
 
 def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work) -> RobustnessData:
-    from fegear.design.charts import robustness
+    from fegear.design.held_relief import robustness
 
     designed: ReliefData = next(found for task, found in upstream.items() if task.stage == "relief")
     asked, design = inputs.part, designed.design

@@ -11,11 +11,14 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, column_over, columns_of, repeated, stacked
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, ramp
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.relief.relief import design_part, relief_stage
 

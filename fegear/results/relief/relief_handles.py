@@ -14,8 +14,10 @@ from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.reading import Scene
 from fegear.case.relief import STARTS as STARTS  # noqa: PLC0414  (for the window)
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points
+from fegear.engine.figure.panel import Panel
 from fegear.geometry.pair import MEMBERS, Member, active_profile
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, Relief
 from fegear.results.gear.drawing import roll_marks

@@ -6,16 +6,22 @@ Harris maps: transmission error over the mesh cycle for a family of loads, of a 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fegear.case.built.pair_inputs import PairInputs
+from fegear.case.design import DesignPart
+from fegear.case.effects import EffectsPart
 from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth
 from fegear.engine.declared import column_of, column_over, columns_of, error_column, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Item, Points
-from fegear.engine.outcome import Value
+from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.pair.loaded_teeth import BASE_PITCH, drawn_loads, pitch_marks
 
@@ -29,9 +35,34 @@ if TYPE_CHECKING:
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.root_stress_loading import StressOptimum
     from fegear.design.tip_relief.grindable import TipReliefPair
-    from fegear.geometry.pair import GearPair
     from fegear.geometry.relief import Shape
-    from fegear.results.relief.relief import ReliefInputs
+
+
+@dataclass(frozen=True)
+class ReliefInputs:
+    """What the design of a pair's relief depends on.
+
+    Parameters
+    ----------
+    part : DesignPart
+    asked : PairInputs
+    tolerance : float
+        That neglected effects are compared with.
+    effects : EffectsPart
+        All of the case, for the remedies.
+    neglected : bool
+        Whether the sizes of effects that are off are estimated.
+    labels, gears : mapping of str to str
+        Names of the tables and of the gears by member.
+    """
+
+    part: DesignPart
+    asked: PairInputs
+    tolerance: float
+    effects: EffectsPart = field(compare=False)
+    neglected: bool
+    labels: Mapping[Member, str] = field(compare=False)
+    gears: Mapping[Member, str] = field(compare=False)
 
 
 def least_stress_table(name: str, best: StressOptimum, load: float) -> tuple[Table, tuple[Value, ...]]:

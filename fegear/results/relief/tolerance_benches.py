@@ -9,14 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.flank_errors import (
-    chosen_pair,
-    limits_of,
-    refuse_jammed,
-    refuse_no_tolerance,
-    tolerance_part,
-    untold,
-)
 from fegear.case.built.loaded_flanks import FlanksToLoad, flanks_to_load
 from fegear.case.built.pair_inputs import (
     FINITE_ELEMENTS,
@@ -27,6 +19,14 @@ from fegear.case.built.pair_inputs import (
     root_stress_source,
 )
 from fegear.case.built.solid_influence import solid_gear_to_solve
+from fegear.case.built.tolerances import (
+    chosen_pair,
+    limits_of,
+    refuse_jammed,
+    refuse_no_tolerance,
+    tolerance_part,
+    untold,
+)
 from fegear.case.built.tooth_influence import gear_to_solve
 from fegear.engine.stage import Forecast, Task, Upstream
 from fegear.geometry.pair import MEMBERS
@@ -38,7 +38,8 @@ from fegear.results.pair.root_stress_history import needs_sources, stress_source
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.studies import TolerancePart
-    from fegear.design.robustness.deviated_pair import Bench, DrawBench, FlankBench
+    from fegear.design.robustness.deviated_flanks import FlankBench
+    from fegear.design.robustness.deviated_pair import Bench, DrawBench
     from fegear.design.robustness.tolerance_draws import Kind, Limits
 
 #: Kinds that are drawn of plane teeth, and of teeth with a width, unless the case names others.
@@ -163,7 +164,7 @@ def draw_inputs(scene: Scene, name: str) -> DrawInputs:
 
 def set_up(asked: DrawInputs, upstream: Upstream) -> DrawBench:
     """The pair set up for draws, at those centre distances that they need."""
-    from fegear.design.robustness.deviated_pair import FlankBenches
+    from fegear.design.robustness.deviated_flanks import FlankBenches
 
     if not asked.wide:
         return _plane_bench(asked, upstream)
@@ -192,7 +193,7 @@ def _plane_bench(asked: DrawInputs, upstream: Upstream) -> Bench:
 def _wide_bench(inputs: DrawInputs, upstream: Upstream, moved: float = 0.0) -> FlankBench:
     """The pair set up for draws, at a centre distance that is off by `moved` [m]."""
     from fegear.contact.wide.root_stress import rooted_lines
-    from fegear.design.robustness.deviated_pair import FlankBench
+    from fegear.design.robustness.deviated_flanks import FlankBench
 
     loaded, none = loaded_flanks(upstream, inputs.name), np.empty(0)
     flanks, known = loaded.flanks, loaded.known

@@ -15,8 +15,10 @@ import numpy as np
 from fegear.base.errors import FegearError, InputError
 from fegear.base.units import from_si
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Upstream, Work
 from fegear.results.forecasts import HERTZ
@@ -35,6 +37,7 @@ from fegear.results.relief.tolerance_tables import (
     OWN,
     ROBUST,
     SHOWN,
+    ToleranceData,
     influence_table,
     leading_told,
     nominal,
@@ -79,38 +82,6 @@ class Chunk:
     relief: tuple[float, ...]
     bench: DrawBench
     deviations: Deviations
-
-
-@dataclass(frozen=True)
-class ToleranceData:
-    """What came of the draws.
-
-    Parameters
-    ----------
-    outcomes : tuple of str
-        Names of the numbers of a draw.
-    deviations : Deviations
-    values : mapping of str to ndarray, shape (D, outcomes)
-        By the state of relief; NaN for draws without a result.
-    nominal : mapping of str to ndarray, shape (outcomes,)
-        Without deviations.
-    reasons : mapping of int to str
-        Why draws have no result.
-    exact : float
-        Peak-to-peak transmission error of the nominal pair with points at its jumps [m]; NaN where it is not known.
-    relief : RobustRelief or None
-    nominal_relief : tuple of floats
-        Numbers of the nominal optimum, see `RobustRelief`; empty where none is asked for.
-    """
-
-    outcomes: tuple[str, ...]
-    deviations: Deviations
-    values: Mapping[str, Array]
-    nominal: Mapping[str, Array]
-    reasons: Mapping[int, str]
-    exact: float
-    relief: RobustRelief | None
-    nominal_relief: tuple[float, ...]
 
 
 def compute_chunk(chunk: Chunk) -> dict[str, object]:

@@ -5,21 +5,25 @@ What draws inside tolerances tell in sentences: what a percentile is worth, what
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS
+from fegear.results.relief.tolerance_benches import (
+    DrawInputs,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from fegear.base.arrays import Array
     from fegear.design.robustness.draw_statistics import Influence, Percentile
-    from fegear.results.relief.tolerance_benches import DrawInputs
-    from fegear.results.relief.tolerance_robustness import ToleranceData
+    from fegear.design.robustness.tolerance_draws import Deviations
+    from fegear.design.tip_relief.robust import RobustRelief
 
 
 #: How states of relief are called, and their columns' endings.
@@ -31,6 +35,38 @@ _ENDING = {OWN: "", NOMINAL: "_nominal_best", ROBUST: "_robust_best"}
 
 #: Percentiles that are reported.
 PERCENTS = (5.0, 50.0, 95.0)
+
+
+@dataclass(frozen=True)
+class ToleranceData:
+    """What came of the draws.
+
+    Parameters
+    ----------
+    outcomes : tuple of str
+        Names of the numbers of a draw.
+    deviations : Deviations
+    values : mapping of str to ndarray, shape (D, outcomes)
+        By the state of relief; NaN for draws without a result.
+    nominal : mapping of str to ndarray, shape (outcomes,)
+        Without deviations.
+    reasons : mapping of int to str
+        Why draws have no result.
+    exact : float
+        Peak-to-peak transmission error of the nominal pair with points at its jumps [m]; NaN where it is not known.
+    relief : RobustRelief or None
+    nominal_relief : tuple of floats
+        Numbers of the nominal optimum, see `RobustRelief`; empty where none is asked for.
+    """
+
+    outcomes: tuple[str, ...]
+    deviations: Deviations
+    values: Mapping[str, Array]
+    nominal: Mapping[str, Array]
+    reasons: Mapping[int, str]
+    exact: float
+    relief: RobustRelief | None
+    nominal_relief: tuple[float, ...]
 
 
 class Shown(NamedTuple):

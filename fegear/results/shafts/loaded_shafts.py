@@ -9,8 +9,8 @@ from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bodies
 from fegear.case.effects import WIDE_EFFECTS
-from fegear.contact.wide.gaps import RIGID
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
+from fegear.contact.wide.shaft_gaps import RIGID
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task

@@ -12,11 +12,13 @@ from fegear.case.reading import Scene
 from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, stacked, value_of
-from fegear.engine.figure.figure import Figure, Panel
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
 from fegear.shafts.gearbox import CAUSES, MeshMisalignment, MeshState

@@ -9,7 +9,8 @@ import numpy as np
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, columns_of, curve_of, stacked
-from fegear.engine.figure.figure import Figure, Panel
+from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage
 from fegear.engine.table import Column, Table

@@ -10,7 +10,6 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError, InputError
-from fegear.base.shown import shown
 from fegear.case.built.pair_inputs import PairInputs, pair_inputs
 from fegear.case.built.tooth_influence import GearToSolve, gear_to_solve
 from fegear.case.built.train import (
@@ -25,7 +24,7 @@ from fegear.case.built.train import (
 from fegear.case.dynamics import DesignChartPart
 from fegear.case.reading import Scene
 from fegear.contact.plane.engagement import Engagement
-from fegear.dynamics.train.dynamic_factor import FactorLine, factor_between, factor_line
+from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
@@ -34,7 +33,14 @@ from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import Shape
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import loaded_pair
-from fegear.results.train.design_chart_tables import chart_tables, chart_values, design_chart_figures, line_remark
+from fegear.results.train.design_chart_tables import (
+    DesignChartData,
+    UnequalRelief,
+    chart_tables,
+    chart_values,
+    design_chart_figures,
+    line_remark,
+)
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_speeds, own_meshes, the_train
 from fegear.results.train.motion import check_motion
 
@@ -42,8 +48,6 @@ from fegear.results.train.motion import check_motion
 HARMONICS = 4
 #: Motions that are found here sooner than other processes start.
 _FEW = 300
-#: Largest factor over the least of an amount at which a length is as good as the best: its optimum is flat.
-_NEARLY = 1.01
 
 
 @dataclass(frozen=True)
@@ -89,71 +93,6 @@ class Trial:
     amounts: tuple[float, float]
     length: float
     delta: float
-
-
-@dataclass(frozen=True)
-class UnequalRelief:
-    """A relief of its own on each gear; nan where there is no result, and the reason for that."""
-
-    driver: float = shown("", "amount on the driver over Delta")
-    driven: float = shown("", "amount on the driven gear over Delta")
-    length: float = shown("", "L_n of both")
-    dynamic_factor: float = shown("", "largest over the speeds")
-    speed: float = shown("rpm", "at which the dynamic factor is largest")
-    effective_error: float = shown("um", "A_e of the static transmission error")
-    between: float = shown("", "foretold from A_e between both amounts on both gears (TM-89901, Fig. 11)")
-    reason: str = shown("", "why there is no result", name="failure", default="")
-
-
-@dataclass(frozen=True)
-class DesignChartData:
-    """The chart; arrays of shape (amounts, lengths), nan where a point has no result.
-
-    Harmonics A_1 to A_4 have the shape (4, amounts, lengths); reasons have the last axis fastest.
-    """
-
-    amounts: Array = shown("", "of tip relief over Delta", name="amount")
-    lengths: Array = shown("", "L_n, 1 from the tip to the HPSTC", name="length", label="length of relief L_{n}")
-    dynamic_factor: Array = shown("", "largest over the speeds", label="largest dynamic factor")
-    effective_error: Array = shown("um", "A_e of the static transmission error", label="effective error A_{e}")
-    speed: Array = shown("rpm", "at which the dynamic factor is largest")
-    contact_loss: Array = shown("", "largest over the speeds", name="contact_loss_fraction")
-    unsteady: Array = shown("", "how many speeds have no repeating motion", name="unsteady_speeds")
-    harmonics: Array = shown("um", "of the static transmission error, 0-peak", label="amplitude, 0-peak")
-    reasons: tuple[str, ...] = shown("", "why there is no result", name="failure")
-    unequal: tuple[UnequalRelief, ...] = shown("", "reliefs of their own on each gear")
-    line: FactorLine | None = shown("", "of the dynamic factor over A_e, through all points")
-    unmodified: float = shown("", "largest dynamic factor of perfect involutes")
-    unmodified_error: float = shown("um", "A_e of perfect involutes")
-    delta: float = shown("um", "Welbourn's Delta: deflection at the HPSTC under the mean force")
-    speed_of: str = shown("", "body that speeds refer to")
-
-    def best_for_all(self) -> tuple[float, float]:
-        """Length at which the worst of all amounts is least, and that factor; straight between the chart's lengths.
-
-        Nan where an amount has no results.
-        """
-        lengths = np.unique(np.concatenate([self.lengths, np.linspace(self.lengths[0], self.lengths[-1], 2001)]))
-        worst = np.max([np.interp(lengths, self.lengths, row) for row in self.dynamic_factor], axis=0)
-        k = int(np.argmin(worst))
-        return float(lengths[k]), float(worst[k])
-
-    def flat_range(self, amount: int) -> tuple[float, float]:
-        """Lengths around the best of one amount between which no factor of the chart is 1 % above the least.
-
-        Parameters
-        ----------
-        amount : int
-            Index of an amount with at least one result.
-        """
-        row = self.dynamic_factor[amount]
-        k = int(np.nanargmin(row))
-        off = np.flatnonzero(~(row <= _NEARLY * row[k]))
-        first, last = off[off < k], off[off > k]
-        return (
-            float(self.lengths[first[-1] + 1 if first.size else 0]),
-            float(self.lengths[last[0] - 1 if last.size else -1]),
-        )
 
 
 def chart_trial(trial: Trial) -> dict[str, float]:

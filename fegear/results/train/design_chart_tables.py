@@ -6,25 +6,98 @@ Figures of a design chart of tip relief: TM-89901's Figs. 7 to 11.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.base.shown import shown
+from fegear.dynamics.train.dynamic_factor import FactorLine
 from fegear.engine.declared import axis_of, column_of, column_over, columns_on_grid, drawn, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import Curve, Mark, Points
-from fegear.engine.outcome import Value
+from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.dynamics.train.dynamic_factor import FactorLine
-    from fegear.results.train.design_chart import DesignChartData
 
 
 #: What was computed at every point of the chart, in the order of its table.
 _CELLS = ("dynamic_factor", "speed", "effective_error", "contact_loss", "unsteady")
+
+
+#: Largest factor over the least of an amount at which a length is as good as the best: its optimum is flat.
+_NEARLY = 1.01
+
+
+@dataclass(frozen=True)
+class DesignChartData:
+    """The chart; arrays of shape (amounts, lengths), nan where a point has no result.
+
+    Harmonics A_1 to A_4 have the shape (4, amounts, lengths); reasons have the last axis fastest.
+    """
+
+    amounts: Array = shown("", "of tip relief over Delta", name="amount")
+    lengths: Array = shown("", "L_n, 1 from the tip to the HPSTC", name="length", label="length of relief L_{n}")
+    dynamic_factor: Array = shown("", "largest over the speeds", label="largest dynamic factor")
+    effective_error: Array = shown("um", "A_e of the static transmission error", label="effective error A_{e}")
+    speed: Array = shown("rpm", "at which the dynamic factor is largest")
+    contact_loss: Array = shown("", "largest over the speeds", name="contact_loss_fraction")
+    unsteady: Array = shown("", "how many speeds have no repeating motion", name="unsteady_speeds")
+    harmonics: Array = shown("um", "of the static transmission error, 0-peak", label="amplitude, 0-peak")
+    reasons: tuple[str, ...] = shown("", "why there is no result", name="failure")
+    unequal: tuple[UnequalRelief, ...] = shown("", "reliefs of their own on each gear")
+    line: FactorLine | None = shown("", "of the dynamic factor over A_e, through all points")
+    unmodified: float = shown("", "largest dynamic factor of perfect involutes")
+    unmodified_error: float = shown("um", "A_e of perfect involutes")
+    delta: float = shown("um", "Welbourn's Delta: deflection at the HPSTC under the mean force")
+    speed_of: str = shown("", "body that speeds refer to")
+
+    def best_for_all(self) -> tuple[float, float]:
+        """Length at which the worst of all amounts is least, and that factor; straight between the chart's lengths.
+
+        Nan where an amount has no results.
+        """
+        lengths = np.unique(np.concatenate([self.lengths, np.linspace(self.lengths[0], self.lengths[-1], 2001)]))
+        worst = np.max([np.interp(lengths, self.lengths, row) for row in self.dynamic_factor], axis=0)
+        k = int(np.argmin(worst))
+        return float(lengths[k]), float(worst[k])
+
+    def flat_range(self, amount: int) -> tuple[float, float]:
+        """Lengths around the best of one amount between which no factor of the chart is 1 % above the least.
+
+        Parameters
+        ----------
+        amount : int
+            Index of an amount with at least one result.
+        """
+        row = self.dynamic_factor[amount]
+        k = int(np.nanargmin(row))
+        off = np.flatnonzero(~(row <= _NEARLY * row[k]))
+        first, last = off[off < k], off[off > k]
+        return (
+            float(self.lengths[first[-1] + 1 if first.size else 0]),
+            float(self.lengths[last[0] - 1 if last.size else -1]),
+        )
+
+
+@dataclass(frozen=True)
+class UnequalRelief:
+    """A relief of its own on each gear; nan where there is no result, and the reason for that."""
+
+    driver: float = shown("", "amount on the driver over Delta")
+    driven: float = shown("", "amount on the driven gear over Delta")
+    length: float = shown("", "L_n of both")
+    dynamic_factor: float = shown("", "largest over the speeds")
+    speed: float = shown("rpm", "at which the dynamic factor is largest")
+    effective_error: float = shown("um", "A_e of the static transmission error")
+    between: float = shown("", "foretold from A_e between both amounts on both gears (TM-89901, Fig. 11)")
+    reason: str = shown("", "why there is no result", name="failure", default="")
 
 
 def _with_body(columns: Iterable[Column], body: str) -> tuple[Column, ...]:

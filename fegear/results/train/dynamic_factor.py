@@ -12,11 +12,14 @@ from fegear.base.errors import InputError
 from fegear.case.built.train import MotionInputs, backlash_of, motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, drawn, error_column
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
 
 if TYPE_CHECKING:

@@ -13,11 +13,14 @@ from fegear.base.arrays import Array, Complex
 from fegear.case.reading import Scene
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_train, the_train
 

@@ -14,11 +14,13 @@ from fegear.dynamics.train.single_tooth import ToothRootStress
 from fegear.dynamics.train.tooth_force import ToothForce
 from fegear.engine.citation import Citation
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn
-from fegear.engine.figure.figure import Figure, Panel
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Table
+from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.gear.drawing import path_marks

@@ -18,8 +18,9 @@ from fegear.case.built.train import TrainInputs, assemble, build_train, check_tr
 from fegear.dynamics.train.gear_train import GearTrain, a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import loaded_pair

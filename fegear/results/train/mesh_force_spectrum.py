@@ -10,11 +10,14 @@ import numpy as np
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, repeated
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Points, Stems
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, gear_train, meshes, needs_one_speed, needs_train, pull_remarks
 from fegear.results.train.ripple_spectrum import (

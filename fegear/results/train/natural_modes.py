@@ -13,8 +13,10 @@ from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
 from fegear.engine.declared import column_of, value_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
+from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Reads, Stage, Upstream, Work
 from fegear.engine.table import Column, Table

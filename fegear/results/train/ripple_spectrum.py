@@ -9,8 +9,8 @@ import numpy as np
 
 from fegear.engine.declared import column_of
 from fegear.engine.figure.items import Points, Stems
-from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.train.gear_train import RPM
 
 if TYPE_CHECKING:

@@ -9,11 +9,14 @@ import numpy as np
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, columns_of, drawn
-from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
+from fegear.engine.figure.axis import Axis, Scale
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
 from fegear.engine.table import Table
+from fegear.engine.value import Value
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.train.gear_train import (
     RPM,

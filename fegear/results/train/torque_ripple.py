@@ -14,11 +14,14 @@ import numpy as np
 from fegear.case.built.train import TrainInputs, train_inputs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, Points
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.figure.panel import Panel
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
+from fegear.engine.value import Value
 from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, the_train
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fegear.case.schema import flat, meaning_of
-from fegear.engine.outcome import Value
+from fegear.case.known_keys import flat, meaning_of
 from fegear.engine.run import Results
 from fegear.engine.table import Table
+from fegear.engine.value import Value
 from fegear.studies.comparison.joined import Joined, join
 
 #: Columns of a table on the terminal.

@@ -16,7 +16,7 @@ from fegear.case.reading import Scene
 from fegear.case.train import TrainPart
 from fegear.results.gear.load_positions import contact_half_width, load_radii
 from fegear.results.pair.loaded_teeth import plane_pairs
-from fegear.studies.cost.answers import OF_FLANKS, OF_GEAR, Quantity
+from fegear.studies.cost.quantities import OF_FLANKS, OF_GEAR, Quantity
 
 #: Quantities that each wanted result stands for.
 _OF_RESULT = {

@@ -25,16 +25,15 @@ from fegear.results.gear.load_positions import face_positions
 from fegear.studies.cost.answers import (
     HARMONICS,
     FiniteElements,
-    Quantity,
     Source,
     answer,
     factor_at,
     largest_force,
     loaded,
-    miss,
     speed_looked_at,
     train_of,
 )
+from fegear.studies.cost.quantities import Quantity, miss
 from fegear.studies.cost.result import Knob, make_knob, timed
 
 if TYPE_CHECKING:

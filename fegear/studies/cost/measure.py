@@ -31,16 +31,14 @@ from fegear.studies.cost.answers import (
     CaseTable,
     ComplianceFormula,
     FiniteElements,
-    Miss,
-    Quantity,
     Source,
     StressFormula,
     answer,
-    miss,
     pair_compliance,
     without_neighbours,
 )
 from fegear.studies.cost.ladder import Configuration, FlankConfiguration, Ladder
+from fegear.studies.cost.quantities import Miss, Quantity, miss
 from fegear.studies.cost.result import NOTHING, Knob, Measured, Seconds, timed
 
 if TYPE_CHECKING:

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.base.arrays import Array
-    from fegear.studies.cost.answers import Miss, Quantity
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.ladder import Configuration
+    from fegear.studies.cost.quantities import Miss, Quantity
 
 
 #: Tolerances for which the cheapest settings are reported.
@@ -231,7 +231,7 @@ class CostResults:
 
     def at_once(self) -> tuple[Measured, ...]:
         """Configurations that answer every quantity: the worst error of any, the gears solved once."""
-        from fegear.studies.cost.answers import Miss
+        from fegear.studies.cost.quantities import Miss
 
         names, found = [q.name for q in self.quantities], []
         for configuration in dict.fromkeys(row.configuration for row in self.rows):

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.units import from_si
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Item, Mark, Points, Zone
+from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
 from fegear.studies.cost.ladder import FlankConfiguration
 from fegear.studies.cost.result import ALL, TOLERANCES, CostResults, Measured
@@ -20,7 +22,7 @@ from fegear.studies.cost.result import ALL, TOLERANCES, CostResults, Measured
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from fegear.studies.cost.answers import Quantity
+    from fegear.studies.cost.quantities import Quantity
 
 
 def cost_table(results: CostResults) -> Table:

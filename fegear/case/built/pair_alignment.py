@@ -1,0 +1,78 @@
+"""What K_Hbeta of ISO 6336-1 asks of a case: the pinion's shaft, what is done to the flanks, the contact pattern."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fegear.base.errors import InputError
+from fegear.case.built.shafts import gearbox_of, on_shafts
+from fegear.case.operation import HelixModification
+from fegear.case.reading import Scene
+from fegear.contact.wide.on_shafts import gaps_of_even_loads
+from fegear.formulas.iso1328 import flank_tolerances
+from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
+from fegear.shafts.mesh import straight_slope
+
+#: The class whose helix slope a favourable contact pattern takes off.
+_CLASS_5 = 5
+
+
+def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str]) -> Alignment:
+    """What K_Hbeta by method C asks for; `gears` are pinion and wheel, what had to be assumed is `said`."""
+    part = scene.case.pair[name]
+    shafts, given = part.shafts, part.operation.face_load_factor
+    if given is not None:
+        return Alignment(face_load_factor=given)
+    modification = (shafts.modification if shafts else None) or _modification(scene, gears, said)
+    if shafts is None and on_shafts(scene, name):
+        return Alignment(modification=modification, computed=_of_computed_shafts(scene, name))
+    if shafts is None:
+        said.append(
+            f"Pair {name}: no shafts were given; K_Hbeta of ISO 6336 knows the misalignment from manufacture alone "
+            "(f_sh = 0)."
+        )
+        return Alignment(deformation=0.0, modification=modification)
+    shaft = None
+    if shafts.arrangement and shafts.bearing_span and shafts.diameter:
+        shaft = PinionShaft(
+            shafts.arrangement, shafts.bearing_span, shafts.offset, shafts.diameter, shafts.power_share
+        )  # fmt: skip
+    slope = None
+    if shafts.contact_pattern == "favourable":
+        try:
+            slope = max(
+                flank_tolerances(_CLASS_5, 2.0 * g.pitch_radius, g.module, g.face_width).rounded.helix_slope
+                for g in (scene.gears[gear] for gear in gears)
+            )
+        except InputError as error:
+            rule = f"takes off the helix slope of class 5, which a gear of {error.key} = {error.value} has none of"
+            key, remedy = f"pair.{name}.shafts.contact_pattern", "leave it out, or give face_load_factor (operation)"
+            raise InputError(key, shafts.contact_pattern, rule, remedy) from None
+    return Alignment(shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope)
+
+
+def _of_computed_shafts(scene: Scene, name: str) -> float:
+    """f_sh over F_m/b: straight part of the gap that the shafts open under loads spread evenly over the faces."""
+    pair = scene.pairs[name]
+    shafts = gaps_of_even_loads(gearbox_of(scene), name)
+    if not shafts.given:
+        return 0.0
+    tangential = pair.tangential_load(float(shafts.load[-1]))
+    slope = float(straight_slope(shafts.height, shafts.gap[-1, 0, :, None])[0])
+    return abs(slope) * pair.face_width**2 / tangential
+
+
+def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixModification:
+    """What lead of the gears makes of the flanks, in the rows of the standard's table."""
+    leads = [lead for gear in gears if (lead := scene.case.gear[gear].lead) is not None]
+    if not leads:
+        return "none"
+    if not scene.case.effects.relief:
+        said.append("The gears have a lead modification, but effects.relief is off: K_Hbeta of ISO 6336 has none.")
+        return "none"
+    crowned, sloped = any(lead.crowning for lead in leads), any(lead.slope for lead in leads)
+    if sloped:
+        return "helix corrected and crowned" if crowned else "helix corrected"
+    if crowned:
+        return "crowned for manufacture"
+    return "end relief" if any(lead.end_relief for lead in leads) else "none"

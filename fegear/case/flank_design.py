@@ -1,0 +1,136 @@
+"""``[flank_design]``: relief of loaded flanks that is to be found, in two dimensions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.design import ZoneCentre, ZoneLength, ZoneRatio
+from fegear.case.part import (
+    Length,
+    LengthOrZero,
+    Number,
+    Part,
+    PositiveForce,
+    PositiveLength,
+    PositiveNumber,
+    refuse,
+    refuse_more,
+)
+
+Family = Literal["profile", "crowning-and-end-relief", "lead", "profile-and-lead", "profile-lead-and-bias"]
+
+#: Combinations that a grid may have.
+_MOST = 200_000
+
+
+def _all_families() -> list[Family]:
+    return ["profile", "crowning-and-end-relief", "lead", "profile-and-lead", "profile-lead-and-bias"]
+
+
+class FlankGridPart(Part):
+    """``grid = { tip_amounts, tip_lengths, crownings, end_amounts, end_lengths, slopes, biases }``: what is tried.
+
+    Zero is always among the amounts; a list that is left out stays at nothing.
+    """
+
+    tip_amounts: list[PositiveLength] = Field(default_factory=list, description="Amounts of tip relief.")
+    tip_lengths: list[PositiveLength] = Field(
+        default_factory=list, description="Lengths of tip relief along the line of action."
+    )
+    crownings: list[Length] = Field(default_factory=list, description="Amounts of lead crowning.")
+    end_amounts: list[Length] = Field(default_factory=list, description="Amounts of relief at the ends of the face.")
+    end_lengths: list[PositiveLength] = Field(
+        default_factory=list, description="Lengths of relief at the ends of the face."
+    )
+    slopes: list[Length] = Field(default_factory=list, description="Helix slopes over the face.")
+    biases: list[Length] = Field(default_factory=list, description="Amounts of bias.")
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        for amounts, lengths in (("tip_amounts", "tip_lengths"), ("end_amounts", "end_lengths")):
+            if bool(getattr(self, amounts)) != bool(getattr(self, lengths)):
+                raise refuse(f"needs {lengths} with it, and these need it", "give both or neither", key=amounts)
+        tips = 1 + len(self.tip_amounts) * len(self.tip_lengths)
+        ends = 1 + len(self.end_amounts) * len(self.end_lengths)
+        others = [1 + len(values) for values in (self.crownings, self.slopes, self.biases)]
+        refuse_more(_MOST, "combinations", tips, tips, ends, *others)
+        return self
+
+
+class ScatterPart(Part):
+    """``scatter = { over_face, levels }``: standard deviation of the misalignment, and levels that stand for it."""
+
+    over_face: LengthOrZero = Field(description="Standard deviation of the misalignment over the face.")
+    levels: Annotated[int, Field(ge=2, le=9)] = Field(
+        default=3, description="Levels (of Gauss and Hermite) that stand for the scatter."
+    )
+
+
+class FlankMapPart(Part):
+    """``map = { over_face, load_factors }``: misalignments and loads over the design load that are mapped."""
+
+    over_face: Annotated[list[Length], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Misalignments that are mapped; without it to two deviations of the scatter, or 10 um.",
+    )
+    load_factors: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
+        default_factory=lambda: [0.25, 0.5, 0.75, 1.0, 1.25], description="Loads over the design load that are mapped."
+    )
+
+    @model_validator(mode="after")
+    def _feasible(self) -> Self:
+        refuse_more(2_000, "states to map", len(self.over_face or ()), len(self.load_factors))
+        return self
+
+
+class FlankDesignPart(Part):
+    """Which pair's flanks are to be relieved, for which load, how teeth are to share it, and what can be ground."""
+
+    pair: str | None = Field(default=None, description="Which pair; without it the only one with a width.")
+    load: PositiveForce | None = Field(default=None, description="Design load; without it the pair's nominal load.")
+    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Loads over which the reliefs to grind are chosen: the worst of them counts, each transmission "
+        "error in proportion to its load; without it the design load.",
+    )
+    length: ZoneLength = None
+    contact_ratio: ZoneRatio = None
+    centre: ZoneCentre = None
+    slope: Annotated[Number, Field(ge=0.0, le=2.0)] = Field(
+        default=0.0, description="Slope s of the load at contact initiation."
+    )
+    end_length: LengthOrZero = Field(
+        default=0.0, description="Length at both ends of the face over which the design load falls to nothing."
+    )
+    gear: Literal["driver", "driven", "both"] = Field(
+        default="driver", description="Which gear gets the exact topography, or both by halves."
+    )
+    positions: Annotated[int, Field(ge=8, le=256)] = Field(
+        default=24, description="Roll positions over one base pitch that the design stands on."
+    )
+    families: Annotated[list[Family], Field(min_length=1)] = Field(
+        default_factory=_all_families,
+        description="What can be ground: tip reliefs, crowning and end relief, helix slope, bias.",
+    )
+    grid: FlankGridPart | None = Field(
+        default=None,
+        description="Reliefs to grind that are tried, all combinations; without it they follow from the depth of the "
+        "exact topography.",
+    )
+    largest_face_load_factor: Annotated[Number, Field(gt=1.0)] | None = Field(
+        default=None,
+        description="K_Hbeta that the reliefs to grind must keep to, at all loads and every level of the scatter; "
+        "without it there is no limit.",
+    )
+    scatter: ScatterPart | None = Field(default=None, description="How much the misalignment scatters.")
+    map: FlankMapPart = Field(
+        default_factory=FlankMapPart, description="Misalignments and loads over which the chosen relief is mapped."
+    )
+
+    @model_validator(mode="after")
+    def _one_choice(self) -> Self:
+        if self.length is not None and self.contact_ratio is not None:
+            raise refuse("contradicts length", "give either length or contact_ratio", key="contact_ratio")
+        return self

@@ -1,0 +1,77 @@
+"""Names by which the parts of a case refer to each other: gears, pairs, bodies and meshes that must be there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.case.nearest import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Mapping
+
+    from fegear.case.model import Case
+    from fegear.case.train import TrainPart
+
+
+def check_references(case: Case, built: Mapping[str, Collection[str]]) -> None:
+    """Refuse names that nothing in the case has, whether or not a wanted result reads them.
+
+    Parameters
+    ----------
+    case : Case
+    built : mapping of str to collection of str
+        Names of its gears, spur gears, pairs and spur pairs, by what they are called in messages.
+
+    Raises
+    ------
+    InputError
+        With the nearest name.
+    """
+    train = case.train
+    known = {**built, "body": train.body if train else (), "mesh": train.mesh if train else ()}
+    for key, name, kind in _references(case):
+        if name is not None and name not in known[kind]:
+            raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known[kind]))
+
+
+def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
+    """Key, name and kind of everything that is referred to."""
+    yield "stiffness.gear", case.stiffness.gear, "gear"
+    yield "stiffness.pair", case.stiffness.pair, "pair"
+    yield "cost.gear", case.cost.gear, "spur gear"
+    yield "cost.pair", case.cost.pair, "pair"
+    if case.study is not None:
+        yield "study.gear", case.study.gear, "spur gear"
+    if case.design is not None:
+        yield "design.pair", case.design.pair, "spur pair"
+    if case.loading is not None:
+        yield "loading.pair", case.loading.pair, "spur pair"
+    for name, part in case.transmissibility.items():
+        error = part.excitation.transmission_error if part.excitation else None
+        key = f"transmissibility.{name}.excitation.transmission_error.pair"
+        yield key, error.pair if error else None, "pair"
+        yield f"transmissibility.{name}.mesh.pair", part.mesh.pair, "pair"
+    if case.train is not None:
+        yield from _of_train(case.train)
+        dynamics = case.dynamics
+        yield "dynamics.speed_of", dynamics.speed_of, "body"
+        yield "dynamics.loss_taken_by", dynamics.loss_taken_by, "body"
+        yield "dynamics.chart.mesh", dynamics.chart.mesh if dynamics.chart else None, "mesh"
+
+
+def _of_train(part: TrainPart) -> Iterator[tuple[str, str | None, str]]:
+    for name, body in part.body.items():
+        yield from ((f"train.body.{name}.gears", gear, "gear") for gear in body.gears or ())
+    for name, shaft in part.shaft.items():
+        yield from ((f"train.shaft.{name}.{end}", getattr(shaft, end), "body") for end in ("a", "b"))
+    for name, mesh in part.mesh.items():
+        yield from ((f"train.mesh.{name}.{role}", getattr(mesh, role), "body") for role in ("driver", "driven"))
+        yield f"train.mesh.{name}.pair", part.pair_of(name), "pair"
+        yield f"train.mesh.{name}.like.pair", part.loaded_pair_of(name), "pair"
+    for name, damper in part.damper.items():
+        yield from ((f"train.damper.{name}.{end}", getattr(damper, end), "body") for end in ("a", "b"))
+    yield from (("train.torque", torque, "body") for torque in part.torque)
+    for name, ripple in part.torque_ripple.items():
+        yield from ((f"train.torque_ripple.{name}.{end}", getattr(ripple, end), "body") for end in ("body", "order_of"))
+    yield "train.balance", part.balance, "body"

@@ -1,0 +1,105 @@
+"""What pydantic finds wrong in a case, as one of fegear's own sentences: key, value, rule, remedy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import PATH, InputError, shown
+from fegear.case.known_keys import keys_at, places_of
+from fegear.case.nearest import nearest
+from fegear.case.trade_words import Meaning, of_key, of_value
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+    from pydantic_core import ErrorDetails
+
+
+#: A key that stands in more tables than these says nothing of the one that is meant.
+_FEW_PLACES = 2
+
+
+def _meant(word: str) -> Meaning | None:
+    """What an unknown key means: a word of the trade, or a key of another table."""
+    found = of_key(word)
+    places = () if found else tuple(places_of(word))
+    return Meaning(places) if 0 < len(places) <= _FEW_PLACES else found
+
+
+_KINDS = {
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "float_type": "must be a number",
+    "string_type": "must be a text in quotes",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list in square brackets",
+    "tuple_type": "must be a text in quotes or a list of them",
+    "dict_type": "must be a table",
+    "model_type": "must be a table of keys and values",
+    "finite_number": "must be finite",
+    "too_short": "must not be empty",
+}
+
+
+def refusal(error: ValidationError) -> InputError:
+    """Return the sentence about the first thing that is wrong."""
+    found = error.errors(include_url=False)
+    # A misspelt key comes first: what is said to be missing is often its right spelling.
+    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
+    told = _sentence(first)
+    if first["type"] in _KINDS:  # the other things that the value may be, where there are several kinds
+        others = [
+            one["ctx"]["expected"] for one in found if one["type"] == "literal_error" and _place(one) == _place(first)
+        ]
+        return InputError(told.key, told.value, " or ".join([told.rule, *others]), told.remedy)
+    return told
+
+
+def _place(error: ErrorDetails) -> list[str]:
+    """Keys down to the one that is wrong, without pydantic's own names of the kinds that a value may have."""
+    steps: list[str] = []
+    for step in map(str, error["loc"]):
+        known = keys_at(steps)
+        if step.isdigit() or not known or step in known or error["type"] == "extra_forbidden":
+            steps.append(step)
+    return steps
+
+
+def _sentence(error: ErrorDetails) -> InputError:
+    """Turn one of pydantic's errors into fegear's."""
+    kind, context, value = error["type"], error.get("ctx", {}), error.get("input")
+    loc = _place(error)
+    if kind == "fegear" and context["key"]:
+        loc.append(context["key"])
+    key = _dotted(loc)
+    if kind == "fegear":
+        shown = context["shown"]
+        if shown is None:
+            shown = value.get(loc[-1], "(not given)") if isinstance(value, dict) and context["key"] else _show(value)
+        return InputError(key, shown, context["rule"], context["remedy"])
+    if kind == "extra_forbidden":
+        known = keys_at(loc[:-1])
+        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known, words=_meant))
+    if kind == "missing":
+        return InputError(key, "(not given)", "is required")
+    if kind == "literal_error":
+        return InputError(key, _show(value), f"must be {context['expected']}", of_value(key, value))
+    rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
+    return InputError(key, _show(value), rule[0].lower() + rule[1:], of_value(key, value))
+
+
+def _dotted(loc: list[str]) -> str:
+    text = ""
+    for step in loc:
+        text += f"[{step}]" if step.isdigit() else f".{step}"
+    return text.removeprefix(".") or "case"
+
+
+def _show(value: object) -> str:
+    if isinstance(value, str):
+        return shown(value, PATH)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (dict, list)) and len(str(value)) > 60:
+        return "(a table)" if isinstance(value, dict) else "(a list)"
+    text = str(value)
+    return text if len(text) <= PATH else f"{text[:PATH]}..."

@@ -1,0 +1,89 @@
+"""Estimated errors of what follows from load sharing: solved again with each compliance off by its own error.
+
+`shifted` holds engagements whose compliances are off, one source each (`fegear.contact.plane.shifted_compliance`); the
+changes that they make add up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.fourier import EFFECTIVE_HARMONICS, FourierSeries, effective_error, fourier_series
+from fegear.contact.loaded_teeth import TransmissionErrorShift
+from fegear.contact.plane.base_pitch import mean_secant_stiffness
+from fegear.contact.plane.engagement import Engagement, solve_again
+from fegear.contact.plane.independent_errors import independent_errors
+from fegear.contact.plane.transmission_error import TransmissionError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.pair_history import PairHistory
+
+
+def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement]) -> TransmissionErrorShift | None:
+    """Solve again at the same quadrature points with each compliance off by its error; None where none states one.
+
+    What would cancel where a whole flank is softer alike is added: the same numbers with each error changing its sign
+    along the flank, as far as one place's error is its own (`independent_errors`).
+    """
+    if not shifted:
+        return None
+    values = te.values
+    pair = shifted[0].pair
+    uneven = independent_errors(te.loaded, shifted, (pair.x_start, pair.x_end)).transmission_error
+    amplitude = np.zeros_like(te.series.amplitude)
+    mean = peak_to_peak = effective = stiffness = 0.0
+    for engagement, along in zip(shifted, uneven, strict=True):
+        other = solve_again(engagement, te.loaded)
+        again = replace(te, loaded=other, series=_series(te, other.transmission_error[:, 0]))
+        bent = _series(te, values + along[:, 0])
+        mean += abs(again.mean - te.mean) + float(abs(bent.mean - te.mean))
+        peak_to_peak += abs(again.peak_to_peak - te.peak_to_peak)
+        peak_to_peak += abs(float(np.ptp(values + along[:, 0])) - te.peak_to_peak)
+        effective += abs(again.effective_error - te.effective_error)
+        effective += abs(float(effective_error(bent)) - te.effective_error)
+        stiffness += abs(mean_secant_stiffness(again) - mean_secant_stiffness(te))
+        # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
+        for series in (again.series, bent):
+            amplitude += 2.0 * np.abs(series.coefficients - te.series.coefficients)[1:]
+    amplitude = _no_less_than_beside(amplitude)
+    effective = max(effective, _of_effective(te.series.amplitude, amplitude))
+    return TransmissionErrorShift(mean, peak_to_peak, effective, amplitude, stiffness)
+
+
+def _no_less_than_beside(error: Array) -> Array:
+    """Errors of harmonics, shape (N,), none below the root mean square of it and those beside it.
+
+    What a change of the flank's ends adds to one harmonic may cancel, and does not in the next, whose phases differ.
+    """
+    square = np.pad(error**2, 1, mode="edge")
+    return np.maximum(error, np.sqrt((square[:-2] + square[1:-1] + square[2:]) / 3.0))
+
+
+def _of_effective(amplitude: Array, error: Array) -> float:
+    """Error of A_e by those of its amplitudes, as if each had its own: their changes may cancel in it by chance."""
+    a, off = amplitude[:EFFECTIVE_HARMONICS], error[:EFFECTIVE_HARMONICS]
+    size = float(np.sqrt(np.sum(a**2)))
+    slope = a / size if size > 0.0 else np.zeros_like(a)
+    slope[:1] += 1.0
+    return float(np.sqrt(np.sum((slope * off) ** 2)))
+
+
+def _series(te: TransmissionError, values: Array) -> FourierSeries:
+    return fourier_series(te.points, values, te.series.amplitude.size)
+
+
+def load_shift(history: PairHistory, other: PairHistory) -> Array:
+    """How far the loads of a shifted solution are from the original's, shape of its loads [N]."""
+    columns = [
+        np.interp(history.x, other.x, other.load[:, i], left=0.0, right=0.0) for i in range(history.load.shape[1])
+    ]
+    difference = np.abs(np.stack(columns, axis=1) - history.load)
+    # A jump of the load at an end of the path is in the same place in both; outside it one of them may have no point.
+    inside = (history.x >= other.x[0]) & (history.x <= other.x[-1]) if other.x.size else np.zeros(history.x.size, bool)
+    return np.where(inside[:, None], difference, 0.0)

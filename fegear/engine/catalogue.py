@@ -1,0 +1,128 @@
+"""Stages by name: what each is called stands in the catalogue, how it computes in a module that is imported at need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from importlib import import_module
+from typing import NamedTuple, overload
+
+from fegear.engine.stage import Stage
+
+
+class Entry(NamedTuple):
+    """What a stage is called.
+
+    Attributes
+    ----------
+    name : str
+        Unique; also the first half of its tasks' names.
+    home : str
+        Module and name of the `Stage` that computes it: ``"pair.load_sharing.LOAD_SHARING"``.
+    title : str
+        What it does, for the plan and the progress bar.
+    results : tuple of str
+        Names by which ``results = [...]`` asks for it; empty for stages that only serve others.
+    about : str
+        What its results say, in a line; empty for stages that only serve others.
+    extra : str
+        What of `fegear.engine.extras` it needs besides fegear itself; empty for most.
+    formerly : str
+        Name by which older cases ask for it; empty for most.
+    effects : tuple of str
+        Effects that change what it computes.
+    """
+
+    name: str
+    home: str
+    title: str
+    results: tuple[str, ...] = ()
+    about: str = ""
+    extra: str = ""
+    formerly: str = ""
+    effects: tuple[str, ...] = ()
+
+
+class Catalogue(Sequence[Stage]):
+    """Stages in order; each is imported when it is first asked for.
+
+    Parameters
+    ----------
+    entries : iterable of Entry
+    package : str
+        Where their homes are.
+    """
+
+    def __init__(self, entries: Iterable[Entry], package: str) -> None:
+        self.entries = tuple(entries)
+        self._package = package
+        self._by_name = {entry.name: entry for entry in self.entries}
+        self._loaded: dict[str, Stage] = {}
+
+    @classmethod
+    def of(cls, stages: Sequence[Stage]) -> Catalogue:
+        """A catalogue, or one of stages that are at hand."""
+        if isinstance(stages, cls):
+            return stages
+        made = cls(
+            (
+                Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects)
+                for stage in stages
+            ),
+            "",
+        )
+        made._loaded.update({stage.name: stage for stage in stages})
+        return made
+
+    def called(self, name: str) -> Stage:
+        """A stage by its name.
+
+        Raises
+        ------
+        KeyError
+            If there is none.
+        """
+        if name not in self._loaded:
+            entry = self._by_name[name]
+            module, _, attribute = entry.home.rpartition(".")
+            found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
+            named = replace(
+                found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra,
+                effects=entry.effects,
+            )  # fmt: skip
+            # Of two threads that get here at once, both go on with the same stage.
+            self._loaded.setdefault(name, named)
+        return self._loaded[name]
+
+    def holds(self, stage: Stage) -> bool:
+        """Whether it is one of these."""
+        return self._loaded.get(stage.name) is stage
+
+    def by_result(self) -> dict[str, list[str]]:
+        """Names of the stages that every result asks for."""
+        found: dict[str, list[str]] = {}
+        for entry in self.entries:
+            for result in entry.results:
+                found.setdefault(result, []).append(entry.name)
+        return found
+
+    def former(self) -> dict[str, str]:
+        """Names of results by the names that they had before."""
+        return {entry.formerly: entry.results[0] for entry in self.entries if entry.formerly}
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    def __iter__(self) -> Iterator[Stage]:
+        return (self.called(entry.name) for entry in self.entries)
+
+    @overload
+    def __getitem__(self, index: int) -> Stage: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Stage, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Stage | tuple[Stage, ...]:
+        if isinstance(index, slice):
+            return tuple(self.called(entry.name) for entry in self.entries[index])
+        return self.called(self.entries[index].name)

@@ -1,0 +1,84 @@
+"""A plan in words, for ``fegear plan``: what runs and why, with which settings, for how long, and what does not run."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+from fegear.case.reading import Scene
+from fegear.engine.plan import Plan
+
+
+def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
+    """Predicted seconds of each step [s], a gear shape counted where it is solved first; None where it is unknown."""
+    solved: set[object] = set()
+    found: list[float | None] = []
+    for step in plan.steps:
+        ahead = step.stage.forecast(scene, step.task.subject)
+        anew = sum(seconds for key, seconds in ahead.shapes.items() if key not in solved)
+        solved |= set(ahead.shapes)
+        found.append(None if ahead.seconds is None else ahead.seconds + anew)
+    return found
+
+
+def plan_lines(scene: Scene, plan: Plan) -> list[str]:
+    """Lines for the terminal."""
+    lines, seconds = ["Will compute:"], forecast_seconds(scene, plan)
+    for number, (step, predicted) in enumerate(zip(plan.steps, seconds, strict=True), start=1):
+        effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
+        lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
+        ahead = step.stage.forecast(scene, step.task.subject)
+        if ahead.settings:
+            lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in ahead.settings.items()))
+        lines.append("     run time unknown" if predicted is None else f"     about {predicted:.2g} s")
+    if plan.skipped:
+        lines.append("Will not compute:")
+        lines += _folded(plan.skipped)
+    unknown = [str(step.task) for step, predicted in zip(plan.steps, seconds, strict=True) if predicted is None]
+    without = f", without {', '.join(unknown)}, whose run time is unknown" if unknown else ""
+    total = sum(predicted or 0.0 for predicted in seconds)
+    lines.append(
+        f"Predicted: about {total:.2g} s of one core, measured on a usual machine{without}; tables, pictures and "
+        "report come on top, some seconds."
+    )
+    return lines + [f"Note: {remark}" for remark in plan.remarks]
+
+
+def _folded(skipped: Sequence[tuple[str, str]]) -> list[str]:
+    """Stages that are not computed, those of one reason together: fifty lines would push the plan out of sight."""
+    groups: dict[str, list[str]] = {}
+    for name, reason in skipped:
+        groups.setdefault(reason.partition(" (")[0], []).append(name)
+    found = []
+    for reason, names in groups.items():
+        found += textwrap.wrap(
+            f"{reason}: {', '.join(names)}",
+            118,
+            initial_indent="  - ",
+            subsequent_indent="    ",
+            break_on_hyphens=False,
+        )
+    return found
+
+
+def plan_content(scene: Scene, plan: Plan) -> dict[str, object]:
+    """The same as plain mappings and lists, for programs; ``seconds`` is None where the run time is unknown."""
+    return {
+        "case": scene.name,
+        "steps": [
+            {
+                "task": str(step.task),
+                "reasons": list(step.reasons),
+                "effects": list(step.effects),
+                "settings": dict(step.stage.forecast(scene, step.task.subject).settings),
+                "seconds": predicted,
+            }
+            for step, predicted in zip(plan.steps, forecast_seconds(scene, plan), strict=True)
+        ],
+        "skipped": [{"stage": name, "reason": reason} for name, reason in plan.skipped],
+        "remarks": list(plan.remarks),
+    }
+
+
+def _short(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
