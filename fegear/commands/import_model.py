@@ -28,6 +28,10 @@ def import_(
             show_default=False,
         ),
     ] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option("--as", metavar="KIND", help="Kind of model, where its suffix does not say it; default rexs."),
+    ] = None,
     unchecked: Annotated[bool, typer.Option("--unchecked", help="Write a case that cannot be planned, too.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
     quiet: Quiet = False,
@@ -35,17 +39,24 @@ def import_(
     """Write a commented case: gears, stages, shafts, bearings and loads of a gearbox, and what was assumed of each."""
     from fegear.case.text_file import write_file
     from fegear.commands.new import case_file
-    from fegear.exchange.rexs.gearbox import case_of
-    from fegear.exchange.rexs.reading import read_model
+    from fegear.exchange.importers import importer_for
 
     voice = Voice(quiet)
-    text = case_of(read_model(model), load_case, model.name, spectrum=spectrum)
+    other = importer_for(model, kind)
+    text = _of_rexs(model, load_case, spectrum=spectrum) if other is None else other.read(model)
     if not unchecked:
         refuse_unplanned(text, model.name)
     path = case_file(out or model.stem.replace(".", "_"), force=force)
     write_file(path, text.encode(), "--out")
     notes = sum(line.startswith("# Note: ") for line in text.splitlines())
     voice.say(f"Wrote {path}, with {notes} notes at its end; next: fegear run {path}")
+
+
+def _of_rexs(model: Path, load_case: int | None, *, spectrum: bool | None) -> str:
+    from fegear.exchange.rexs.gearbox import case_of
+    from fegear.exchange.rexs.reading import read_model
+
+    return case_of(read_model(model), load_case, model.name, spectrum=spectrum)
 
 
 def refuse_unplanned(text: str, name: str) -> None:

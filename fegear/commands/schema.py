@@ -85,7 +85,7 @@ def schema_text() -> str:
     from fegear.case.schema import case_schema
     from fegear.results.catalogue import STAGES
 
-    results = {name: entry.about for entry in STAGES.entries for name in entry.results}
+    results = {name: entry.about for entry in STAGES.with_added.entries for name in entry.results}
     results |= {old: f"former name of {new}" for old, new in STAGES.former().items()}
     return json.dumps(case_schema(results), indent=1, ensure_ascii=False) + "\n"
 
@@ -95,8 +95,10 @@ def results(as_json: AsJson = False) -> None:
     from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
 
     voice = Voice(as_json=as_json)
-    column = max(map(len, RESULTS))
     subjects = {subject: [STAGES.called(entry.name) for entry in entries] for subject, entries in SUBJECTS.items()}
+    if added := STAGES.with_added[len(STAGES) :]:
+        subjects["Of other distributions"] = list(added)
+    column = max(map(len, (*RESULTS, *(name for stage in added for name in stage.results))))
     for subject, stages in subjects.items():
         voice.say(f"{subject}:")
         # Several stages may give one result, each for gears and pairs of its kind.

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 from importlib import import_module
 from typing import NamedTuple, overload
 
+from fegear.base.extensions import Group, added
 from fegear.engine.stage import Stage
 
 
@@ -43,6 +45,10 @@ class Entry(NamedTuple):
     effects: tuple[str, ...] = ()
 
 
+def _entry(stage: Stage) -> Entry:
+    return Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects)
+
+
 class Catalogue(Sequence[Stage]):
     """Stages in order; each is imported when it is first asked for.
 
@@ -51,11 +57,13 @@ class Catalogue(Sequence[Stage]):
     entries : iterable of Entry
     package : str
         Where their homes are.
+    group : {"results"}, optional
+        Entry points by which other distributions add stages; none by default.
     """
 
-    def __init__(self, entries: Iterable[Entry], package: str) -> None:
+    def __init__(self, entries: Iterable[Entry], package: str, group: Group | None = None) -> None:
         self.entries = tuple(entries)
-        self._package = package
+        self._package, self._group = package, group
         self._by_name = {entry.name: entry for entry in self.entries}
         self._loaded: dict[str, Stage] = {}
 
@@ -64,14 +72,27 @@ class Catalogue(Sequence[Stage]):
         """A catalogue, or one of stages that are at hand."""
         if isinstance(stages, cls):
             return stages
-        made = cls(
-            (
-                Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects)
-                for stage in stages
-            ),
-            "",
-        )
+        made = cls(map(_entry, stages), "")
         made._loaded.update({stage.name: stage for stage in stages})
+        return made
+
+    @cached_property
+    def with_added(self) -> Catalogue:
+        """The same with the stages that other distributions add, the results of each called as its entry point.
+
+        Raises
+        ------
+        InputError
+            See `fegear.base.extensions.added`.
+        """
+        if self._group is None:
+            return self
+        known = {**self._by_name, **self.by_result(), **self.former()}
+        stages = [
+            replace(stage, name=name, results=(name,)) for name, stage in added(self._group, Stage, known).items()
+        ]
+        made = Catalogue((*self.entries, *map(_entry, stages)), self._package)
+        made._loaded = {**self._loaded, **{stage.name: stage for stage in stages}}
         return made
 
     def called(self, name: str) -> Stage:

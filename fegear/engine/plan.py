@@ -77,6 +77,9 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     """
     known = Catalogue.of(stages)
     by_result, former = known.by_result(), known.former()
+    if any(result not in by_result and result not in former for result in scene.case.results):
+        known = known.with_added
+        by_result = known.by_result()
     wanted = list(dict.fromkeys(former.get(result, result) for result in scene.case.results))
 
     reasons: dict[Task, list[str]] = {}

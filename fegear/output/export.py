@@ -22,6 +22,8 @@ from fegear.geometry.pair import MEMBERS, active_profile
 from fegear.geometry.relief import Relief, chart_points, roll_of_radius
 from fegear.output.dxf import AS_GENERATED, write_dxf
 from fegear.output.file_names import file_name
+from fegear.output.formats import FORMATS, Format, of_kind
+from fegear.output.formats import formats as every_format
 from fegear.output.tables import write_table
 
 if TYPE_CHECKING:
@@ -34,23 +36,9 @@ if TYPE_CHECKING:
     from fegear.studies.comparison.compare import Side
 
 
-FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu", "fmu", "rexs")
-
-
-#: Those that hold the flanks with their relief, not a mesh.
-_EXACT = frozenset({"dxf", "step", "relief"})
-
-
-#: Those that hold a mesh of the solid gear.
-_SOLID = frozenset({"solid-inp", "solid-vtu"})
-
-
-#: Those that hold no single gear.
-_WHOLE = frozenset({"fmu", "rexs"})
-
-
-#: Those that hold the plane mesh of a spur gear.
-_PLANE = frozenset({"msh", "vtu", "inp"})
+#: Those that hold the flanks with their relief, a mesh of the solid gear, no single gear, the mesh of a spur gear.
+_EXACT, _SOLID = of_kind("flanks"), of_kind("solid mesh")
+_WHOLE, _PLANE = of_kind("case"), of_kind("plane mesh")
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +84,9 @@ def export_gears(
         If a gear or a format is unknown, or nothing can be written because all gears are helical or there is none.
     """
     wanted = {part.strip() for part in formats.split(",") if part.strip()}
-    for one in sorted(wanted.difference(FORMATS)):
-        raise InputError("--format", f'"{one}"', "is no format that fegear writes", nearest(one, FORMATS))
+    others = {name: every_format()[name] for name in sorted(wanted.difference(FORMATS)) if name in every_format()}
+    for one in sorted(wanted.difference(FORMATS, others)):
+        raise InputError("--format", f'"{one}"', "is no format that fegear writes", nearest(one, every_format()))
     if not wanted:
         raise InputError("--format", f'"{formats}"', "names no format", f"choose from {', '.join(FORMATS)}")
     every = list(scene.gears)
@@ -116,7 +105,7 @@ def export_gears(
         )
     written: list[Path] = []
     remarks = [f"Gear {name} is helical: no {plane} is written for it." for name in helical if plane]
-    for name in chosen if wanted - _WHOLE else ():
+    for name in chosen if wanted - _WHOLE - set(others) else ():
         files, left_out = _export_gear(scene, folder, name, wanted)
         written += files
         remarks += left_out
@@ -132,12 +121,28 @@ def export_gears(
         written.append(folder / f"{file_name(scene.name)}.rexs")
         written[-1].write_text(text, "utf-8")
         remarks += left
+    for name, other in others.items():
+        files, said = _by_another(name, other, scene, folder, chosen)
+        written += files
+        remarks += said
     if not written:
         raise InputError(
             f"gear.{chosen[0]}.relief", "(not given)", "leaves no relief to write: no gear has one of known amount",
             'give one: relief = { tip = { amount = "10 um", length = "2 mm" } }',
         )  # fmt: skip
     return Exported(tuple(path.name for path in written), tuple(remarks))
+
+
+def _by_another(name: str, other: Format, scene: Scene, folder: Path, gears: list[str]) -> tuple[list[Path], list[str]]:
+    """Files of a format that another distribution writes."""
+    if other.write is None:
+        raise InputError("--format", f'"{name}"', "has nothing that writes it", "give its Format a write function")
+    files, said = other.write(scene, folder, tuple(gears))
+    outside = [path for path in files if not (path.is_file() and path.resolve().is_relative_to(folder.resolve()))]
+    if outside:
+        rule = f"names {outside[0]}, which is no file in the folder of the export"
+        raise InputError("--format", f'"{name}"', rule, "write below the folder that write() is given")
+    return list(files), list(said)
 
 
 def _found(results: Side) -> Found:

@@ -210,7 +210,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
 # fmt: on
 
 #: Every stage.
-STAGES = Catalogue([entry for entries in SUBJECTS.values() for entry in entries], "fegear.results")
+STAGES = Catalogue([entry for entries in SUBJECTS.values() for entry in entries], "fegear.results", "results")
 
 
 def stage_called(name: str) -> Stage:

@@ -109,7 +109,9 @@ class Section:
 
 @cache
 def _nodes() -> SchemaNodes:
-    return SchemaNodes(case_schema({name: entry.about for entry in STAGES.entries for name in entry.results}))
+    return SchemaNodes(
+        case_schema({name: entry.about for entry in STAGES.with_added.entries for name in entry.results})
+    )
 
 
 def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
