@@ -17,6 +17,13 @@ MUST_HOLD = (
     "speed to zero", "slack teeth that hammer both flanks", "a shaft of zero stiffness",
     "a shaft of infinite stiffness", "a helix angle of zero",
     "misalignment going to zero in tooth contact analysis",
+    "rims below a backup ratio of 1.2", "tips of internal pairs that foul", "rings whose tool is not known",
+    "mass and inertia of shifted", "wide pairs with a transverse contact ratio below 1", "tables of users",
+    "one load by several names", "lives of ring gears", "a formula or a load level that fails",
+    "teeth that jam by rounding", "motions that never settle", "forces of sets and meshes with jumps",
+    "planetary stages of REXS models", "REXS models with broken structure", "folders of runs, changed in any way",
+    "pairs driven by their other gear", "defaults that a page promises", "one byte of the program changed",
+    "the window: another account",
 )  # fmt: skip
 
 
