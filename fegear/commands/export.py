@@ -49,7 +49,7 @@ def export(
             scene = build_scene(dict(results.document), case.resolve().name, case)
         target = out or default_folder(scene.name, "_export")
         with whole_or_nothing(target) as scratch:
-            written = export_gears(scene, scratch, gear or (), formats, results)
+            written = export_gears(scene, scratch, gear or (), formats, results, voice.say)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
     for name in written.files:

@@ -27,7 +27,7 @@ from fegear.output.formats import formats as every_format
 from fegear.output.tables import write_table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from fegear.base.arrays import Array
@@ -39,6 +39,10 @@ if TYPE_CHECKING:
 #: Those that hold the flanks with their relief, a mesh of the solid gear, no single gear, the mesh of a spur gear.
 _EXACT, _SOLID = of_kind("flanks"), of_kind("solid mesh")
 _WHOLE, _PLANE = of_kind("case"), of_kind("plane mesh")
+
+
+#: What takes so many seconds is predicted before it starts.
+_LONG = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +62,12 @@ class Exported:
 
 
 def export_gears(
-    scene: Scene, folder: Path, names: Sequence[str], formats: str, results: Side | None = None
+    scene: Scene,
+    folder: Path,
+    names: Sequence[str],
+    formats: str,
+    results: Side | None = None,
+    say: Callable[[str], None] = lambda _line: None,
 ) -> Exported:
     """Write every format of every named gear.
 
@@ -77,6 +86,8 @@ def export_gears(
         Formats separated by commas.
     results : Side, optional
         Of a run of the case, which go into a REXS model.
+    say : callable, optional
+        Called with a sentence before what takes long.
 
     Raises
     ------
@@ -106,7 +117,7 @@ def export_gears(
     written: list[Path] = []
     remarks = [f"Gear {name} is helical: no {plane} is written for it." for name in helical if plane]
     for name in chosen if wanted - _WHOLE - set(others) else ():
-        files, left_out = _export_gear(scene, folder, name, wanted)
+        files, left_out = _export_gear(scene, folder, name, wanted, say)
         written += files
         remarks += left_out
     if "fmu" in wanted:
@@ -156,7 +167,9 @@ def _found(results: Side) -> Found:
     return Found({name: value.si for name, value in results.values.items() if np.isfinite(value.si)}, tables)
 
 
-def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tuple[list[Path], list[str]]:
+def _export_gear(
+    scene: Scene, folder: Path, name: str, wanted: set[str], say: Callable[[str], None]
+) -> tuple[list[Path], list[str]]:
     """Write the wanted formats of a gear: files, and remarks on its relief."""
     found = described_relief(scene, name)
     relieved = scene.case.gear[name].relief is not None
@@ -175,8 +188,10 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
             remarks.append(f"Gear {name}, DXF: the section across the axis.")
         written += write_dxf(gear, folder, file_name(name), found.relief, flanks)
     if "step" in wanted:
-        from fegear.fem.solid.step_model import write_step
+        from fegear.fem.solid.step_model import seconds_of_step, write_step
 
+        if (predicted := seconds_of_step(gear.teeth)) >= _LONG:
+            say(f"Gear {name}, STEP: about {predicted:.0f} s of CPU time for {gear.teeth} teeth.")
         written.append(folder / f"{file_name(name)}.step")
         write_step(written[-1], gear, None if found.relief is None else relieved_outline(gear, found.relief))
         if scene.case.gear[name].face_width is None:

@@ -5,11 +5,14 @@ import itertools
 import math
 from collections import Counter
 
+import gmsh as kernel
 import numpy as np
 import pytest
 
 from fegear.base.errors import FegearError
+from fegear.case.reading import build_scene
 from fegear.fem.plane.sector import gmsh_session
+from fegear.fem.solid import step_model
 from fegear.fem.solid.step_model import write_step
 from fegear.geometry.gear import Gear
 from fegear.geometry.helicoid import InvoluteHelicoid
@@ -18,6 +21,7 @@ from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
 from fegear.geometry.spline import enclosed_area, smooth_pieces, spline_of
 from fegear.geometry.tooth import Tooth
+from fegear.output.export import export_gears
 
 DEG = math.pi / 180.0
 PROTUBERANCE = BasicRack(1.0, 1.4, 0.3, 20 * DEG, 0.1, 0.02, 8 * DEG)
@@ -60,8 +64,14 @@ def read_back(path):
         pytest.param(gear(24, 20.0, "right", rack=BasicRack.full_fillet()), 3, marks=pytest.mark.long),
     ],
 )  # fmt: skip
-def test_the_file_holds_one_closed_solid_of_the_exact_volume_and_flanks(tmp_path, one, pieces):
+def test_the_file_holds_one_closed_solid_of_the_exact_volume_and_flanks(tmp_path, one, pieces, monkeypatch):
+    taken, remove = [], kernel.model.occ.remove
+    monkeypatch.setattr(kernel.model.occ, "remove", lambda what, **more: taken.extend(what) or remove(what, **more))
+    (tmp_path / "gear.brep").write_text("of a user")
     made = write_step(tmp_path / "gear.step", one)
+    assert {dim for dim, _ in taken} == {0}  # to take away surfaces and edges takes a time that grows with its square
+    assert (tmp_path / "gear.brep").read_text() == "of a user"
+    assert {path.name for path in tmp_path.iterdir()} == {"gear.brep", "gear.step"}
     volume = section_area(one) * one.face_width
     assert made.volume == pytest.approx(volume, rel=3e-8)
     assert made.faces == 2 * pieces * one.teeth + 3
@@ -94,6 +104,18 @@ def test_a_relieved_solid_has_less(tmp_path):
     roll = np.linspace(relief.start, relief.end, 2001)
     lost = np.trapezoid(relief.removal(roll) * one.base_radius * roll, roll) * 2 * one.teeth * one.face_width
     assert section_area(one) * one.face_width - ground.volume == pytest.approx(lost, rel=2e-2)
+
+
+def test_what_takes_long_is_said_before_it_starts(tmp_path, monkeypatch):
+    document = {"results": ["geometry"], "gear": {"a": {"teeth": 150, "module": "3 mm", "bore_radius": "60 mm"}}}
+    said = []
+    monkeypatch.setattr(step_model, "write_step", lambda path, *_: said.append(path.name))
+    export_gears(build_scene(document, "long", tmp_path), tmp_path, (), "step", say=said.append)
+    assert said == ["Gear a, STEP: about 20 s of CPU time for 150 teeth.", "a.step"]
+    document["gear"]["a"].update(teeth=20, bore_radius="10 mm")
+    said.clear()
+    export_gears(build_scene(document, "short", tmp_path), tmp_path, (), "step", say=said.append)
+    assert said == ["a.step"]
 
 
 def test_what_is_not_closed_is_not_written(tmp_path):
