@@ -74,7 +74,7 @@ def periods(scene: Scene) -> int:
     turns, fastest = train.mesh_turns, max(train.mesh_orders)
     speeds = scene.case.dynamics.speed_values
     if asked.ripple and speeds.size:
-        first = float(speeds.mean()) / abs(float(train.ratios[train.dof[asked.speed_of]]))
+        first = float(speeds[0]) / abs(float(train.ratios[train.dof[asked.speed_of]]))
         turns *= common_period(turns, fastest, first, asked.ripple).count
     return round(float(turns * fastest))
 

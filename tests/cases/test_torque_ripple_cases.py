@@ -217,3 +217,22 @@ def test_python_takes_the_same_tables():
             "a": {"body": "engine", "order": 2, "amplitude": "10 N*m"}}},
     )  # fmt: skip
     assert found.values["I.force_by_torque_ripple"].value > 0.0
+
+
+@pytest.mark.dear
+def test_root_stress_and_design_charts_take_it_too():
+    """Root stress at the worst phases bounds that at the case's; a chart's unmodified gears have the sweep's factor."""
+    stress = ("results=['dynamic-root-stress']", "pair.I.root_stress={ source = 'heywood' }", *STILL)
+    tables, values, _ = run(*stress)
+    _, plain, _ = run(*stress, "effects.torque_ripple=false")
+    history = tables["root_stress_history_I_pinion"]
+    added = history["stress [MPa]"] - history["stress_own_mesh [MPa]"]
+    assert np.abs(added).max() > 0.02 * history["stress_own_mesh [MPa]"].max()
+    largest = "I.driver.largest_dynamic_root_tension"
+    assert values[f"{largest}_own_mesh"] == plain[largest]
+    assert values[f"{largest}_any_phase"] > values[f"{largest}_own_mesh"]
+    speed = "dynamics.speeds=['3000 rpm']"
+    chart = ("results=['design-chart']", "dynamics.chart={ amounts = [1.0], lengths = [1.0] }", speed)
+    with_it = run(*chart)[1]["design_chart.unmodified"]
+    assert with_it == pytest.approx(run(MOTION, speed)[1]["I.largest_dynamic_factor"], rel=1e-3)
+    assert with_it > 1.02 * run(*chart, "effects.torque_ripple=false")[1]["design_chart.unmodified"]

@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.model import HelicalPairModel, RigidGear
+from fegear.dynamics.helical_pair.transmissibility import Line, pair_forces
 from fegear.dynamics.motion.motion import simulate
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import steady_state
@@ -285,3 +288,19 @@ def test_no_amplitude_changes_no_bit_and_a_period_later_all_is_the_same():
     time = np.linspace(0.0, loud.period, 101)
     before, after = (ahead.mesh_forces(t) for t in (time, time + loud.period))
     assert np.max(np.abs(before - after)) < 1e-7 * float(loud.static[0])
+
+
+def test_two_discs_carry_the_external_torque_of_the_helical_pair():
+    """Blankenship and Singh, (10) and (20): an external moment on the driver of a pair whose bearings do not yield."""
+    bearing, stiffness = np.diag([1e16, 1e16, 1e14, 1e14, 0.0]), 3e8
+    gears = [RigidGear(2.9, (8e-3, 8e-3, j), r, 0.02, bearing) for j, r in ((3e-3, R), (2e-2, 2 * R))]
+    pair = HelicalPairModel(*gears, MeshParameters(stiffness, 0.0, 1.0 / 3.0, 0.0))
+    train = Train(
+        (Body("1", 3e-3), Body("2", 2e-2)), meshes=(Mesh("g", "1", "2", R, 2 * R, 20, 40, stiffness),),
+        torques=(Torque("1", 10.0), Torque("2", 20.0)),
+    )  # fmt: skip
+    for frequency in (10.0, 500.0, 3000.0, 9000.0):
+        w = 2.0 * math.pi * frequency
+        moment = Line(0.0, w, on_driver=(0.0, 0.0, 0.0, 0.0, 1.0))
+        force = abs(pair_forces(pair, [moment], [100.0]).mesh[0, 0, 0])
+        assert abs(torque_response(train, w, "1").forces[0]) == pytest.approx(force, rel=1e-6)
