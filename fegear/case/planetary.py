@@ -162,8 +162,8 @@ class PlanetaryPart(Part):
     )
     harmonics: Annotated[int, Field(ge=1, le=200)] | None = Field(
         default=None,
-        description="Harmonics of the mesh frequency that are counted. Default: 12; in `planet-vibration` as "
-        "many as the tolerance requires, at most 200.",
+        description="Harmonics of the mesh frequency in tables of phasing and of planets' forces; `planet-vibration` "
+        "always includes all. Default: 12.",
     )
 
     @model_validator(mode="after")

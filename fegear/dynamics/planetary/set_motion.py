@@ -245,7 +245,4 @@ def _by_teeth(linear: LinearSet, mesh_frequency: Array) -> Array:
         vibration = forced_response(linear, mesh_frequency)
     except RangeError:
         return np.full(mesh_frequency.size, math.nan)
-    shifted = vibration.others[: len(linear.shifted)]  # the last has more harmonics, which motion has anyway
-    changes = (np.abs(one.largest_force - vibration.largest_force) for one in shifted)
-    none = np.zeros(mesh_frequency.size)
-    return np.asarray(sum(changes, start=none) / linear.meshed.mean_force)
+    return np.asarray(vibration.shift(lambda one: one.largest_force) / linear.meshed.mean_force)

@@ -16,6 +16,8 @@ from fegear.base.errors import ConvergenceError, InputError
 
 #: Most pieces whose values are asked for at once.
 _AT_ONCE = 64
+#: Jumps that a coarser function keeps, over its tolerance, and changes of slope, over its size in a period.
+_SEEN, _BENT = 0.01, 1e-3
 
 
 @dataclass(frozen=True)
@@ -217,6 +219,24 @@ class Periodic:
         rows = np.array(self.coefficients)
         rows[:, 0] += constant
         return Periodic(self.breaks, rows, self.pitches)
+
+    def coarser(self, tolerance: float) -> Periodic:
+        """The function in as few pieces as keep it within a tolerance of its largest value; its jumps stay.
+
+        Parameters
+        ----------
+        tolerance : float
+        """
+        powers = np.arange(self.coefficients.shape[1])
+        half, signs = 0.5 * np.diff(self.breaks), (-1.0) ** powers
+        starts, ends = self.coefficients @ signs, self.coefficients.sum(axis=1)
+        rise = (self.coefficients * -powers) @ signs / half, (self.coefficients * powers).sum(axis=1) / half
+        scale = float(np.abs(self.coefficients).sum(axis=1).max())
+        jumps = np.abs(starts - np.roll(ends, 1)) > _SEEN * tolerance * scale
+        kinks = np.abs(rise[0] - np.roll(rise[1], 1)) > _BENT * scale
+        cuts = self.breaks[:-1][jumps | kinks]
+        few = Periodic.fit(lambda s: self(s * self.pitches), cuts, tolerance=tolerance, pitches=self.pitches)
+        return few if few.breaks.size < self.breaks.size else self
 
     def breaks_over(self, pitches: int) -> Array:
         """Break points in pitches over a longer window of whole periods, both ends included."""

@@ -55,9 +55,6 @@ class VibrationInputs:
     teeth_per_turn : float
         Mesh cycles per turn of the driving member.
     damping_ratio : float
-    harmonics : int or None
-        None where they follow the tolerance.
-    tolerance : float
     driving, name : str
     bodies : tuple of (str, float, float, str)
         Member, mass [kg], inertia [kg m^2] and where they come from.
@@ -66,8 +63,6 @@ class VibrationInputs:
     speeds: Array
     teeth_per_turn: float
     damping_ratio: float
-    harmonics: int | None
-    tolerance: float
     driving: str
     name: str
     bodies: tuple[tuple[str, float, float, str], ...] = ()
@@ -77,19 +72,17 @@ def _inputs(scene: Scene, name: str) -> VibrationInputs:
     part, run = planetary_part(scene, name), set_inputs(scene, name).run
     speeds = np.zeros(0) if part.speeds is None else part.speeds.array
     per_turn = run.mesh_frequency * 2.0 * math.pi / abs(run.speed[run.input])
-    bodies, tolerance = body_masses(scene, name), scene.case.accuracy.tolerance
-    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.harmonics, tolerance, part.input, name, bodies)
+    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.input, name, body_masses(scene, name))
 
 
 def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearSet:
-    from fegear.dynamics.planetary.set_response import linear_set, looked_at
+    from fegear.dynamics.planetary.set_response import SHOWN_HARMONICS, linear_set
 
     meshed = meshed_set(upstream, inputs.name)
     sun, ring = (
-        _exactness(upstream, set_pair(inputs.name, mesh), meshed.mean_force, looked_at(inputs.harmonics))
-        for mesh in MESHES
+        _exactness(upstream, set_pair(inputs.name, mesh), meshed.mean_force, SHOWN_HARMONICS) for mesh in MESHES
     )
-    return linear_set(meshed, inputs.damping_ratio, inputs.harmonics, (sun, ring))
+    return linear_set(meshed, inputs.damping_ratio, exactness=(sun, ring))
 
 
 def _exactness(upstream: Upstream, name: str, load: float, harmonics: int) -> tuple[float, Array]:
@@ -197,12 +190,10 @@ def check_vibration(scene: Scene, name: str) -> None:
 
 
 def _vibration(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> ForcedResponse:
-    from fegear.dynamics.planetary.set_response import enough_harmonics, forced_response
+    from fegear.dynamics.planetary.set_response import forced_response
 
     linear = cast("LinearSet", upstream[Task("planet-modes", inputs.name)])
     frequency = inputs.speeds * inputs.teeth_per_turn / (2.0 * math.pi)
-    if inputs.harmonics is None:
-        linear = enough_harmonics(linear, frequency, inputs.tolerance)
     return forced_response(linear, frequency)
 
 
@@ -234,17 +225,15 @@ def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome
             f"Set {name}: at {inputs.speeds[low] * 30.0 / math.pi:.5g} rpm the linear mesh force falls to "
             f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; planet-motion has it."
         )
-    few = inputs.harmonics is not None and inputs.harmonics < 200
-    sharper_by = f"increase planetary.{name}.harmonics" if few else "reduce accuracy.tolerance"
     table = Table(f"planet_vibration_{name}", tuple(columns), f"Vibration of set {name} over speed")
     return Outcome(
         data,
         (table,),
         values,
-        {"harmonics": data.dynamic.shape[1]},
+        {},
         tuple(remarks),
         (_figure(name, data, inputs),),
-        sharper_by,
+        "reduce accuracy.tolerance",
     )
 
 
