@@ -7,7 +7,9 @@ import pytest
 from scipy.linalg import expm
 
 from fegear.dynamics.motion.averaging import averaged_motion
-from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.motion import propagate
+from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.shooting import close
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
@@ -22,11 +24,11 @@ def fitted(function):
     return Periodic.fit(function, degree=10, tolerance=1e-12)
 
 
-def two_discs(ratio, *, zeta=0.02, depth=0.0, error=0.0, parting=True):
+def two_discs(ratio, *, zeta=0.02, depth=0.0, error=0.0, parting=True, backlash=math.inf):
     """Two discs at a mesh frequency of `ratio` natural frequencies, stiffness and error of one harmonic each."""
     train = Train(
         (Body("1", J), Body("2", J)),
-        meshes=(Mesh("g", "1", "2", R, R, 30, 30, K, mesh_damping(zeta, K, R, R, J, J)),),
+        meshes=(Mesh("g", "1", "2", R, R, 30, 30, K, mesh_damping(zeta, K, R, R, J, J), backlash),),
         torques=(Torque("1", FORCE * R), Torque("2", FORCE * R)),
     )
     stiffness = fitted(lambda s: K * (1 + depth * np.cos(2 * np.pi * s)))
@@ -127,3 +129,26 @@ def test_it_settles_on_a_motion_that_no_machine_stays_in(ratio):
     found, newton = averaged_motion(moves, tolerance=5e-4), steady_state(moves)
     assert (found.kind, found.multiplier > 1.0, newton.periods) == ("unstable", True, 2)
     assert newton.dynamic_factor[0] > 1.4 * found.dynamic_factor[0]
+
+
+@pytest.mark.dear
+def test_of_random_discs_what_is_said_of_a_motion_holds():
+    """Damping from 0.001 to 0.2, stiffness varying by up to 60 %, backlash of any size, started loaded or unloaded.
+
+    Newton's method from where the iteration ended closes on the same motion, as far away as is estimated and as stable
+    as is said.
+    """
+    rng = np.random.default_rng(11)
+    kinds = set()
+    for _ in range(60):
+        moves = two_discs(
+            rng.uniform(0.15, 4.0), zeta=10.0 ** rng.uniform(-3.0, -0.7), depth=rng.uniform(0.0, 0.6),
+            error=rng.uniform(0.0, 1.5), backlash=rng.choice([math.inf, DEFLECTION * 10.0 ** rng.uniform(-1.0, 1.0)]),
+        )  # fmt: skip
+        found = averaged_motion(moves, tolerance=1e-5, start=str(rng.choice(["static", "rest"])))
+        orbit = close(pack(moves), found.x, found.v, 1, 1e-12)
+        closed = propagate(orbit.packed, orbit.x, orbit.v, orbit.packed.period, tolerance=1e-12)
+        assert abs(closed.tooth_force[0] / FORCE - found.dynamic_factor[0]) <= 1.5 * found.off + 1e-6
+        assert found.kind == ("periodic" if orbit.stable else "unstable")
+        kinds.add(found.kind)
+    assert kinds == {"periodic", "unstable"}
