@@ -29,6 +29,8 @@ FrequencyOrZero = Annotated[float, quantity("frequency")]
 AmplitudeOrZero = Annotated[float, quantity("torque", not_negative=True)]
 TorqueValue = Annotated[float, quantity("torque")]
 Ratio = Annotated[Number, Field(ge=0.0)]
+#: Largest order and frequency [Hz] of a torque ripple: far above what teeth, poles of motors or cylinders do.
+FASTEST = {"order": 10_000.0, "frequency": 1e6}
 #: A length, or the word for back flanks that never touch.
 Backlash = LengthOrZero | Literal["unlimited"]
 
@@ -205,6 +207,8 @@ class TorqueRipplePart(Part):
             if value is not None and value <= 0.0:
                 remedy = "add a constant torque to train.torque" if value == 0.0 else "turn it with phase"
                 raise refuse("must be greater than zero", remedy, key=key)
+            if value is not None and value > FASTEST[key]:
+                raise refuse(f"exceeds {FASTEST[key]:,.0f}{' Hz' if key == 'frequency' else ''}", "check it", key=key)
         if (self.amplitude is None) == (self.amplitude_over_mean is None):
             raise refuse(
                 "must be given, or amplitude_over_mean instead", 'write amplitude = "8 N*m"', key="amplitude",

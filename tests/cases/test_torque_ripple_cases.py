@@ -115,6 +115,8 @@ def test_a_shared_cache_sees_every_key_and_the_content_of_files(tmp_path):
         ("body = 'engine', order = 0, amplitude = '1 N*m'", "must be greater than zero.*constant torque to"),
         ("body = 'engine', frequency = '0 Hz', amplitude = '1 N*m'", "must be greater than zero.*constant torque"),
         ("body = 'engine', order = -2, amplitude = '1 N*m'", "must be greater than zero"),
+        ("body = 'engine', order = 1e5, amplitude = '1 N*m'", "exceeds 10,000"),
+        ("body = 'engine', frequency = '2e6 Hz', amplitude = '1 N*m'", "exceeds 1,000,000 Hz"),
         ("body = 'engine', order = 2, amplitude = '-1 N*m'", "must not be negative"),
         ("body = 'engine', order = 2, amplitude_over_mean = -0.1", "greater than or equal to 0"),
         ("body = 'engine', order = 2, amplitude = '1 N'", "is not a torque"),

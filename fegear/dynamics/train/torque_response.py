@@ -3,8 +3,9 @@
 A body under torque turns the whole train slowly to and fro, far more than any spring of it yields: forces from angles
 would be small differences. Forces of springs and angles are therefore unknowns beside each other, as in the static
 state (`matrices.static_forces`): a spring's force is its admittance times the difference of its two nodes, and at
-each node forces, inertia and torque balance. Angles are divided by the speed ratios (`network`) and scaled by the
-frequency squared, so that the equations neither degrade towards zero frequency nor at stiff shafts.
+each node forces, inertia and torque balance. Angles are divided by the speed ratios (`network`) and scaled to the size
+of a torque. A spring that closes a power loop follows from the loop, in which all that springs yield adds up to
+nothing. So neither slow torques nor stiff shafts take digits, and loops keep the shares of their two ways.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from fegear.base.shown import shown, shows
 from fegear.base.tally import note
 from fegear.dynamics.train.matrices import elements
 from fegear.dynamics.train.modes import modes
-from fegear.dynamics.train.network import Network
+from fegear.dynamics.train.network import Link, Network
 from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
 
@@ -103,8 +104,7 @@ def _solved(train: Train, w: Array, node: int) -> tuple[Complex, Complex]:
     """Forces of gear pairs and torques of shafts for torque one at a degree of freedom, shapes (count, frequencies)."""
     network = Network.of(train)
     links = [link for link in network.links if link.stiffness > 0.0 or link.damping > 0.0]
-    slips = network.slips
-    springs, size = len(links) + len(slips), network.size
+    slips, springs, size = network.slips, len(links) + len(network.slips), network.size
     ends = np.zeros((springs, size))
     for k, link in enumerate(links):
         ends[k, link.a] += 1.0
@@ -112,10 +112,16 @@ def _solved(train: Train, w: Array, node: int) -> tuple[Complex, Complex]:
     for k, slip in enumerate(slips, start=len(links)):
         ends[k, slip.a] += float(slip.turn_a)
         ends[k, slip.b] += float(slip.turn_b)
+    ways = _ways(links, size)  # differences of angles are the forces' own, and those of every loop add up to none
+    closes = np.zeros((springs, springs))
+    closes[: len(links), : len(links)] = ways
+    closes[len(links) :, len(links) :] = np.eye(len(slips))
+    loops = np.count_nonzero(closes, axis=1) > 1
+    nodes = np.where(loops[:, None], 0.0, ends)
     stiff = np.array([*(float(link.stiffness) for link in links), *(0.0 for _ in slips)])
     damping = np.array([*(float(link.damping) for link in links), *(slip.damping for slip in slips)])
     mass, ground = network.mass.astype(float), network.ground.astype(float)
-    whole = float(mass.sum())
+    held = float(ground.sum()) + float(damping @ ends.sum(axis=1) ** 2)
     load = np.zeros(springs + size, dtype=complex)
     load[springs + node] = train.ratios[node]
     found = np.empty((springs, w.size), dtype=complex)
@@ -123,15 +129,14 @@ def _solved(train: Train, w: Array, node: int) -> tuple[Complex, Complex]:
     for start in range(0, w.size, block):
         part = w[start : start + block]
         matrix = np.zeros((part.size, springs + size, springs + size), dtype=complex)
-        scale = part**2 * whole  # angles times this: of the size of the torque when the train turns as a rigid body
+        scale = part**2 * float(mass.sum()) + part * held  # angles times this are of the size of the torque
         yields = scale[:, None] / (stiff + 1j * part[:, None] * damping)
-        soft = 1.0 / np.maximum(1.0, np.abs(yields))
-        diagonal = np.arange(springs)
-        matrix[:, diagonal, diagonal] = soft * yields
-        matrix[:, :springs, springs:] = -soft[:, :, None] * ends
+        matrix[:, :springs, :springs] = closes * yields[:, None, :]
+        matrix[:, :springs, springs:] = -nodes
+        matrix[:, :springs] /= np.max(np.abs(matrix[:, :springs]), axis=2, keepdims=True)
         matrix[:, springs:, :springs] = ends.T
         at = springs + np.arange(size)
-        matrix[:, at, at] = -mass / whole + 1j * part[:, None] * ground / scale[:, None]
+        matrix[:, at, at] = (-(part[:, None] ** 2) * mass + 1j * part[:, None] * ground) / scale[:, None]
         right = np.broadcast_to(load, (part.size, load.size))[..., None]
         answer = np.linalg.solve(matrix, right)
         answer = answer + np.linalg.solve(matrix, right - matrix @ answer)  # round-off, entry by entry
@@ -140,6 +145,35 @@ def _solved(train: Train, w: Array, node: int) -> tuple[Complex, Complex]:
     count = turns.size
     shafts = np.array([train.ratios[train.dof[shaft.a]] for shaft in train.elastic_shafts])
     return found[:count] / turns[:, None], found[count : count + shafts.size] / shafts[:, None]
+
+
+def _ways(links: Sequence[Link], size: int) -> Array:
+    """For each link what its own angle is the sum of: itself on a tree of springs, and of others the loop they close.
+
+    Returns
+    -------
+    ndarray, shape (links, links)
+        Signs; a row with one entry is a link of the tree.
+    """
+    rows = np.eye(len(links))
+    way: dict[int, Array] = {0: np.zeros(len(links))}  # angle of each node over that of the first, link by link
+    waiting = sorted(range(len(links)), key=lambda k: links[k].stiffness <= 0.0)
+    on_tree: set[int] = set()
+    while len(way) < size:
+        for k in waiting:
+            a, b = links[k].a, links[k].b
+            if (a in way) != (b in way):
+                step = rows[k]
+                if a in way:
+                    way[b] = way[a] - step
+                else:
+                    way[a] = way[b] + step
+                on_tree.add(k)
+                break
+    for k in set(range(len(links))) - on_tree:
+        if links[k].a != links[k].b:
+            rows[k] = np.eye(len(links))[k] - (way[links[k].a] - way[links[k].b])
+    return rows
 
 
 @dataclass(frozen=True)
