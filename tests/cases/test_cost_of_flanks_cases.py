@@ -9,18 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.base.errors import InputError
+from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.loaded_flanks import flanks_to_load
 from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import build_scene, read_scene
+from fegear.fem.solid.slices import solve_slices
 from fegear.output.cost import write_cost
 from fegear.results.pair.loaded_flanks import load_flanks
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.ladder import ALONE, BODIES, FlankConfiguration, flank_ladder
 from fegear.studies.cost.measure import solve_bodies
 from fegear.studies.cost.quantities import OF_FLANKS
-from fegear.studies.cost.study import study_cost
+from fegear.studies.cost.study import ladder_of, study_cost
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 FOUR_SQUARE = CASE.with_name("nasa_four_square.toml")
@@ -138,3 +139,18 @@ def test_a_study_is_of_the_face_or_of_the_plane():
     assert "effects.hertz" in instead.notes[0]
     with pytest.raises(InputError, match="must be a pair of spur gears"):
         over_face(CASE, 'results=["stiffness"]', 'cost.pair="I"', 'cost.quantities=["tooth-force"]')
+
+
+def test_slices_of_a_ring_are_refused_and_left_out_of_its_ladder():
+    """`fegear cost` on a helical planet and ring ended in a complex number: the laws know no bore beyond the root."""
+    ring = read_scene(CASE.with_name("helical_planet_and_ring.toml"), ())
+    gear = ring.gears["ring"]
+    with pytest.raises(RangeError, match="laws were fitted to external gears"):
+        solve_slices(
+            gear.tooth, gear.twist * gear.module, gear.face_width / gear.module, 0.3, gear.bore_radius / gear.module,
+            solid_settings_of(ring, "ring"),
+        )  # fmt: skip
+    for scene, known in ((ring, False), (read_scene(CASE, ()), True)):
+        families = {one.family for one in ladder_of(asked(scene), quick=True).configurations}
+        assert ("coupled-slices" in families) is known
+        assert {"thin-slices", "solid"} < families

@@ -110,8 +110,13 @@ def solve_slices(
     Raises
     ------
     RangeError
-        If the bore is held on a part of the face, the gear is no disc, or a rim is not held.
+        If the bore is held on a part of the face, the gear is no disc, a rim is not held, or the gear is internal.
     """
+    if tooth.internal:
+        raise RangeError(
+            "internal", "true", "is not known to slices, whose laws were fitted to external gears",
+            'solve it as a solid: width = "solid"',
+        )  # fmt: skip
     if body is not None:
         raise RangeError(
             "body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",

@@ -209,7 +209,7 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     follow = scene.case.transmissibility[name].follow
     ranges = follow.ranges.values() if follow else ()
     count = sum(part.count for part in ranges)
-    return Forecast({"values": count}, 1e-3 * count + 0.05 * sum(len(part.responses) for part in ranges))
+    return Forecast({"values": count}, 0.1 + 1e-3 * count + 0.05 * sum(len(part.responses) for part in ranges))
 
 
 #: What a parameter is called in figures, and its unit in tables.

@@ -5,6 +5,7 @@ What the results of root stress share: where ``pair.NAME.root_stress`` takes it 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -175,7 +176,7 @@ def _forecast(scene: Scene, name: str) -> Forecast:
         positions, loads = scene.case.load_distribution.positions, forecasts.loads(scene, name)
         return Forecast({"positions": positions, "loads": loads}, _WIDE + _WIDE_POSITION * positions * loads)
     seconds = 0.25 if scene.case.effects.corner_contact else 0.12
-    seconds *= 1.0 if scene.case.effects.neighbour_coupling else 0.3
+    seconds *= 0.5 * math.ceil(scene.pairs[name].contact_ratio) if scene.case.effects.neighbour_coupling else 0.3
     return forecasts.constant(seconds + seconds_of(stress_sources(scene, name)))
 
 

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
 
 #: Springs of the sun's mesh [s], the laws of both meshes, and the equilibrium over the cycle.
-_TEETH, _LAWS, _LOADS = 0.6, 0.3, 0.05
+_TEETH, _LAWS, _LOADS = 0.6, 0.05, 0.05
 #: A force or an error of a smaller share of the mean force, or of the largest error, is none.
 _ROUND_OFF = 1e-10
 

@@ -174,7 +174,7 @@ PLANET_MODES = Stage(
     present=_present_modes,
     check=check_masses,
     cites=citing(Citation("lin-parker", "model of the set and kinds of its modes")),
-    forecast=lambda _scene, _name: forecasts.constant(1.5),
+    forecast=lambda _scene, _name: forecasts.constant(0.3),
     internal=True,
 )
 
@@ -273,6 +273,6 @@ PLANET_VIBRATION = Stage(
     cites=citing(
         Citation("lin-parker", "model of the set"), Citation("mark", "linear train with transmission errors", "2.9b")
     ),
-    forecast=lambda _scene, _name: forecasts.constant(0.02),
+    forecast=lambda _scene, _name: forecasts.constant(3.0),
     internal=True,
 )

@@ -208,7 +208,7 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     """Reliefs to grind, fitted by repeated load sharing."""
     design = scene.case.design
     grind = len(design.grind) if design else 2
-    return forecasts.constant(0.1 + 0.3 * grind * (1.3 if forecasts.engagements(scene, name) > 1 else 1.0))
+    return forecasts.constant(0.3 + 1.2 * grind * (1.3 if forecasts.engagements(scene, name) > 1 else 1.0))
 
 
 #: ``exact``: by Mark's Eq. 4.6, as tables; ``ground``: linear or parabolic tip reliefs that a shop can grind.

@@ -259,7 +259,7 @@ def _chart_forecast(scene: Scene, name: str) -> Forecast:
     loads = len((chart and chart.loads) or ()) or forecasts.loads(scene, name)
     corners = 3.0 if scene.case.effects.corner_contact else 1.0
     return Forecast(
-        {"candidates": amounts * lengths, "loads": loads}, corners * (0.3 + 1e-4 * amounts * lengths * loads)
+        {"candidates": amounts * lengths, "loads": loads}, corners * (1.2 + 4e-4 * amounts * lengths * loads)
     )
 
 

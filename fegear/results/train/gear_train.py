@@ -175,11 +175,15 @@ def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
     return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
 
 
+#: Seconds of the springs of the first mesh beside those of each: what integrates them is loaded and compiled once.
+_SPRINGS = 0.3
+
+
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     """Springs of every mesh."""
     effects, count = scene.case.effects, len(scene.case.train.mesh) if scene.case.train else 0
     each = _SHARED if effects.corner_contact or effects.neighbour_coupling else _ALONE
-    return forecasts.constant(each * count)
+    return forecasts.constant(_SPRINGS + each * count)
 
 
 #: What every result of a train rests on.

@@ -308,7 +308,7 @@ class FlankConfiguration(Configuration):
         ))  # fmt: skip
 
 
-def flank_ladder(panels: int, *, quick: bool = False) -> Ladder:
+def flank_ladder(panels: int, *, quick: bool = False, internal: bool = False) -> Ladder:
     """Make the ladder; groups of its `meshes` share their solved gears.
 
     Parameters
@@ -317,6 +317,8 @@ def flank_ladder(panels: int, *, quick: bool = False) -> Ladder:
         Along the face, as the case has them.
     quick : bool
         Coarser gears and reference.
+    internal : bool
+        Whether a gear is internal, which coupled slices do not know.
     """
     tolerances = _QUICK_TOLERANCES if quick else _WIDE_TOLERANCES
     best = solid_settings(_QUICK_REFERENCE if quick else _REFERENCE)
@@ -331,6 +333,7 @@ def flank_ladder(panels: int, *, quick: bool = False) -> Ladder:
             *(_one(body, settings, counts[s]) for s in (_PANELS if body == "solid" or settings == usual else (1.0,))),
         )))
         for body in BODIES
+        if not (internal and body == "coupled-slices")
         for settings in map(solid_settings, tolerances)
     ]  # fmt: skip
     reference, check = _one("solid", best, counts[_FINE_PANELS]), _one("solid", second, counts[_CHECK_PANELS])
