@@ -22,8 +22,10 @@ _SHARE = {2: 0.1, 3: 0.25, 4: 1.3}
 #: falls with this power of the number of edges below the wider half-width where that is smaller than this number.
 _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
 #: Neighbours err by the width of the pressures above all, which both orders share: this times what half the width
-#: changes, and a part of what elements one order lower do.
+#: changes, and a part of what elements one order lower do. Of fourth order that part is for a half-width of so much,
+#: and grows with this power of wider ones, which go with the root of the edges' length: long edges bend a thin rim.
 _WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
+_NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 2.5
 #: Root stress of fourth order errs the less beside that of third, the shorter the edges: the part is this power of this
 #: number over the number of edges that the fillet would have if all were as long as along most of it (those that are
 #: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
@@ -31,14 +33,14 @@ _WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
 _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.4, 1.2, 0.2, 2.0
 #: A neighbour's stress is smooth, and its error that of the edges' own curves, which both orders have: so many times
 #: the part of a tooth's own and no less than the other part; relatively no less than so many times a tooth's own error.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 3.0
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 4.0
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
 #: Of neighbours, whose errors by the width of the pressures grow steadily toward the flank's ends.
-_USUAL_NEIGHBOUR = 0.9
+_USUAL_NEIGHBOUR = 0.6
 #: Relative errors of root stress are of no less than this share of its largest over the flank: on a rim that bends as a
 #: whole the tension of a tooth may pass through zero.
 _LEAST_STRESS = 0.1
@@ -136,7 +138,14 @@ class Estimate:
         value = self.fine.neighbour(k, p, q, self.patch)
         of_width = np.abs(value - self.fine.neighbour(k, p, q, 0.5 * self.patch))
         of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch))
-        return value, _WIDTH_SHARE * of_width + _NEIGHBOUR_SHARE[self.fine.flank.order] * of_order
+        return value, _WIDTH_SHARE * of_width + self._neighbour_share * of_order
+
+    @property
+    def _neighbour_share(self) -> float:
+        share = _NEIGHBOUR_SHARE[self.fine.flank.order]
+        if self.fine.flank.order < 4:
+            return share
+        return share * max(self.patch / _NEIGHBOUR_WIDTH, 1.0) ** _NEIGHBOUR_POWER
 
     def _neighbour_at_samples(self, k: int) -> Array:
         if k not in self._neighbours:
