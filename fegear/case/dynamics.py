@@ -161,6 +161,11 @@ class DynamicsPart(Part):
     frequencies: Table[FrequenciesPart] = Field(
         default_factory=FrequenciesPart, description="Frequencies of the dynamic increments."
     )
+    determinants: bool = Field(
+        default=False,
+        description="Include in `dynamic-increments` the determinants of a four-square rig (Mark 2.45 to 2.59) and "
+        "what they give beside the elimination.",
+    )
     positions: Annotated[int, Field(ge=3, le=100_000)] = Field(
         default=201, description="Positions of one tooth pair in histories."
     )

@@ -13,7 +13,7 @@ from helical_gears import helical_gear
 
 from fegear.base.errors import RangeError
 from fegear.contact.unloaded.contact_ellipse import bearing_contact
-from fegear.contact.unloaded.manufacture import as_cut
+from fegear.contact.unloaded.manufacture import ProfileAngleEffects, as_cut
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
 from fegear.contact.unloaded.pair_contact import pair_contact
 from fegear.contact.unloaded.predesign import absorb_linear_error, linear_error
@@ -199,6 +199,24 @@ def test_equations_15_to_17_are_the_derivatives_of_appendix_2():
     ):
         slope = sign * (getattr(high, attribute) - getattr(low, attribute)) / (2.0 * step)
         assert slope == pytest.approx(printed, rel=1e-8), attribute
+        key = {"transverse_pressure_angle": "transverse_angle", "base_helix_angle": "base_lead_angle"}
+        found = getattr(ProfileAngleEffects.by_equations(pinion, step), key.get(attribute, attribute))
+        assert found == pytest.approx(printed * step, rel=1e-13), attribute
+
+
+def test_what_equations_15_to_17_miss_is_of_second_order():
+    """Ten times the error, a hundred times the difference from Appendix 2 with the wrong angle; none of it at zero."""
+    pinion = drive().pinion
+    missed = []
+    for error in (1.0 * ARCMIN, 10.0 * ARCMIN):
+        lines, cut = (
+            np.array(dataclasses.astuple(way(pinion, error)))
+            for way in (ProfileAngleEffects.by_equations, ProfileAngleEffects.as_cut)
+        )
+        assert np.all(lines * cut > 0.0)
+        missed.append(lines - cut)
+    np.testing.assert_allclose(missed[1] / missed[0], 100.0, rtol=0.01)
+    assert dataclasses.astuple(ProfileAngleEffects.as_cut(pinion, 0.0)) == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("minutes", [0.01, 3.0, 60.0])

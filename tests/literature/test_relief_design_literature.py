@@ -2,10 +2,12 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import fegear
 from fegear.base.errors import InputError, RangeError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
@@ -26,6 +28,8 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
+CASES = Path(__file__).parents[2] / "cases"
+RELIEF = CASES / "data" / "mark_minimum_excitation_relief.csv"
 LOAD = 1615.0
 
 
@@ -281,3 +285,29 @@ def test_chart_values_agree_with_the_exact_evaluation(lin):
         )
         exact = transmission_error(relieved, LIN_LOAD)
         assert chart.effective_error[0, i, 0] == pytest.approx(exact.effective_error, rel=5e-3)
+
+
+def test_extrapolated_relief_carries_a_fifth_more_without_tip_interference(tmp_path):
+    """Section 5: "at least 20%" beyond 1615 N; a table that stops at the design zone does not, and the run says so."""
+    case = CASES / "sources" / "mark_overload.toml"
+
+    def corners(changes):
+        found = fegear.run(case, changes)
+        table = {column.head: column.values for column in found.tables["load_sharing_corners_I"].columns}
+        early = [note for note in found.remarks if "relief table ends" in note]
+        return dict(zip(table["total_load [N]"].round(2).tolist(), table["corner_load [N]"], strict=True)), early
+
+    carried, early = corners({})
+    assert early == []
+    assert [carried[load] for load in (1615.0, 1776.5, 1938.0, 2018.75)] == [0.0] * 4
+    assert 0.0 < carried[2099.5] < 10.0
+    head, *rows = (line for line in RELIEF.read_text("utf-8").splitlines() if not line.startswith("#"))
+    # the design zone ends at x = -+6.149 mm: straight on from the last two rows of Table 2 to there, and no further
+    rows[0], rows[-1] = "0.2167,-6.151,0,1.5710e-02", "0.5112,6.150,0,1.5708e-02"
+    (tmp_path / "held.csv").write_text("\n".join([head, *rows]), encoding="utf-8")
+    held, early = corners({"gear.test.relief.table": {"file": str(tmp_path / "held.csv")}})
+    assert held[1938.0] == pytest.approx(142.0, abs=0.5)
+    tip = [note for note in early if "before the tip end of the active profile at 47.244 mm" in note]
+    assert len(tip) == 1
+    assert "ends at radius 46.91" in tip[0]
+    assert "held at 15.71 um" in tip[0]

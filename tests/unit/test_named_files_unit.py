@@ -123,9 +123,10 @@ def test_a_relief_table_that_ends_early_is_held_and_the_result_says_so(folder):
     (folder / "relief.csv").write_text("radius [mm],relief [um]\n43,0\n44,5\n", encoding="utf-8")
     asked = pair_inputs(read_scene(folder / "case.toml"), "I")
     remarks = [remark for remark in asked.assumed if "held" in remark]
+    # toward the root nothing is removed any more, which needs no words
     assert len(remarks) == 1
-    assert "from radius 43 to 44 mm, the active profile from 40.1" in remarks[0]
-    assert remarks[0].endswith("held at 0 and 5 um.")
+    assert "ends at radius 44 mm, before the tip end of the active profile at 45" in remarks[0]
+    assert "beyond, it is held at 5 um" in remarks[0]
     table, tip = asked.flanks[0].tables[0], asked.pair.roll_angle(asked.pair.x_end, "driver")
     assert table.removal(float(tip)) == pytest.approx(5e-6, rel=1e-14)
 

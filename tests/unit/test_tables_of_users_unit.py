@@ -5,6 +5,7 @@ import pytest
 
 import fegear
 from fegear.base.errors import InputError
+from fegear.case.reading import build_scene
 
 HEAD = "x [mm],compliance [um/N]"
 
@@ -122,6 +123,42 @@ def test_lead_tables_and_topographies_cover_the_face(tmp_path):
     assert "only one of the columns" in wide(tmp_path, text, "gear.a.topography.file", **topography)
     text = "roll_angle [deg],z [mm],removal [um]\n" + "".join(f"{r + 100.0},{a * 1e3},1.0\n" for r, a in grid)
     assert "elsewhere than the active profile" in wide(tmp_path, text, "gear.a.topography", **topography)
+
+
+def notes_of(tmp_path, text, **gear):
+    """Notes on tables that end early, of a case whose flanks are loaded over the face."""
+    from fegear.case.built.loaded_flanks import flanks_to_load, table_notes
+
+    (tmp_path / "t.csv").write_text(text)
+    shared = {"teeth": 28, "module": "3 mm", "face_width": "20 mm"}
+    case = {
+        "results": ["load-distribution"],
+        "gear": {"a": shared | gear, "b": shared},
+        "pair": {"I": {"driver": "a", "driven": "b", "load": "5 kN", "width": "slices"}},
+        "effects": {"relief": True},
+    }
+    return [note for note in table_notes(flanks_to_load(build_scene(case, "case", tmp_path), "I")) if "ends at" in note]
+
+
+def test_tables_that_end_before_the_flank_does_say_where_and_what_is_held(tmp_path):
+    """Tips relieved short of their ends touch under overload, and nobody who loads wide flanks was told."""
+    file = str(tmp_path / "t.csv")
+    relief = {"relief": {"table": {"file": file}}}
+    head = "radius [mm],relief [um]"
+    (said,) = notes_of(tmp_path, rows([39.9, 44.0], [0.0, 12.0], head), **relief)
+    assert "Gear a: its relief table ends at radius 44 mm, before the tip end of the active profile at 45 mm" in said
+    assert "held at 12 um" in said
+    (said,) = notes_of(tmp_path, rows([42.0, 45.0], [3.0, 12.0], head), **relief)
+    assert "ends at radius 42 mm, before the root end" in said
+    assert notes_of(tmp_path, rows([39.9, 45.0], [3.0, 12.0], head), **relief) == []
+    lead = {"lead": {"file": file}}
+    (said,) = notes_of(tmp_path, rows([-10.0, 9.0], [0.0, 5.0], "z [mm],removal [um]"), **lead)
+    assert "lead table ends at z = 9 mm, before end II of the face at 10 mm" in said
+    grid = [(r, z) for r in (39.9, 44.0) for z in (-9.0, 10.0)]
+    text = "radius [mm],z [mm],removal [um]\n" + "".join(f"{r},{z},{r - 39.9}\n" for r, z in grid)
+    tip, end = notes_of(tmp_path, text, topography={"file": file})
+    assert "topography ends at radius 44 mm, before the tip end" in tip
+    assert "topography ends at z = -9 mm, before end I of the face at -10 mm" in end
 
 
 def test_a_gap_in_millimetres_is_refused(tmp_path):

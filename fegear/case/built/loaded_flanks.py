@@ -13,6 +13,7 @@ from fegear.case.built.loaded_pair import build_relief
 from fegear.case.built.pair_inputs import Flanks, gear_flanks, gear_name
 from fegear.case.built.shafts import check_heights, on_shafts
 from fegear.case.built.solid_influence import check_solid_gear, check_source
+from fegear.case.built.table_ends import face_table_notes
 from fegear.case.effects import WIDE_EFFECTS, EffectsPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
@@ -125,6 +126,22 @@ class FlanksToLoad:
             one, other = (flank.spacing for flank in self.flanks)
             apart = replace(apart, driver_spacing=one, driven_spacing=other, base_pitch=self.base_pitch)
         return apart
+
+
+def table_notes(asked: FlanksToLoad) -> tuple[str, ...]:
+    """Where tables of relief, lead and topography end before the flanks do, if the effect `relief` counts them."""
+    if not asked.effects.relief:
+        return ()
+    parts = zip(MEMBERS, asked.flanks, asked.faces, strict=True)
+    notes = (
+        note
+        for member, flank, face in parts
+        for note in (
+            *flank.table_notes(asked.pair, member),
+            *face_table_notes(asked.pair, member, flank.gear, face.parts),
+        )
+    )
+    return tuple(dict.fromkeys(notes))
 
 
 def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.case.built.table_ends import relief_table_notes
 from fegear.case.csv_file import read_columns
 from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
 from fegear.case.part import at
@@ -30,10 +31,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.formula_root_stress import FormulaRootStress
     from fegear.fem.plane.gear import GearInfluence
     from fegear.geometry.gear import Gear
-
-
-#: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.
-_UNCOVERED = 1e-3
 
 
 class ComplianceTable(NamedTuple):
@@ -71,6 +68,11 @@ class Flanks:
         """Whether the relief's amount is given in Welbourn's Delta."""
         part = self.relief
         return part is not None and any(end.amount_over_delta is not None for end in (*part.tip, *part.root))
+
+    def table_notes(self, pair: GearPair, member: Member) -> tuple[str, ...]:
+        """Where tables of the relief end before the active profile of a pair does."""
+        measured = self.relief is not None and not self.relief.table
+        return relief_table_notes(pair, member, self.gear, self.tables, measured=measured)
 
 
 @dataclass(frozen=True)
@@ -147,7 +149,9 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     nominal = part.normal_load(pair) or math.nan
     assumed = effect_remarks(scene, name)
     if effects.relief:
-        assumed += table_remarks(pair, (first, second))
+        for member, flank in zip(MEMBERS, (first, second), strict=True):
+            assumed += flank.table_notes(pair, member)
+        assumed = tuple(dict.fromkeys(assumed))
     if table is not None:
         from fegear.contact.plane.table_compliance import table_note
 
@@ -238,26 +242,6 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
             if interference(pair, member).below_form_circle
         ]
     return tuple(remarks)
-
-
-def table_remarks(pair: GearPair, flanks: tuple[Flanks, Flanks]) -> tuple[str, ...]:
-    """Where relief tables end before the active profile does."""
-    remarks = []
-    for member, flank in zip(MEMBERS, flanks, strict=True):
-        gear = pair.gear(member)
-        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
-        for table in flank.tables:
-            first, last = float(table.roll[0]), float(table.roll[-1])
-            least = _UNCOVERED * (high - low)
-            if first - low <= least and high - last <= least:
-                continue
-            radii = [float(gear.tooth.radius_of_roll(t)) * gear.module * 1e3 for t in (first, last, low, high)]
-            remarks.append(
-                f"Gear {flank.gear}: its relief table runs from radius {radii[0]:.6g} to {radii[1]:.6g} mm, the active "
-                f"profile from {radii[2]:.6g} to {radii[3]:.6g} mm; beyond its ends the table is held at "
-                f"{table.values[0] * 1e6:.4g} and {table.values[-1] * 1e6:.4g} um."
-            )
-    return tuple(dict.fromkeys(remarks))
 
 
 def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:

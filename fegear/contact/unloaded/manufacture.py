@@ -2,7 +2,8 @@
 
 What a wrongly set or modified cutter takes off a pinion's designed flank, over roll angle and face (TM-107451).
 
-From an error of the pinion's lead, as a machine leaves it, to that of its lead angle (NASA TM-107451, Eq. 18).
+From an error of the pinion's lead, as a machine leaves it, to that of its lead angle (NASA TM-107451, Eq. 18), and
+from one of its normal profile angle to what the flank's equations contain (Eqs. 15 to 17).
 """
 
 from __future__ import annotations
@@ -68,6 +69,43 @@ def as_cut(gear: Gear, *, profile_angle: float = 0.0, lead_angle: float = 0.0) -
         thickness_allowance=tooth.thickness_allowance * math.tan(angle) / math.tan(rack.pressure_angle),
     )
     return replace(gear, tooth=made, hand="spur" if helix == 0.0 else hand)
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileAngleEffects:
+    """What an error of the normal profile angle changes in a pinion (TM-107451, Eqs. 15 to 17).
+
+    Parameters
+    ----------
+    transverse_angle : float
+        Delta alpha_t1, of the transverse profile angle [rad].
+    base_lead_angle : float
+        Delta lambda_b1, of the lead angle on the base cylinder [rad].
+    base_radius : float
+        Delta r_b1 [m].
+    """
+
+    transverse_angle: float
+    base_lead_angle: float
+    base_radius: float
+
+    @classmethod
+    def by_equations(cls, gear: Gear, error: float) -> ProfileAngleEffects:
+        """Eqs. 15 to 17 as printed, which are linear in the error [rad]."""
+        alpha_t, lambda_b = gear.transverse_pressure_angle, 0.5 * math.pi - gear.base_helix_angle
+        turn = math.sin(2.0 * alpha_t) / math.sin(2.0 * gear.normal_pressure_angle) * error
+        rise = 0.5 * math.sin(2.0 * lambda_b) * math.tan(alpha_t) * turn
+        return cls(turn, rise, -gear.pitch_radius * math.sin(alpha_t) * turn)
+
+    @classmethod
+    def as_cut(cls, gear: Gear, error: float) -> ProfileAngleEffects:
+        """Appendix 2 run again with the wrong angle, less the design: no linearisation."""
+        cut = as_cut(gear, profile_angle=error)
+        return cls(
+            cut.transverse_pressure_angle - gear.transverse_pressure_angle,
+            gear.base_helix_angle - cut.base_helix_angle,
+            cut.base_radius - gear.base_radius,
+        )
 
 
 #: Places over the height of the flank between which the profile's deviation is smooth.

@@ -14,6 +14,7 @@ import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.case.reading import Scene
+from fegear.contact.unloaded.manufacture import ProfileAngleEffects
 from fegear.contact.unloaded.pair import HelicalPair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
@@ -139,6 +140,27 @@ def _design_table(name: str, rows: list[tuple[str, Gear]]) -> Table:
     return Table(f"flank_design_{name}", tuple(columns), f"Design parameters of the flanks of pair {name}")
 
 
+def _profile_angle_table(name: str, pair: HelicalPair) -> Table:
+    """What the wrong profile angle changes, by Eqs. 15 to 17 and by Appendix 2; a lead error does not count here."""
+    error = pair.errors.profile_angle
+    rows = [ProfileAngleEffects.by_equations(pair.pinion, error), ProfileAngleEffects.as_cut(pair.pinion, error)]
+
+    def column(key: str, values: list[float], unit: str, about: str) -> Column:
+        return Column(key, np.array([*values, values[0] - values[1]]), unit, about)
+
+    said = np.array(["Eqs. 15 to 17", "Appendix 2 as cut", "difference"])
+    return Table(
+        f"profile_angle_error_{name}",
+        (
+            Column("by", said, "", "linear equations, the design formulas with the wrong angle, and their difference"),
+            column("alpha_t", [row.transverse_angle for row in rows], "arcsec", "of the transverse profile angle"),
+            column("lambda_b", [row.base_lead_angle for row in rows], "arcsec", "of the base lead angle"),
+            column("r_b", [row.base_radius for row in rows], "um", "of the base radius"),
+        ),
+        f"Changes of the pinion of pair {name} by a profile angle error of {math.degrees(error) * 60.0:.6g} arcmin",
+    )
+
+
 def _cutters_table(name: str, data: FlankGenerationData) -> Table:
     """Normal sections of both cutters over the u that both flanks need."""
     ends = np.concatenate([flank.u.ravel() for flank in data.flanks])
@@ -190,7 +212,9 @@ def _present(data: FlankGenerationData, asked: FlankGenerationInputs) -> Outcome
     if pair.crown:
         remarks.append(f"Pair {name}: the lengthwise crown is not part of the rack cutter and not drawn.")
     tables = (
-        _design_table(name, rows), _cutters_table(name, data),
+        _design_table(name, rows),
+        *((_profile_angle_table(name, pair),) if pair.errors.profile_angle else ()),
+        _cutters_table(name, data),
         *(_flank_table(name, gear, flank) for gear, flank in zip(gears, data.flanks, strict=True)),
     )  # fmt: skip
     figures = (*rack_cutter_figures(name, gears, pair, data.flanks), *section_figures(name, gears, pair))

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from fegear.base.arrays import Array
 from fegear.case.reading import Scene
 from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth, LoadHistory
 from fegear.engine.citation import Citation, citing
@@ -12,7 +15,7 @@ from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Subject, Upstream, Work
-from fegear.engine.table import Table
+from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
@@ -49,7 +52,20 @@ def _tables(name: str, data: LoadSharingData) -> tuple[Table, ...]:
     if len(loads) > 1:
         every = over_loads(loads, [columns_of(h.found, table="path", load=k) for k in range(len(loads))])
         tables.append(Table(f"load_sharing_loads_{name}", every, f"{title} for every load"))
+    if len(loads) > 1 and h.corner is not None:
+        tables.append(_corners(name, h.found.load, h.corner, np.asarray(loads)))
     return tuple(tables)
+
+
+def _corners(name: str, load: Array, corner: Array, loads: Array) -> Table:
+    """What tip corners carry off the path under every load: from which load on there is tip interference."""
+    carried = (corner[:, None] * load).max(axis=0)
+    columns = (
+        Column("total_load", loads, "N", "mesh force"),
+        Column("corner_load", carried, "N", "largest load on one tooth pair whose tip corner touches off the path"),
+        Column("share", carried / loads, "", "corner_load over total_load"),
+    )
+    return Table(f"load_sharing_corners_{name}", columns, f"Load on tip corners of {name} for every load")
 
 
 def _values(name: str, h: LoadHistory) -> tuple[Value, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.case.built.loaded_flanks import FlanksToLoad, check_flanks_to_load, flanks_to_load
+from fegear.case.built.loaded_flanks import FlanksToLoad, check_flanks_to_load, flanks_to_load, table_notes
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.shafts import on_shafts
@@ -204,7 +204,7 @@ def _present(data: LoadedWidePair, asked: FlanksToLoad) -> Outcome:
     }  # fmt: skip
     name = asked.name
     said = (
-        *_heavy(name, data), *_sliced(name, data),
+        *table_notes(asked), *_heavy(name, data), *_sliced(name, data),
         *neglected_remarks(name, data.neglected, asked.effects, asked.tolerance, asked.nominal), *_beside(name, data),
         *_short(name, data),
     )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,10 @@ from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_train, the_train
 
+if TYPE_CHECKING:
+    from fegear.dynamics.train.four_square import FourSquare
+    from fegear.dynamics.train.peaks import IncrementPeak
+
 #: Most meshes of a train whose pairs each have a figure and asymptotes of their own.
 _MOST_MESHES = 3
 #: How far beyond an increment the ordinate of its parts goes.
@@ -32,9 +37,10 @@ _ROOM = 1.15
 
 @dataclass(frozen=True)
 class FrequencyInputs:
-    """Frequencies of the static transmission error [Hz]."""
+    """Frequencies of the static transmission error [Hz], and whether Mark's determinants are wanted."""
 
     frequencies: NDArray[np.float64]
+    determinants: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,17 +52,27 @@ class IncrementsData:
     increments: Complex
     low: Complex | None
     high: Complex | None
+    peaks: tuple[IncrementPeak, ...] = ()
+    rig: FourSquare | None = None
 
 
 def _compute(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> IncrementsData:
     from fegear.dynamics.train.increments import dynamic_increments, high_frequency_increments, low_frequency_increments
+    from fegear.dynamics.train.peaks import increment_peaks
 
     data, omega = gear_train(upstream), 2.0 * math.pi * asked.frequencies
     found = dynamic_increments(data.train, omega)
     low = high = None
+    peaks: tuple[IncrementPeak, ...] = ()
     if len(data.names) <= _MOST_MESHES:
         low, high = low_frequency_increments(data.train, omega), high_frequency_increments(data.train, omega)
-    return IncrementsData(data, asked.frequencies, found, low, high)
+        peaks = increment_peaks(data.train, omega, found)
+    rig = None
+    if asked.determinants:
+        from fegear.dynamics.train.four_square import FourSquare
+
+        rig = FourSquare.of(data.train)
+    return IncrementsData(data, asked.frequencies, found, low, high, peaks, rig)
 
 
 def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
@@ -80,7 +96,67 @@ def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
             for i in range(len(names))
             for j in range(len(names))
         ]
+    if known.peaks:
+        tables.append(_peaks(names, known.peaks))
+    if known.rig is not None:
+        table, more = _determinants(frequency, names, known, known.rig)
+        tables.append(table)
+        values += more
     return Outcome(known, tuple(tables), tuple(values), figures=tuple(figures))
+
+
+def _peaks(names: tuple[str, ...], peaks: tuple[IncrementPeak, ...]) -> Table:
+    """Resonances as the increments show them: with damping these lie off the undamped modes."""
+    return Table(
+        "dynamic_increments_peaks",
+        (
+            Column("increment", np.array([f"Q_{names[p.mesh]}_{names[p.source]}" for p in peaks]), "", "which"),
+            Column("frequency", np.array([p.frequency for p in peaks]), "Hz", "where its modulus has a maximum"),
+            Column("modulus", np.array([p.modulus for p in peaks]), "", "there"),
+        ),
+        "Peaks of the dynamic increments",
+    )
+
+
+def _determinants(
+    frequency: Column, names: tuple[str, ...], known: IncrementsData, rig: FourSquare
+) -> tuple[Table, list[Value]]:
+    """Mark's determinants, the increments that they give, and how far these are from the elimination's."""
+    from fegear.dynamics.train.four_square import relative_difference
+
+    omega, found = 2.0 * math.pi * known.frequencies, known.increments
+    d, (own, cross) = rig.determinant(omega), rig.numerators(omega)
+    (printed, by_cross), ratio = rig.as_printed(omega), rig.own_by_ratio(omega)
+    i, j = f"{names[0]}_{names[0]}", f"{names[0]}_{names[1]}"
+    off = {
+        "D": relative_difference(d, rig.determinant_of_elements(omega)),
+        f"printed_{i}": relative_difference(printed, found[0, 0]),
+        i: relative_difference(ratio, found[0, 0]),
+        j: relative_difference(by_cross, found[0, 1]),
+    }
+    said = {
+        f"printed_{i}": "of (2.58) as printed from the elimination, relative",
+        i: "of the ratio of determinants from the elimination, relative", j: "of (2.59) from the elimination, relative",
+    }  # fmt: skip
+    columns = [
+        frequency,
+        *_parts("D", d, "determinant by its polynomial (2.57) [(N m)^3]"),
+        Column("difference_D", off["D"], "", "of (2.57) from the elements (2.46c), relative"),
+        *_parts(f"N_{i}", own, "N_1,I + N_2,I (2.55) [N (N m)^2]"),
+        *_parts(f"N_{j}", cross, "N_1,II + N_2,II (2.56) [N (N m)^2]"),
+        *_parts(f"Q_{i}_printed", printed, "R N/D - 1 as printed (2.58)"),
+        *_parts(f"Q_{i}_ratio", ratio, "the same as -D(mesh removed)/D, which does not cancel"),
+        *_parts(f"Q_{j}_printed", by_cross, "R N/D (2.59)"),
+        *_parts(f"Q_{i}", found[0, 0], "by elimination"),
+        *_parts(f"Q_{j}", found[0, 1], "by elimination"),
+        *(Column(f"difference_{key}", off[key], "", words) for key, words in said.items()),
+    ]
+    values = [
+        Value(f"determinants_difference_{key}", float(off[key].max()), "", None,
+              f"largest over the frequencies, {words}, at {known.frequencies[int(np.argmax(off[key]))]:.6g} Hz")
+        for key, words in said.items()
+    ]  # fmt: skip
+    return Table("dynamic_increments_determinants", tuple(columns), "Determinants of the four-square rig"), values
 
 
 def _parts(name: str, q: Complex, meaning: str) -> list[Column]:
@@ -151,6 +227,20 @@ def _figure(data: IncrementsData, i: int, j: int, low: Complex, high: Complex) -
     )  # fmt: skip
 
 
+def _inputs(scene: Scene, _subject: str) -> FrequencyInputs:
+    part = scene.case.dynamics
+    return FrequencyInputs(part.frequencies.array, part.determinants)
+
+
+def _check(scene: Scene, _subject: str) -> None:
+    """Refuse determinants of a train that is not Mark's rig."""
+    if scene.case.dynamics.determinants:
+        from fegear.case.built.train import build_train, train_inputs
+        from fegear.dynamics.train.four_square import FourSquare
+
+        FourSquare.of(build_train(train_inputs(scene)))
+
+
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     """One small solution for each frequency and pair of meshes."""
     count, (meshes, bodies) = scene.case.dynamics.frequencies.count, forecasts.sizes(scene)
@@ -160,7 +250,8 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 DYNAMIC_INCREMENTS = Stage(
     subjects=the_train,
     needs=needs_train,
-    inputs=lambda scene, _subject: FrequencyInputs(scene.case.dynamics.frequencies.array),
+    inputs=_inputs,
+    check=_check,
     compute=_compute,
     present=_present,
     cites=citing(Citation("mark", "transmission-error dynamic increment functions", "Eqs. 2.57 to 2.66")),
