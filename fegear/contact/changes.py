@@ -15,6 +15,8 @@ from fegear.base.arrays import Array, Index, Mask
 
 #: Parts into which a pass cuts every cell in question: as fast as cutting them in two, for all are computed at once.
 _PARTS = 32
+#: Changes of sign within a cell beyond which a function hovers at zero.
+_MOST_IN_A_CELL = 8
 
 
 def sign_changes(nearness: Callable[[Array], Array], x: Array, piece: Index, passes: int) -> Array:
@@ -36,6 +38,7 @@ def sign_changes(nearness: Callable[[Array], Array], x: Array, piece: Index, pas
     looked_at = _may_change(x, piece, values)
     low, high = x[:-1][looked_at], x[1:][looked_at]
     first, last = values[:, :-1][:, looked_at] > 0.0, values[:, 1:][:, looked_at] > 0.0
+    end = np.zeros(low.size, dtype=np.intp)
     inside = np.arange(1, _PARTS) / _PARTS
     for _ in range(passes):
         if not low.size:
@@ -43,10 +46,35 @@ def sign_changes(nearness: Callable[[Array], Array], x: Array, piece: Index, pas
         ends = np.concatenate([low[None], low + inside[:, None] * (high - low), high[None]])
         between = nearness(ends[1:-1].ravel()).reshape(-1, _PARTS - 1, low.size) > 0.0
         positive = np.concatenate([first[:, None], between, last[:, None]], axis=1)
-        part, cell = np.nonzero((positive[:, 1:] != positive[:, :-1]).any(axis=0))
+        part, cell, end = _followed((positive[:, 1:] != positive[:, :-1]).any(axis=0), end)
         low, high = ends[part, cell], ends[part + 1, cell]
         first, last = positive[:, part, cell], positive[:, part + 1, cell]
     return np.sort(0.5 * (low + high))
+
+
+def _followed(changes: Mask, end: Index) -> tuple[Index, Index, Index]:
+    """Parts and cells of the changes to follow, and at which end of a hovering function each stands.
+
+    Where the sign changes in many parts of a cell it is that of round-off: flanks that are designed to touch without
+    load do so. Of such a cell the first and the last change are followed, and of theirs only the outermost.
+
+    Parameters
+    ----------
+    changes : ndarray of bool, shape (parts, cells)
+    end : ndarray of int, shape (cells,)
+        -1 where only the first change is followed, 1 where only the last, 0 where all are.
+    """
+    hovers = (changes.sum(axis=0) > _MOST_IN_A_CELL) & (end == 0)
+    wanted = changes & (~hovers & (end == 0))
+    part, cell = np.nonzero(wanted)
+    ends = np.zeros(cell.size, dtype=np.intp)
+    some = changes.any(axis=0)
+    first, last = np.flatnonzero((hovers | (end < 0)) & some), np.flatnonzero((hovers | (end > 0)) & some)
+    return (
+        np.concatenate([part, changes[:, first].argmax(axis=0), _PARTS - 1 - changes[::-1, last].argmax(axis=0)]),
+        np.concatenate([cell, first, last]),
+        np.concatenate([ends, np.full(first.size, -1), np.full(last.size, 1)]),
+    )
 
 
 def _may_change(x: Array, piece: Index, nearness: Array) -> Mask:

@@ -40,3 +40,21 @@ def test_random_cubics_change_at_their_roots(seed):
     roots = draw.uniform(0.05, 0.95, (3, 3))
     got = found([lambda x, r=r: np.prod(x[..., None] - r, axis=-1) for r in roots], samples=48)
     assert got == pytest.approx(np.sort(roots.ravel()), abs=1e-9)
+
+
+def test_a_function_that_hovers_at_zero_ends_with_a_few_changes():
+    """Flanks designed to touch without load: round-off there multiplied the cells with every pass, without end."""
+    rng = np.random.default_rng(4)
+    asked = []
+
+    def nearness(at):
+        asked.append(at.size)
+        noise = 1e-17 * rng.standard_normal(at.size)
+        return np.where(at < 0.3, noise, at - 0.3)[None]
+
+    x = np.linspace(0.0, 1.0, 49)
+    found = sign_changes(nearness, x, np.zeros(x.size, dtype=int), 6)
+    assert 1 <= found.size <= 2 * x.size
+    assert max(asked) < 100 * x.size
+    # where it leaves the noise for good is found to the last of its cells
+    assert found[-1] == pytest.approx(0.3, abs=1.5 / 48)

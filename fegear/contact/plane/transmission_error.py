@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Divisions of a cell in which contact changes.
 _PASSES = 4
+#: Share of the load below which a pair carries nothing: what is left of one that touches without load.
+_NO_SHARE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -102,14 +104,15 @@ def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples
 def _nearness(engagement: Engagement, grid: RollGrid, load: float, cycle: int) -> Array:
     """How firmly each pair is in contact, shape (n, P): its share of the load, or minus its gap over the deflection.
 
-    Minus infinity where it is out of reach.
+    Minus infinity where it is out of reach. Shares that are round-off are none: flanks that were designed to touch
+    without load would part and meet between any two points.
     """
     found = engagement.solve(grid, [load], cycle)
     loads, error = found.loads[:, :, 0], found.transmission_error[:, 0]
     own = np.einsum("jkp,kp->jp", grid.matrices.at_load(found.loads)[..., 0], loads)
     gap = np.where(grid.contacts.present, own + found.separation - error, np.inf)
     deflection = np.where(loads > 0.0, own, 0.0).max(axis=0)
-    return np.where(loads > 0.0, loads / load, -np.maximum(gap, 0.0) / deflection)
+    return np.where(loads > 0.0, loads / load - _NO_SHARE, -np.maximum(gap, 0.0) / deflection)
 
 
 def transmission_error(
