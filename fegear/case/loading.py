@@ -147,7 +147,8 @@ class TransmissionErrorPart(Part):
 
     method: Literal["quadrature", "mark-series"] = Field(
         default="quadrature",
-        description="The exact quadrature alone, or Mark's series and closed forms as well, with what they miss.",
+        description="The exact quadrature alone, or Mark's series and closed forms as well, with what they miss, and "
+        "the lines of `mesh-force-spectrum` by the series.",
     )
     terms: Annotated[int, Field(ge=0, le=200)] = Field(
         default=3, description="M of Mark's series, 0 to 200; the report advises 3 at least."

@@ -326,7 +326,7 @@ def numbers_of(paper):
 #: Numbers worth the word "printed", those that a paper reads off its own curves, and those printed twice, by paper.
 WORTH = {
     "blankenship_singh": (29, 0, 3), "lin_huston_coy": (0, 0, 0), "lin_townsend_oswald": (0, 1, 0),
-    "litvin": (0, 0, 0), "mark": (5, 2, 1),
+    "litvin": (0, 0, 0), "mark": (3, 3, 1),
 }  # fmt: skip
 #: What is arithmetic on what is given, wherever it stands: geometry, kinematics and loads by a formula of the input.
 ARITHMETIC = re.compile(
@@ -356,7 +356,7 @@ def test_what_is_called_printed_is_an_answer(paper):
 #: Figures, tables and groups of equations of each paper, and how many of them differ in whole or in part.
 ITEMS = {
     "blankenship_singh": (31, 4), "lin_huston_coy": (25, 0), "lin_townsend_oswald": (25, 8), "litvin": (43, 0),
-    "mark": (82, 6),
+    "mark": (83, 8),
 }  # fmt: skip
 
 

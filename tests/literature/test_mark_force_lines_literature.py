@@ -6,6 +6,7 @@ every product a convolution of 64 harmonics. Dynamic increments and forces are f
 """
 
 import math
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.mark_lines import has_series, series_error
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
 from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.engine.plan import make_plan
@@ -114,3 +116,31 @@ def test_lines_that_the_slave_gears_excite(name, largest):
     assert math.sqrt(2 * found[0]) == pytest.approx(largest, abs=0.01)
     assert lines[0] == pytest.approx(found[0], rel=1e-2)  # what 64 harmonics leave
     np.testing.assert_allclose(np.sqrt(lines[:4]), np.sqrt(found[:4]), atol=0.02 * math.sqrt(found[0]))
+
+
+@pytest.mark.parametrize(("terms", "share", "typical"), [(5, 0.0418, 377.0), (6, 0.0730, 1.35e3), (20, 0.0559, 5.15e3)])
+def test_a_case_gives_the_lines_of_the_papers_series(terms, share, typical):
+    """Fig. 19 over Fig. 18 with M as the user chooses it: the same lines as by the sums above, which share no code."""
+    found = {}
+    for name, other in (("mark_fig22", "four_square_dynamics"), ("mark_fig23", "four_square_minimum_excitation")):
+        train = rig(other)
+        errors = [series_error(mesh.excitation, mesh.force, LINES, terms) for mesh in train.meshes]
+        lines = mesh_force_spectrum(train.train, errors, [10_000 * math.pi / 30], LINES).power_lines[0, 0, :, 0]
+        paper = by_the_paper(other, terms)
+        # the sums above take no account of where the relief has its kinks
+        np.testing.assert_allclose(lines, paper, atol=2e-5 * paper.max(), err_msg=name)
+        found[name] = lines
+    straight, least = found["mark_fig22"], found["mark_fig23"]
+    assert math.sqrt(least.sum() / straight.sum()) == pytest.approx(share, rel=0.01)
+    assert np.median(straight / least) == pytest.approx(typical, rel=0.02)
+
+
+def test_the_series_of_many_terms_is_the_error_without_parting():
+    train = rig("four_square_minimum_excitation")
+    mesh = train.meshes[0]
+    exact = mesh.error.fourier(np.arange(1, 9))
+    found = series_error(mesh.excitation, mesh.force, 256, 60).fourier(np.arange(1, 9))
+    np.testing.assert_allclose(found, exact, atol=2e-3 * np.abs(exact).max())
+    coupled = replace(mesh.excitation, slotted=False)
+    assert has_series(mesh.excitation)
+    assert not has_series(coupled)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +14,18 @@ from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.dynamics.train.increments import dynamic_increments
-from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Train
+
+
+class LineSource(Protocol):
+    """A static transmission error by its Fourier coefficients: `Periodic`, or those of a series."""
+
+    @property
+    def pitches(self) -> int:
+        """Base pitches in one period."""
+
+    def fourier(self, n: ArrayLike) -> Complex:
+        """Complex coefficients of orders of the period [m]."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +60,7 @@ class MeshForceSpectrum:
 
 def mesh_force_spectrum(
     train: Train,
-    errors: Sequence[Periodic],
+    errors: Sequence[LineSource],
     speeds: ArrayLike,
     harmonics: int = 64,
     static: ArrayLike | None = None,
@@ -63,7 +74,7 @@ def mesh_force_spectrum(
     ----------
     train : Train
         Meshes with their mean stiffness.
-    errors : sequence of Periodic, one per mesh
+    errors : sequence of Periodic or SeriesError, one per mesh
         Static transmission error [m] under the mean load over the base pitch, or as many as its spacing errors take to
         repeat; its mean has no meaning here.
     speeds : array_like

@@ -111,7 +111,7 @@ def _peaks(names: tuple[str, ...], peaks: tuple[IncrementPeak, ...]) -> Table:
         "dynamic_increments_peaks",
         (
             Column("increment", np.array([f"Q_{names[p.mesh]}_{names[p.source]}" for p in peaks]), "", "which"),
-            Column("frequency", np.array([p.frequency for p in peaks]), "Hz", "where its modulus has a maximum"),
+            Column("resonance", np.array([p.frequency for p in peaks]), "Hz", "where its modulus has a maximum"),
             Column("modulus", np.array([p.modulus for p in peaks]), "", "there"),
         ),
         "Peaks of the dynamic increments",

@@ -15,7 +15,7 @@ from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Points, Stems
 from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.results import forecasts
@@ -51,10 +51,20 @@ _NO_FORCE = 1e-12
 
 
 @dataclass(frozen=True)
+class SpectrumInputs:
+    """How the train is run, M of Mark's series where its lines are wanted as well, and the name of the mesh."""
+
+    part: DynamicsPart
+    terms: int | None
+    name: str
+
+
+@dataclass(frozen=True)
 class SpectrumData:
     """Forces in one mesh at the case's speed, over its speeds (the waterfall) where it gives a range, and its pull.
 
-    `ripple` and `ripple_waterfall` are the same of torque ripple; None without it.
+    `series` has the lines by Mark's series, None where they are not wanted or the series does not apply; `ripple` and
+    `ripple_waterfall` are the same of torque ripple; None without it.
     """
 
     train: GearTrain
@@ -64,9 +74,11 @@ class SpectrumData:
     pull: Pull | None
     ripple: RippleSpectrum | None = None
     ripple_waterfall: RippleSpectrum | None = None
+    series: MeshForceSpectrum | None = None
 
 
-def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> SpectrumData:
+def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> SpectrumData:
+    from fegear.dynamics.train.mark_lines import has_series, series_error
     from fegear.dynamics.train.spectra import mesh_force_spectrum
     from fegear.dynamics.train.tooth_force import largest_pull
     from fegear.dynamics.train.torque_response import ripple_spectrum
@@ -83,10 +95,14 @@ def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> Spe
         if data.ripple:
             rippled = ripple_spectrum(data.train, data.ripple, speeds / data.speed_ratio)
     pull = largest_pull(data, i, [speed], part.harmonics)
-    return SpectrumData(data, i, found, waterfall, pull, ripple, rippled)
+    series = None
+    if asked.terms is not None and all(has_series(mesh.excitation) for mesh in data.meshes):
+        errors = [series_error(mesh.excitation, mesh.force, part.harmonics, asked.terms) for mesh in data.meshes]
+        series = mesh_force_spectrum(data.train, errors, [speed], part.harmonics, phases=data.phases)
+    return SpectrumData(data, i, found, waterfall, pull, ripple, rippled, series)
 
 
-def _present(made: SpectrumData, asked: Reads[DynamicsPart]) -> Outcome:
+def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
     name, data, i, found = asked.name, made.train, made.mesh, made.spectrum
     amplitude = found.amplitudes[i, :, :, 0]
     table = Table(
@@ -111,8 +127,33 @@ def _present(made: SpectrumData, asked: Reads[DynamicsPart]) -> Outcome:
         tables.append(ripple_table(name, i, made.ripple))
     if made.ripple_waterfall is not None:
         tables.append(ripple_waterfall_table(name, i, made.ripple_waterfall, data))
+    remarks = pull_remarks(made.pull)
+    if made.series is not None and asked.terms is not None:
+        more, table = _by_series(name, made, made.series, asked.terms)
+        values, tables = (*values, *more), [*tables, table]
+    elif asked.terms is not None:
+        none = "no lines by Mark's series, which includes neither coupled teeth nor spacing errors."
+        remarks = (f"Mesh {name}: {none}", *remarks)
     settings: dict[str, object] = {"harmonics": asked.part.harmonics, "speed": asked.part.one_speed}
-    return Outcome(made, tuple(tables), values, settings, pull_remarks(made.pull), _spectrum_figures(made))
+    return Outcome(made, tuple(tables), values, settings, remarks, _spectrum_figures(made))
+
+
+def _by_series(name: str, made: SpectrumData, series: MeshForceSpectrum, terms: int) -> tuple[tuple[Value, ...], Table]:
+    """The lines by M terms of Mark's series, with products of as many harmonics, beside the exact ones."""
+    data, i = made.train, made.mesh
+    exact = made.spectrum.power_lines[i, :, made.spectrum.orders % 1.0 == 0.0, 0].T
+    power = series.power_lines[i, :, :, 0]
+    columns = (
+        *_lines(series, data),
+        column_of(series, "power_lines", power[series.present], meaning=f"by Mark's series, M = {terms}"),
+        Column("power_exact", exact[series.present], "N^2", "by quadrature between all kinks"),
+    )
+    values = tuple(
+        Value(f"{name}.rms_by_series_from_{other}", math.sqrt(power[j].sum()), "N", None,
+              f"root mean square of all its lines by Mark's series, M = {terms}")
+        for j, other in enumerate(data.names)
+    )  # fmt: skip
+    return values, Table(f"mesh_force_series_{name}", columns, f"Lines of the force in mesh {name} by Mark's series")
 
 
 def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
@@ -244,10 +285,15 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
     return Forecast({"harmonics": part.harmonics, "speeds": int(part.speed_values.size)}, seconds)
 
 
+def _inputs(scene: Scene, name: str) -> SpectrumInputs:
+    asked = scene.case.transmission_error
+    return SpectrumInputs(scene.case.dynamics, asked.terms if asked.method == "mark-series" else None, name)
+
+
 MESH_FORCE_SPECTRUM = Stage(
     subjects=meshes,
     needs=needs_train,
-    inputs=Reads.of(lambda scene: scene.case.dynamics),
+    inputs=_inputs,
     compute=_compute,
     present=_present,
     check=needs_one_speed,
