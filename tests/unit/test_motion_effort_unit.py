@@ -1,10 +1,12 @@
 """How long a motion is followed: by work, told while it is spent, little where nothing would settle."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.case.built.train import steady_motion
 from fegear.dynamics.motion import effort, steady_state
 from fegear.dynamics.motion.effort import EFFORT, ENDLESS_EFFORT, Effort, effort_for, least_decay, of_one
 from fegear.dynamics.motion.motion_model import MotionModel, pack
@@ -99,3 +101,17 @@ def test_an_effort_that_is_not_needed_changes_nothing(monkeypatch):
     after = steady_state.steady_state(model, tolerance=1e-3)
     assert before.kind == after.kind == "periodic"
     assert np.array_equal(before.tooth_force, after.tooth_force)
+
+
+@pytest.mark.parametrize("method", ["averaging", "shooting"])
+def test_a_steady_motion_is_found_by_the_method_that_the_case_names(method, monkeypatch):
+    told = []
+    for name, module in (("averaged_motion", "averaging"), ("steady_state", "steady_state")):
+        monkeypatch.setattr(
+            f"fegear.dynamics.motion.{module}.{name}",
+            lambda model, name=name, **how: (told.append((name, how)), name)[1],
+        )
+    found = steady_motion(SimpleNamespace(method=method), "model", "static", 1e-3, None)
+    wanted = "averaged_motion" if method == "averaging" else "steady_state"
+    assert found == wanted
+    assert told == [(wanted, {"start": "static", "tolerance": 1e-3, "progress": None})]

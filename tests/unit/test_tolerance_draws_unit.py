@@ -277,6 +277,21 @@ def test_amounts_and_lengths_that_nobody_names(named):
     assert found.draws == 3
 
 
+@pytest.mark.parametrize("rooms", [(20e-6, 12e-6), (9e-6, 30e-6)])
+def test_no_relief_is_deeper_than_either_tooth_has_room_for(rooms, monkeypatch):
+    """A tenth of the module as a rule; pointed teeth have less."""
+    table, some = small_bench(), drawn(3)
+    named = {"amounts": (50e-6,), "lengths": (0.3, 0.6), "percent": 90.0}
+    of = dict(zip(MEMBERS, rooms, strict=True))
+    monkeypatch.setattr("fegear.design.tip_relief.robust._room", lambda _, member: of[member])
+    found = robust_tip_relief(table, some, (5e-6, 0.4, 5e-6, 0.4), **named)
+    trials = _trials(table, some, 1.0, 90.0)
+    each = [(0.0, 0.3), *((min(rooms), n) for n in (0.3, 0.6))]
+    least = min(trials.quick((*one, *other)) for one in each for other in each)
+    assert found.on_grid == pytest.approx(least, rel=1e-5)
+    assert max(found.numbers[::2]) <= min(rooms)
+
+
 CASE = {
     "results": ["robustness"],
     "gear": {
