@@ -235,6 +235,8 @@ def test_a_page_shows_a_plot():
     shown = page_html(everything())
     assert "Plotly.newPlot" in shown
     assert "A caption." in shown
+    assert len(shown) > 1_000_000  # plotly.js comes with it, unless a figure before it has brought it
+    assert len(page_html(everything(), library=False)) < 200_000
 
 
 def test_a_notebook_shows_a_plot_without_the_library():

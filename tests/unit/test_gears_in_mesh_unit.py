@@ -242,6 +242,9 @@ def test_what_cannot_be_shown_is_said_and_stops_nothing():
     refused, tool = told
     assert "not the shape of a deformed tooth" in refused["refused"]
     assert np.shape(tool["lines"]["driver"])[:2] == (31, 2)
+    assert tool["tips"] == {
+        member: pytest.approx(scene.pairs["I"].gear(member).tip_radius * 1e3) for member in ("driver", "driven")
+    }
 
 
 def wide(hand="", load="2500 N"):

@@ -245,3 +245,17 @@ def test_a_file_of_a_million_lines_is_refused_before_it_is_read_line_by_line(tmp
     (tmp_path / "p.csv").write_text("roll_angle [deg],deviation [um]\n" + "x\n" * 1_000_000, "utf-8")
     with pytest.raises(InputError, match="has more than 400,000 lines; drop every second"):
         measured_gear(scene_of(tmp_path, {"profile": "p.csv"}), "a")
+
+
+def test_a_long_trace_is_filtered_alike_wherever_it_is_taken_apart(monkeypatch):
+    x = np.linspace(0.0, 20e-3, 700)
+    trace = 1e-6 * np.sin(2.0 * np.pi * x / 0.8e-3) + 2e-6 * (x / 20e-3) ** 2
+    whole = filtered(x, trace, 0.8e-3)
+    for size in (7, 64, 701):
+        monkeypatch.setattr("fegear.formulas.iso1328_traces._AT_ONCE", size)
+        np.testing.assert_allclose(filtered(x, trace, 0.8e-3), whole, atol=1e-10)
+    # Of a wave as long as the filter half is let through, inside the trace.
+    inside = slice(100, 600)
+    np.testing.assert_allclose(
+        whole[inside], (0.5e-6 * np.sin(2.0 * np.pi * x / 0.8e-3) + 2e-6 * (x / 20e-3) ** 2)[inside], atol=2e-8
+    )

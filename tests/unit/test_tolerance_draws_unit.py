@@ -220,6 +220,21 @@ def test_shares_are_within_their_errors_and_what_is_left_is_that_of_interactions
     assert np.std(off, axis=0) == pytest.approx(1.0, abs=0.3)
 
 
+@pytest.mark.parametrize(("count", "classes"), [(39, 1), (40, 2), (399, 19), (420, 20), (4000, 20)])
+def test_shares_follow_from_classes_of_twenty_draws_or_more_and_twenty_at_most(count, classes):
+    """Kelley's epsilon^2, by a table of its own."""
+    generator = np.random.Generator(np.random.MT19937(8))
+    a = generator.uniform(-1.0, 1.0, count)
+    y = a + generator.uniform(-1.0, 1.0, count)
+    (found,) = influences([a], y)
+    if classes < 2:
+        assert np.isnan(found.share)
+        return
+    groups = np.array_split(y[np.argsort(a)], classes)
+    within = sum(((one - one.mean()) ** 2).sum() for one in groups) / (count - classes)
+    assert found.share == pytest.approx(1.0 - within * (count - 1) / ((y - y.mean()) ** 2).sum(), rel=1e-9)
+
+
 def test_a_seed_of_two_numbers_is_another_sequence():
     one, other = unit_points(64, 5, 1), unit_points(64, 5, (1, 1))
     assert not set(one.ravel().tolist()) & set(other.ravel().tolist())
