@@ -6,8 +6,10 @@
     python tests/mutation/run.py holes                lines of functions that no ordinary test executes
 
 Every mutant is put into a copy of the repository. The tests that execute its line run nearest and cheapest first until
-one fails. A test that takes 15 times as long as usual has failed: it may never end. A line that no test executes
-survives at once. Tests of `tests/architecture`, which read the source, do not count.
+one fails. A test that takes 20 s and 15 times as long as usual has failed: it may never end. A line that no test
+executes survives at once. Tests of `tests/architecture`, which read the source, do not count. Outcomes are kept as they
+come (`.mutation/drawn-SEED.jsonl`): the same draw again goes on where it was interrupted, and tries survivors against
+tests that have been recorded since. Another source makes another draw of the same seed.
 """
 
 from __future__ import annotations
@@ -42,6 +44,8 @@ from mutants import Mutant, draw, mutants_of, room_of  # noqa: E402
 ROUNDS = (15, 120, 10**6)
 #: Seconds of a processor for the tests of one mutant; what is left of them is said.
 BUDGET = 150.0
+#: Seconds of a processor that a test may take besides 15 times its own; what numba compiles anew takes longer.
+PATIENCE, PATIENCE_TO_COMPILE = 20.0, 240.0
 #: Functions that numba compiles leave no trace: those who call them do.
 COMPILED, CALLERS = "fegear/dynamics/motion/kernel/", "fegear/dynamics/motion/motion.py"
 HEAVY = [
@@ -219,8 +223,8 @@ class Outcome:
 class _Chosen:
     """Plugin of pytest: only these tests, in this order; a test that takes far too long ends the process."""
 
-    def __init__(self, names: list[str], limits: dict[str, float], told: Path) -> None:
-        self.names, self.limits, self.told = names, limits, told
+    def __init__(self, names: list[str], limits: dict[str, float], told: Path, patience: float) -> None:
+        self.names, self.limits, self.told, self.patience = names, limits, told, patience
 
     def pytest_collection_modifyitems(self, items):
         by_name = {item.nodeid: item for item in items}
@@ -228,7 +232,7 @@ class _Chosen:
 
     def pytest_runtest_logstart(self, nodeid):
         self.told.write_text(nodeid)
-        signal.setitimer(signal.ITIMER_VIRTUAL, 20.0 + 15.0 * self.limits.get(nodeid, 1.0))
+        signal.setitimer(signal.ITIMER_VIRTUAL, self.patience + 15.0 * self.limits.get(nodeid, 1.0))
 
     def pytest_runtest_logreport(self, report):
         if report.failed:
@@ -241,14 +245,14 @@ class _Chosen:
             os._exit(1)
 
 
-def passed(tree: Path, names: list[str], seconds: dict[str, float]) -> str:
+def passed(tree: Path, names: list[str], seconds: dict[str, float], patience: float = PATIENCE) -> str:
     """Run tests in a process of their own; the one that failed, or nothing."""
     for heavy in HEAVY:
         importlib.import_module(heavy)
     with tempfile.TemporaryDirectory() as folder:
         scratch = Path(folder)
         if not (child := os.fork()):
-            _run_tests(tree, names, seconds, scratch)
+            _run_tests(tree, names, seconds, scratch, patience)
         limit, code = time.monotonic() + 300.0 + 10.0 * sum(seconds[name] for name in names), None
         while code is None:
             done, status = os.waitpid(child, os.WNOHANG)
@@ -265,7 +269,7 @@ def passed(tree: Path, names: list[str], seconds: dict[str, float]) -> str:
         return "" if not code else told.read_text() + ("" if code == 1 else f" (ended by signal {-code})")
 
 
-def _run_tests(tree: Path, names: list[str], seconds: dict[str, float], scratch: Path) -> None:
+def _run_tests(tree: Path, names: list[str], seconds: dict[str, float], scratch: Path, patience: float) -> None:
     """In the child: pytest on a copy of the repository, and the end of the process."""
     import pytest
 
@@ -278,7 +282,7 @@ def _run_tests(tree: Path, names: list[str], seconds: dict[str, float], scratch:
     os.dup2(out, 2)
     files = list(dict.fromkeys(name.split("::")[0] for name in names))
     options = ["-n", "0", "-p", "no:cacheprovider", "--basetemp", str(scratch / "tmp")]
-    os._exit(pytest.main([*options, *files], plugins=[_Chosen(names, seconds, scratch / "told")]))
+    os._exit(pytest.main([*options, *files], plugins=[_Chosen(names, seconds, scratch / "told", patience)]))
 
 
 def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
@@ -297,7 +301,8 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
                 spent += taken[name]
                 part += [name] if spent < budget or not first else []
             if part and not outcome.killer:
-                outcome.killer = passed(tree, part, taken)
+                patience = PATIENCE_TO_COMPILE if "motion" in mutant.path else PATIENCE
+                outcome.killer = passed(tree, part, taken, patience)
                 outcome.ran += part
     finally:
         _written(path, source)
