@@ -53,7 +53,7 @@ def pair():
 @pytest.mark.parametrize("loads", [[LOAD], [0.4 * LOAD, LOAD]])
 def test_were_a_relief_to_start_at_a_change_of_pairs(pair, loads):
     """Both sides of the ridge on which classic reliefs lie: there it is left out, or goes on below its start."""
-    trials = Trials(bench(pair, 5, 6), np.array(loads), 1.0, "peak_to_peak")
+    trials = Trials(_even(pair, 12), np.array(loads), 1.0, "peak_to_peak")
     p = np.random.default_rng(1).uniform([5e-6, 0.15, 5e-6, 0.15], [20e-6, 0.45, 20e-6, 0.45], (30, 4))
     removal, by_number = trials._removed(p)
     by_set = trials._by_set(removal)
@@ -64,6 +64,7 @@ def test_were_a_relief_to_start_at_a_change_of_pairs(pair, loads):
     slope = np.einsum("cjpl,ckjp->ckpl", weight, by_number)
     values, slopes = trials._starting(p, zeta, slope, weight)
     outside = sorted({at for at, _, _ in trials._positions.changes})
+    assert len(outside) == 2
     assert values.shape == (30, 2 * len(outside), len(loads))
     depths, present = trials._depths, trials.bench.grid.contacts.present
     places = list({at for at, _, _ in trials._positions.changes})
