@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.plane.settings import MeshSettings
-from fegear.fem.plane.whole_gear import loaded_gear, nodal_fields
 from fegear.geometry.gear import Gear
 from fegear.geometry.tooth import Tooth
 
