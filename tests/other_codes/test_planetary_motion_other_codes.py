@@ -135,7 +135,8 @@ def test_phases_excite_only_the_modes_that_the_rule_names():
     answer = forced_response(linear, np.array([743.2, 1102.4, 1475.7]))
     across = np.abs(answer.coordinate[:, :, [0, 1, 3, 4, 6, 7]])
     assert np.max(across) < 1e-11 * np.max(np.abs(answer.coordinate))
-    assert answer.sun_force[2] > 3.0 * answer.sun_force[0]
+    of_six = np.abs(answer.dynamic[:, :, 0]).sum(axis=1).max(axis=1)  # higher harmonics meet the mode at lower speeds
+    assert of_six[2] > 3.0 * of_six[0]
 
 
 def test_a_set_of_one_planet_vibrates_as_a_train_of_two_pairs():
