@@ -47,7 +47,7 @@ _FEW = 24
 _FEWEST = 3
 #: Seconds of a contact line of few stations on one gear, stations of which it takes twice that, and those from which on
 #: it goes with their cube.
-_LINE, _STATIONS, _MANY = 0.0023, 24, 46
+_LINE, _STATIONS, _MANY = 0.007, 24, 46
 #: Seconds of the contact at one roll position under one load, and what each square of stations there adds.
 _CONTACT, _SQUARE = 0.0006, 8e-8
 #: Roll positions under every load: of means and errors, and most of those at which its peaks are looked for.

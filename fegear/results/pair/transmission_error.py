@@ -92,7 +92,7 @@ def over_pitch(x: Array, values: Array, pitch: float, part: Array) -> Array:
 
 
 #: One engagement solved over a base pitch [s], what corners off the path add to it, and a pair with a width.
-_ERROR, _ERROR_CORNERS, _WIDE = 0.015, 0.1, 0.1
+_ERROR, _ERROR_CORNERS, _WIDE = 0.015, 0.05, 0.1
 #: Harmonics in the figure.
 _BARS = 16
 #: Single numbers.

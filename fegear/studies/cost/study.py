@@ -35,7 +35,7 @@ from fegear.studies.cost.result import CostResults, Measured
 _ANSWER_SECONDS = {"te-peak-to-peak": 0.1, "tooth-force": 0.2, "dynamic-factor": 2.0}
 _KNOB_SECONDS = 3.0
 #: How many gears with their width the knobs solve, in seconds of one with the usual settings.
-_SOLIDS = 25.0
+_SOLIDS = 12.0
 
 
 def forecast(asked: Asked, ladder: Ladder) -> float:
