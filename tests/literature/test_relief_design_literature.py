@@ -293,7 +293,7 @@ def test_extrapolated_relief_carries_a_fifth_more_without_tip_interference(tmp_p
 
     def corners(changes):
         found = fegear.run(case, changes)
-        table = {column.head: column.values for column in found.tables["load_sharing_corners_I"].columns}
+        table = {column.head: column.values for column in found.tables["tip_corner_loads_I"].columns}
         early = [note for note in found.remarks if "relief table ends" in note]
         return dict(zip(table["total_load [N]"].round(2).tolist(), table["corner_load [N]"], strict=True)), early
 

@@ -65,7 +65,7 @@ def _corners(name: str, load: Array, corner: Array, loads: Array) -> Table:
         Column("corner_load", carried, "N", "largest load on one tooth pair whose tip corner touches off the path"),
         Column("share", carried / loads, "", "corner_load over total_load"),
     )
-    return Table(f"load_sharing_corners_{name}", columns, f"Load on tip corners of {name} for every load")
+    return Table(f"tip_corner_loads_{name}", columns, f"Load on tip corners of {name} for every load")
 
 
 def _values(name: str, h: LoadHistory) -> tuple[Value, ...]:
