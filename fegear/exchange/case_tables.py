@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+
+from fegear.case.text_file import toml_string
 
 #: Widest line of a remark, and the column where remarks stand behind keys.
 _WIDE, _REMARKS = 118, 44
@@ -76,7 +77,7 @@ def number(value: float) -> str:
 
 def text(value: str) -> str:
     """A text in quotes."""
-    return json.dumps(value, ensure_ascii=False)
+    return toml_string(value)
 
 
 def inline(**keys: str | None) -> str:

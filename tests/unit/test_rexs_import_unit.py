@@ -16,6 +16,7 @@ from fegear.base.errors import InputError
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
+from fegear.exchange.case_tables import text
 from fegear.exchange.rexs.gearbox import case_of
 from fegear.exchange.rexs.model import Attribute
 from fegear.exchange.rexs.reading import model_of
@@ -507,3 +508,9 @@ def test_a_coupling_is_engaged_where_a_program_wrote_its_arrays_as_false():
     text = case_of(model_of(in_json(tree), HERE))
     assert "coupling 7: is_engaged is false as every array of this model" in text
     assert tomllib.loads(text)["planetary"] == case(in_json(planetary_set()))["planetary"]
+
+
+def test_texts_of_a_model_are_read_back_from_the_case_as_they_are():
+    """JSON leaves a delete character in quotes as it is, which TOML refuses."""
+    for one in ("gear \x7f", 'a "quoted" \\ name', "\t\n\x01", "größer", ""):
+        assert tomllib.loads(f"title = {text(one)}")["title"] == one
