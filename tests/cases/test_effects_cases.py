@@ -40,7 +40,7 @@ SCENES = {
     "parametric": ("lin_dynamic_factor", (*MOTION, "effects.hertz=none")),
     "friction": ("lin_dynamic_factor", MOTION),
     "misalignment": ("litvin_shaft_angle", ("tooth_contact.positions=24",)),
-    "torque_ripple": ("torque_ripple", ('results=["mesh-force-spectrum"]', "dynamics.speeds=['2000 rpm']")),
+    "torque_ripple": ("torque_ripple", ('results=["tooth-force"]',)),
 }
 
 
