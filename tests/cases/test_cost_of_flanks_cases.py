@@ -17,6 +17,7 @@ from fegear.case.reading import build_scene, read_scene
 from fegear.fem.solid.slices import solve_slices
 from fegear.output.cost import write_cost
 from fegear.results.pair.loaded_flanks import load_flanks
+from fegear.studies.cost import knobs
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.ladder import ALONE, BODIES, FlankConfiguration, flank_ladder
 from fegear.studies.cost.measure import solve_bodies
@@ -154,3 +155,12 @@ def test_slices_of_a_ring_are_refused_and_left_out_of_its_ladder():
         families = {one.family for one in ladder_of(asked(scene), quick=True).configurations}
         assert ("coupled-slices" in families) is known
         assert {"thin-slices", "solid"} < families
+
+
+def test_slices_are_no_knob_of_a_gear_on_a_web(monkeypatch):
+    """`fegear cost` on an inclined web ended with a refusal of slices after all else had been measured."""
+    monkeypatch.setattr(knobs, "_varied", lambda _asked, _settings, name, *_: [name])
+    for case, known in (("inclined_web", False), ("web_holes", False), ("spur_over_the_face", True)):
+        names = knobs.solid_knobs(asked(read_scene(CASE.with_name(f"{case}.toml"), ())))
+        assert ("edges of the section, slices" in names) is known
+        assert "edges of the section" in names

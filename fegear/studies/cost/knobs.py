@@ -319,13 +319,16 @@ def solid_knobs(asked: Asked) -> list[Knob]:
     by_edge = [replace(usual, section=usual.section.scaled(factor)) for factor in _FACTORS]
     by_wave = [replace(usual, waves_per_module=waves, least_degree=3) for waves in _WAVES]
     by_slice = [replace(one, source="slices") for one in by_edge[:-1]]
+    gear = asked.scene.gears[asked.gear]
+    # Slices know external discs, whose bore is held, only.
+    sliced = gear.body is None and gear.support is None and not gear.tooth.internal
     return [
         *_varied(asked, by_edge, "edges of the section", f"{usual.waves_per_module:g} functions per module of face",
                  edge * np.array(_FACTORS), edge * np.array(_FACTORS)),
         *_varied(asked, by_wave, "functions per module of face", f"edges of {edge:g} modules", np.array(_WAVES),
                  1.0 / np.array(_WAVES)),
-        *_varied(asked, [*by_slice, usual], "edges of the section, slices", "coupled slices of the plane section",
-                 edge * _OF_SLICES, edge * _OF_SLICES, "the solid gear"),
+        *(_varied(asked, [*by_slice, usual], "edges of the section, slices", "coupled slices of the plane section",
+                  edge * _OF_SLICES, edge * _OF_SLICES, "the solid gear") if sliced else ()),
     ]  # fmt: skip
 
 
