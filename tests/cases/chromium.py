@@ -15,6 +15,8 @@ from pathlib import Path
 
 #: Seconds after which a browser that does not answer counts as hung.
 _PATIENCE = 60.0
+#: What a browser answers whose page goes on to its next address, as a window's does that has used its key.
+_REPLACED = "Inspected target navigated or closed"
 #: The protocol's file descriptors are 3 and 4: puts the two pipes there and becomes the browser.
 _LAUNCH = """
 import fcntl, os, sys
@@ -155,12 +157,20 @@ class Browser:
         return answer["result"].get("value")
 
     def until(self, script: str) -> None:
-        """Wait until a condition holds."""
+        """Wait until a condition holds; of a page that another one takes the place of meanwhile it is asked again."""
         end = time.monotonic() + _PATIENCE
-        while not self.run(script):
+        while not self._holds(script):
             if time.monotonic() > end:
                 raise TimeoutError(f"waited in vain for {script}")
             time.sleep(0.05)
+
+    def _holds(self, script: str) -> object:
+        try:
+            return self.run(script)
+        except RuntimeError as problem:
+            if _REPLACED in str(problem):
+                return False
+            raise
 
     def open(self, path: Path) -> None:
         """Open a file and wait until the page says that its plots are drawn."""

@@ -31,7 +31,7 @@ from fegear.studies.swept import Swept, varying
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)
 PAIR = GearPair(GEAR, GEAR)
-TRAIN = SimpleNamespace(names=("I", "II"), speed_ratio=1.0, speed_of="motor")
+TRAIN = SimpleNamespace(names=("I", "II"), speed_ratio=1.0, speed_of="motor", ripple=())
 
 
 def drawn_texts(panel: Panel, head: tuple[str, str] = ("", "")) -> tuple[set[str], set[str]]:
