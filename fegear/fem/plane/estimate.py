@@ -30,7 +30,7 @@ _NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 2.5
 #: number over the number of edges that the fillet would have if all were as long as along most of it (those that are
 #: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
 #: other, for both orders have the edges' own curves. Elements of lower orders were not looked at, and count twice.
-_STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.2, 2.0
+_STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.23, 2.0
 #: A neighbour's stress is smooth, and its error that of the edges' own curves, which both orders have: so many times
 #: the part of a tooth's own and no less than the other part; relatively no less than so many times a tooth's own error.
 _NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 4.0
