@@ -67,8 +67,8 @@ def map_points(
         Of a module (or `functools.partial` of one); takes a point and returns plain data (see
         `fegear.base.plain.pack`).
     points : sequence
-        Anything that can be pickled; with a cache on disk, what `fegear.base.keys.content_key` takes, unless `key` is
-        given.
+        Anything that can be pickled; with a cache on disk, what `fegear.base.keys` knows by its content, unless `key`
+        is given.
     executor : Executor, optional
         By default processes on this machine.
     cache : SolutionCache, optional

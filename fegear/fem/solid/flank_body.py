@@ -135,6 +135,7 @@ class SolidFlank(TwistedFlank):
     fillets: Mapping[Side, SolidFillet]
     displacement: Mapping[tuple[int, Side], Array]
 
-    def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
-        """See `SolidSolution.root_end`."""
-        raise NotImplementedError
+    if TYPE_CHECKING:
+
+        def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
+            """See `SolidSolution.root_end`."""
