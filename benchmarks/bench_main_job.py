@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.loaded_gear import loaded_gear
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import level_for, settings_at
 from fegear.fem.plane.solution import solve_gear
@@ -25,7 +26,7 @@ from fegear.fem.plane.whole_gear import whole_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.output.mesh_export import write_meshes
+from fegear.output.plane_mesh_files import write_inp
 
 CASE = Path(__file__).parents[1] / "cases" / "lin_table1.toml"
 SETTINGS = settings_at(level_for(1e-3))
@@ -114,6 +115,7 @@ def test_peer_scikit_fem_on_the_whole_gear(benchmark):
 def test_peer_calculix_on_the_whole_gear_one_load(benchmark, tmp_path):
     ccx = shutil.which("ccx")
     assert ccx, "install calculix-ccx"
-    write_meshes(gear_of(28), tmp_path, "g", {"inp"}, SETTINGS)
+    whole, field = loaded_gear(gear_of(28), SETTINGS)
+    write_inp(tmp_path / "g.inp", gear_of(28), whole, field.forces)
     benchmark.pedantic(lambda: subprocess.run([ccx, "g"], cwd=tmp_path, check=True, capture_output=True), rounds=1)
     assert (tmp_path / "g.frd").is_file()

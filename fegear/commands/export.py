@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, Overrides, Quiet, Voice, leave, out_option
+from fegear.output.formats import FORMATS
 
 
 def export(
@@ -19,7 +20,7 @@ def export(
         str,
         typer.Option(
             "--format",
-            help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, rexs, separated by commas.",
+            help=f"Any of {', '.join(FORMATS)}, separated by commas; formats of other distributions by their names.",
         ),
     ] = "dxf,msh,vtu,inp",
     out: Annotated[Path | None, out_option("Output folder; default results/<case>_export.")] = None,
@@ -33,15 +34,16 @@ def export(
     from fegear.base.errors import InputError
     from fegear.case.reading import build_scene, read_scene
     from fegear.case.text_file import leads_to
-    from fegear.output.export import export_gears
+    from fegear.output.export import export_gears, wanted_formats
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.run_folder import read_side
 
     voice = Voice(quiet, as_json)
     results = read_side(case, "CASE") if leads_to(case, stat.S_ISDIR) else None
-    if results is not None and formats != "rexs":
-        rule = "is the folder of a run, which is written to REXS alone"
-        raise InputError("CASE", str(case), rule, "write --format rexs, or give the case file")
+    if results is not None and not all(row.takes_results for row in wanted_formats(formats).values()):
+        taking = " or ".join(name for name, row in FORMATS.items() if row.takes_results)
+        rule = f"is the folder of a run, which is written as {taking} only"
+        raise InputError("CASE", str(case), rule, f"write --format {taking}, or give the case file")
     try:
         if results is None:
             scene = read_scene(case, overrides or ())

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.case.built.flank_modifications import described_relief
 from fegear.geometry.curves import Arc, Drawn, Line
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import gear_outline, relieved_outline, tooth_outline, turned
 from fegear.geometry.relief import Relief
 from fegear.geometry.spline import DEGREE, Spline, smooth_pieces, spline_of
+from fegear.output.file_names import file_name
+
+if TYPE_CHECKING:
+    from fegear.output.formats import Request, Written
 
 #: How far chords and splines may lie off the exact curve [modules].
 CHORD_TOLERANCE = 1e-4
@@ -127,3 +132,13 @@ def write_dxf(
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_spline")
     return written
+
+
+def written_dxf(request: Request) -> Written:
+    """Write the drawings of a gear with the relief that the case gives it."""
+    name, found = request.name, described_relief(request.scene, request.name)
+    flanks = AS_GENERATED if found.relief is None else "with the relief of the case, both flanks"
+    flanks += f", as in pair {found.pair}" if found.pair else ""
+    spur = name in request.scene.spur_gears
+    remarks = () if spur else (f"Gear {name}, DXF: the section across the axis.",)
+    return write_dxf(request.gear, request.folder, file_name(name), found.relief, flanks), remarks

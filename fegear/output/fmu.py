@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.periodic import Periodic
     from fegear.geometry.pair import GearPair
+    from fegear.output.formats import Request, Written
 
 
 _SOURCE = Path(__file__).with_name("fmu_mesh.c")
@@ -345,3 +346,9 @@ def _springs(teeth: LoadedTeeth, load: float, *, forward: bool) -> MeshExcitatio
 
     engagement = cast("LoadedPair", teeth).engagement
     return mesh_excitation(engagement if forward else engagement.reversed(), load)
+
+
+def written_fmu(request: Request) -> Written:
+    """Write the FMU of every loaded pair."""
+    models = mesh_models(request.scene)
+    return [write_fmu(request.folder, model) for model, _ in models], [said for _, said in models]

@@ -1,20 +1,67 @@
-"""Formats that ``fegear export`` writes, each a row: what it holds, and who writes it if not fegear itself."""
+"""Formats that ``fegear export`` writes, each a row: what it holds, what its files are, and what writes them.
+
+Help, messages, the window's menu and the page on exports read the rows, so a format is one function and its row. The
+functions of fegear's own rows are named as entry points are, and imported when a file of theirs is asked for.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from importlib import import_module
 from types import MappingProxyType
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.extensions import added
-from fegear.case.reading import Scene
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fegear.base.solution_cache import SolutionCache
+    from fegear.case.reading import Scene
+    from fegear.geometry.gear import Gear
+    from fegear.studies.comparison.compare import Side
 
 #: Of the gears, as drawings and tables with their relief; their meshes, as generated; what holds no single gear.
 Holds = Literal["flanks", "plane mesh", "solid mesh", "case"]
-#: Writes files into an empty folder: ``write(scene, folder, gears)`` -> their paths, and sentences for the user.
-Writer = Callable[[Scene, Path, Sequence[str]], tuple[Sequence[Path], Sequence[str]]]
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a format is to write, and where.
+
+    Parameters
+    ----------
+    scene : Scene
+    folder : Path
+        Empty, but for the files of other formats.
+    gears : tuple of str
+        One gear; of a format that holds a case all those that were asked for.
+    results : Side or None
+        Of a run of the case, where it was given instead of the case.
+    cache : SolutionCache
+        For what several formats of a gear need: ``cache.call(function, *args).value``.
+    """
+
+    scene: Scene
+    folder: Path
+    gears: tuple[str, ...]
+    results: Side | None
+    cache: SolutionCache
+
+    @property
+    def name(self) -> str:
+        """Name of the gear."""
+        return self.gears[0]
+
+    @property
+    def gear(self) -> Gear:
+        """The gear."""
+        return self.scene.gears[self.name]
+
+
+#: What a format wrote: paths below the folder, and sentences for the user.
+Written = tuple[Sequence["Path"], Sequence[str]]
 
 
 @dataclass(frozen=True)
@@ -24,30 +71,107 @@ class Format:
     Parameters
     ----------
     holds : {"flanks", "plane mesh", "solid mesh", "case"}
+        One that holds a gear is asked for each gear, plane meshes for spur gears, solid ones for external gears.
     about : str
         What its files are, for lists.
-    write : callable, optional
-        Of a format that another distribution adds (entry points of ``fegear.formats``):
-        ``write(scene, folder, gears)`` -> paths, and sentences for the user; the gears are those that were asked for.
+    write : callable or str
+        ``write(request)`` -> paths, and sentences for the user; or its place, ``"module:function"``.
+    files : str
+        Names of its files, for the page on exports.
+    contents : str
+        What is in them, for the page on exports.
+    needs : callable or str
+        Called without arguments before anything is written: refuses where something is not installed.
+    seconds : callable or str
+        ``seconds(gear)`` -> about the CPU time that a gear's file takes; said before it starts if it is long.
+    takes_results : bool
+        Whether the folder of a run may stand in the place of the case.
     """
 
     holds: Holds
     about: str
-    write: Writer | None = None
+    write: Callable[[Request], Written] | str
+    files: str = ""
+    contents: str = ""
+    needs: Callable[[], object] | str = ""
+    seconds: Callable[[Gear], float] | str = ""
+    takes_results: bool = False
+
+    def written(self, request: Request) -> Written:
+        """Write what is asked for."""
+        found: Written = _called(self.write)(request)
+        return found
+
+    def require(self) -> None:
+        """Refuse where something that it needs is not there."""
+        if self.needs:
+            _called(self.needs)()
+
+    def predicted(self, gear: Gear) -> float:
+        """About how many seconds of CPU time a gear's file takes; 0 where nothing is said."""
+        return float(_called(self.seconds)(gear)) if self.seconds else 0.0
 
 
-#: Formats of fegear by their names, in the order in which messages list them.
+def _called(function: Callable[..., Any] | str) -> Callable[..., Any]:
+    """A function, or the one that stands in a place."""
+    if not isinstance(function, str):
+        return function
+    module, _, name = function.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), name)
+    return found
+
+
+#: Formats of fegear by their names, in the order in which lists have them and a gear's files are written.
 FORMATS: Mapping[str, Format] = MappingProxyType({
-    "dxf": Format("flanks", "drawing of a tooth and of the gear"),
-    "step": Format("flanks", "solid of the gear"),
-    "relief": Format("flanks", "relief to grind, as tables"),
-    "msh": Format("plane mesh", "mesh of one tooth sector, Gmsh"),
-    "vtu": Format("plane mesh", "mesh of the gear, ParaView"),
-    "inp": Format("plane mesh", "mesh of the gear, Abaqus and CalculiX"),
-    "solid-inp": Format("solid mesh", "mesh of the gear with its width, Abaqus and CalculiX"),
-    "solid-vtu": Format("solid mesh", "mesh of the gear with its width, ParaView"),
-    "fmu": Format("case", "each loaded pair as a force element, FMI 2.0"),
-    "rexs": Format("case", "the gearbox as a REXS model"),
+    "dxf": Format(
+        "flanks", "drawing of a tooth and of the gear", "fegear.output.dxf:written_dxf", "*_spline.dxf, *_polyline.dxf",
+        "CAD, wire erosion: the exact outline of tooth and gear with its relief, mm",
+    ),
+    "step": Format(
+        "flanks", "solid of the gear", "fegear.output.step:written_step", "*.step",
+        "CAD, printing: the solid gear, spur or helical, with its bore and its relief, as a disc (a `body` is "
+        "neglected, which a remark says), mm; the axis is z, the middle of the face z = 0",
+        seconds="fegear.output.step:seconds_of",
+    ),
+    "relief": Format(
+        "flanks", "relief to grind, as tables",
+        "fegear.output.grinding_tables:written_relief", "*_relief.csv, *_k_chart.csv",
+        "for the grinder: material to remove over diameter, roll angle and roll length, from the start to the end of "
+        "the involute, finely and as the points of a profile chart (K-chart)",
+    ),
+    "msh": Format(
+        "plane mesh", "mesh of the gear, Gmsh", "fegear.output.plane_mesh_files:written_msh", "*.msh",
+        "gmsh: the whole gear with named groups",
+    ),
+    "vtu": Format(
+        "plane mesh", "mesh of the gear, ParaView", "fegear.output.plane_mesh_files:written_vtu", "*.vtu",
+        "ParaView: the same with displacement and stress under 1 N/mm",
+    ),
+    "inp": Format(
+        "plane mesh", "mesh of the gear, Abaqus and CalculiX", "fegear.output.plane_mesh_files:written_inp", "*.inp",
+        "CalculiX, Abaqus: a deck that runs as it is: six-node plane elements, bore fixed, the contact pressure of "
+        "1 N/mm on tooth 0",
+    ),
+    "solid-inp": Format(
+        "solid mesh", "mesh of the gear with its width, Abaqus and CalculiX",
+        "fegear.output.solid_mesh_files:written_inp",
+        "*_solid.inp",
+        "CalculiX, Abaqus: the 3D gear: hexahedra and wedges of second order (C3D20, C3D15), bore fixed, 1 kN on a "
+        "pressed band in the middle of the face of tooth 0",
+    ),
+    "solid-vtu": Format(
+        "solid mesh", "mesh of the gear with its width, ParaView", "fegear.output.solid_mesh_files:written_vtu",
+        "*_solid.vtu", "ParaView: the same mesh and its nodal forces",
+    ),
+    "fmu": Format(
+        "case", "each loaded pair as a force element, FMI 3.0", "fegear.output.fmu:written_fmu", "mesh_PAIR.fmu",
+        "Simulink, OpenModelica, Adams and other programs that run FMUs: every loaded pair, see below",
+        needs="fegear.output.fmu:c_compiler",
+    ),
+    "rexs": Format(
+        "case", "the gearbox as a REXS model", "fegear.output.rexs_model:written_rexs", "CASE.rexs",
+        "the gearbox as a REXS 1.7 model: [there and back](import-rexs.md#back-to-rexs)", takes_results=True,
+    ),
 })  # fmt: skip
 
 
@@ -60,8 +184,3 @@ def formats() -> Mapping[str, Format]:
         See `fegear.base.extensions.added`.
     """
     return MappingProxyType({**FORMATS, **added("formats", Format, FORMATS)})
-
-
-def of_kind(holds: Holds) -> frozenset[str]:
-    """Names of fegear's formats of a kind."""
-    return frozenset(name for name, one in FORMATS.items() if one.holds == holds)

@@ -11,6 +11,7 @@ from nicegui import ui
 from fegear.base.errors import FegearError, InputError
 from fegear.case.text_file import named_path
 from fegear.output.folder import default_folder
+from fegear.output.formats import formats
 from fegear.window.bench import LEVELS
 
 if TYPE_CHECKING:
@@ -20,13 +21,14 @@ if TYPE_CHECKING:
     from fegear.window.document import Desk
 
 
-#: What can be written: words of the menu, the job's name for it, ending of the folder that is offered.
-EXPORTS = (
-    ("Report, tables, pictures", "report", ""),
-    ("Tables alone (CSV)", "tables", "_tables"),
-    ("Relief for the grinder (CSV)", "relief", "_relief"),
-    ("Drawings of the gears (DXF)", "drawings", "_export"),
-)
+#: What can be written of a run: words of the menu, the job's name for it, ending of the folder that is offered.
+_OF_RUN = (("Report, tables, pictures", "report", ""), ("Tables only (CSV)", "tables", "_tables"))
+
+
+def exports() -> tuple[tuple[str, str, str], ...]:
+    """All that can be written: what a run leaves, then the formats of ``fegear export``."""
+    of_formats = ((f"{name}: {row.about}", name, f"_{name}") for name, row in formats().items())
+    return (*_OF_RUN, *of_formats)
 
 
 #: What the bar says of a text that takes a while to be judged.
@@ -56,7 +58,7 @@ class Bar:
             self._give_up = self._button("Give up changes", self._give_up_changes)
             with ui.button("Export").props("flat dense no-caps"), ui.menu():
                 ui.menu_item("Case (TOML), as it is now", lambda: in_words(self._download))
-                for words, what, ending in EXPORTS:
+                for words, what, ending in exports():
                     ui.menu_item(words, partial(in_words, partial(self._ask_folder, what, ending)))
             self._pin = self._button("Pin as A", self._pin_or_not)
             self._button("Other case", lambda: bench.lay(None))

@@ -221,8 +221,7 @@ class Compute:
 class Export:
     """Write into a folder what a command writes.
 
-    ``report``: all that ``fegear run`` writes; ``tables``: its tables alone; ``drawings`` and ``relief``: what
-    ``fegear export`` writes as DXF and as tables for who grinds the relief.
+    ``report``: all that ``fegear run`` writes; ``tables``: its tables only; else a format of ``fegear export``.
     """
 
     number: int

@@ -346,8 +346,7 @@ class Worker:
                     write_table(scratch, table)
                 remarks = list(found.remarks)
             else:
-                formats = {"drawings": "dxf", "relief": "relief"}[job.what]
-                remarks = list(export_gears(scene_of(job.asked), scratch, (), formats).remarks)
+                remarks = list(export_gears(scene_of(job.asked), scratch, (), job.what).remarks)
         self._say("exported", target=str(target.resolve()), remarks=remarks)
 
     def _compare(self, job: Compare) -> None:

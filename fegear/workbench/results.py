@@ -211,7 +211,7 @@ class Results(Found):
         ----------
         folder : path
         formats : str or list of str
-            Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, fmu, rexs, separated by commas.
+            Names of `fegear.output.formats.FORMATS`, or of formats of other distributions, separated by commas.
         gears : tuple of str
             Names of gears; all of them by default.
 

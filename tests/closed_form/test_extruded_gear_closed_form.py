@@ -14,7 +14,7 @@ from fegear.fem.solid.extruded import extruded, graded_stations, pressed_band, s
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.output.mesh_export import write_solid
+from fegear.output.solid_mesh_files import pressed_gear, write_solid_inp, write_solid_vtu
 
 TOOTH = Tooth(10, BasicRack(1.0, 1.25, 0.25), 0.55)
 FACE, RADIUS, HALF_WIDTH = 4.0, 5.5, 0.25
@@ -197,7 +197,10 @@ def test_layers_grow_from_the_ends_and_keep_what_they_must():
 
 def test_decks_have_short_numbers_and_refuse_what_is_off_the_face(tmp_path):
     gear = Gear(TOOTH, 1.7e-3 / 3.0, 2.5 * 1.7e-3 / 3.0, 0.7e-3)
-    deck, field = write_solid(gear, tmp_path, "g", {"solid-inp", "solid-vtu"}, face_positions=(0.0, 0.25e-3))
+    deck, field = tmp_path / "g_solid.inp", tmp_path / "g_solid.vtu"
+    pressed = pressed_gear(gear, face_positions=(0.0, 0.25e-3))
+    write_solid_inp(deck, gear, pressed.mesh, pressed.bands, 1e3, {})
+    write_solid_vtu(field, gear, pressed)
     text = deck.read_text().splitlines()
     rows = [line.split(",") for line in text if line[:1].isdigit()]
     assert max(len(part.strip()) for row in rows for part in row) <= 20  # CalculiX reads no more
@@ -207,6 +210,6 @@ def test_decks_have_short_numbers_and_refuse_what_is_off_the_face(tmp_path):
     assert np.abs(places[:, 2]).max() == pytest.approx(0.35, rel=1e-11)
     assert field.stat().st_size > 1e4
     with pytest.raises(InputError, match=r"lies off the face, which runs from -0.35 to 0.35 mm"):
-        write_solid(gear, tmp_path, "g", {"solid-inp"}, face_positions=(1e-3,))
+        pressed_gear(gear, face_positions=(1e-3,))
     with pytest.raises(InputError, match="is the most"):
-        write_solid(Gear(Tooth(40, TOOTH.rack), 1e-3, 15e-3, 0.3), tmp_path, "g", {"solid-inp"})
+        pressed_gear(Gear(Tooth(40, TOOTH.rack), 1e-3, 15e-3, 0.3))

@@ -28,7 +28,7 @@ from fegear.geometry.gear import Gear, Material
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.output.mesh_export import write_solid_inp
+from fegear.output.solid_mesh_files import write_solid_inp
 
 FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "gear_body_calculix.json"
 TOOTH, BORE, FACE = Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), 2.0, 4.0

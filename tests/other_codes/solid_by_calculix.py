@@ -21,7 +21,7 @@ from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.output.mesh_export import write_solid_inp
+from fegear.output.solid_mesh_files import write_solid_inp
 
 TEETH, SHIFT, BORE, FACE = 10, 0.55, 2.5, 4.0
 RADIUS, HALF_WIDTH, SPACING = 5.5, 0.25, 0.5

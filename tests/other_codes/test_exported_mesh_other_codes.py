@@ -20,7 +20,7 @@ from fegear.fem.plane.whole_gear import whole_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.output.mesh_export import write_meshes
+from fegear.output.plane_mesh_files import write_field, write_inp, write_msh
 
 GEAR = Gear(Tooth(17, BasicRack(1.0, 1.25, 0.25), profile_shift=0.2), 3.175e-3, 9e-3, 25.4e-3)
 COARSE = MeshSettings().scaled(2.0)
@@ -28,8 +28,11 @@ COARSE = MeshSettings().scaled(2.0)
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("meshes")
-    return {path.suffix: path for path in write_meshes(GEAR, folder, "g", {"msh", "vtu", "inp"}, COARSE)}
+    folder, (whole, field) = tmp_path_factory.mktemp("meshes"), loaded_gear(GEAR, COARSE)
+    write_msh(folder / "g.msh", GEAR, whole)
+    write_field(folder / "g.vtu", GEAR, whole, field)
+    write_inp(folder / "g.inp", GEAR, whole, field.forces)
+    return {path.suffix: path for path in folder.iterdir()}
 
 
 def test_the_ring_is_closed_without_seams():
@@ -96,13 +99,13 @@ def test_calculix_solves_the_deck_to_the_same_displacements(plane, face_width, t
     # gear resists the slope of that bulge (4 % at 25 mm): only a thin slice is in plane stress there.
     ccx = program("ccx")
     gear = Gear(GEAR.tooth, GEAR.module, GEAR.bore_radius, face_width, GEAR.material, plane)
-    (path,) = write_meshes(gear, tmp_path, "g", {"inp"}, COARSE)
-    subprocess.run([ccx, path.stem], cwd=tmp_path, check=True, capture_output=True, timeout=300)
+    whole, field = loaded_gear(gear, COARSE)
+    write_inp(tmp_path / "g.inp", gear, whole, field.forces)
+    subprocess.run([ccx, "g"], cwd=tmp_path, check=True, capture_output=True, timeout=300)
     rows = [line.split() for line in (tmp_path / "g.dat").read_text().splitlines()]
     found = {
         int(r[0]): np.array([float(r[1]), float(r[2])]) for r in rows if len(r) == 4 and re.fullmatch(r"\d+", r[0])
     }
-    whole, field = loaded_gear(gear, COARSE)
     own = nodal_fields(gear, whole, field, 1e3)["displacement"][:, :2]
     nodes = whole.node_set("flank_0")
     assert set(found) >= {int(node) + 1 for node in nodes}

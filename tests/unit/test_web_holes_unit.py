@@ -14,7 +14,7 @@ from fegear.case.reading import build_scene
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.mass import mass_properties
 from fegear.geometry.tooth import Tooth
-from fegear.output.mesh_export import write_solid
+from fegear.output.solid_mesh_files import pressed_gear
 from fegear.results.gear import body_modes
 from fegear.results.gear.teeth_over_holes import teeth_over_holes
 
@@ -70,11 +70,11 @@ def test_holes_beside_the_teeth_are_refused():
         body.check(1e-3, 10e-3, 20e-3, 100e-3)
 
 
-def test_what_knows_no_holes_refuses_them(tmp_path):
+def test_what_knows_no_holes_refuses_them():
     with pytest.raises(InputError, match="body-modes"):
         body_modes.BODY_MODES.inputs(scene("body-modes"), "a")
-    with pytest.raises(InputError, match="without holes alone"):
-        write_solid(scene().gears["a"], tmp_path, "a", {"solid-inp"})
+    with pytest.raises(InputError, match="without holes only"):
+        pressed_gear(scene().gears["a"])
 
 
 def test_inertia_lacks_what_is_drilled_out():

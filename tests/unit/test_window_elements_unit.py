@@ -16,8 +16,9 @@ from nicegui.events import GenericEventArguments, handle_event
 from nicegui.page import page as ui_page
 
 from fegear.base.errors import InputError
+from fegear.output.formats import formats
 from fegear.window import messages
-from fegear.window.bar import EXPORTS, Bar
+from fegear.window.bar import Bar, exports
 from fegear.window.bench import LEVELS, TEMPLATES, Bench
 from fegear.window.document import Desk
 from fegear.window.inputs import Inputs, stepped
@@ -401,8 +402,9 @@ def test_exports_go_into_the_folder_that_is_named(client, bench, tmp_path, monke
         for one in client.elements.values()
         if isinstance(one, ui.menu_item)
     }
-    assert len(items) == 1 + len(EXPORTS)
-    for words, what, ending in EXPORTS:
+    assert len(items) == 1 + len(exports())
+    assert {what for _, what, _ in exports()} == {"report", "tables", *formats()}
+    for words, what, ending in exports():
         press(items[words])
         path = [one for one in client.elements.values() if isinstance(one, ui.input)][-1]
         assert path.value.endswith(f"c{ending}" if ending else path.value)

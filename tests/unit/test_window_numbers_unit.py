@@ -208,7 +208,7 @@ def test_the_page_of_every_case_has_the_numbers_of_its_run(tmp_path, path, wire,
 @pytest.mark.dear
 def test_every_kind_of_export_writes_its_files(tmp_path, wire, worker):
     text = PAIR.replace(', "transmission-error", "root-stress-history"', "")
-    endings = {"drawings": ".dxf", "relief": ".csv", "tables": ".csv"}
+    endings = {"dxf": ".dxf", "relief": ".csv", "tables": ".csv"}
     for number, (what, ending) in enumerate(endings.items()):
         worker.answer(Export(number, Asked(text, "c", str(tmp_path)), what, str(tmp_path / what)))
         assert wire.said[-1].what == "exported", wire.said[-1].content

@@ -1,26 +1,27 @@
-"""The whole gear's mesh in millimetres for gmsh (``.msh``), ParaView (``.vtu``), Abaqus and CalculiX (``.inp``).
-
-The solid gear for Abaqus, CalculiX (``.inp``) and ParaView (``.vtu``): hexahedra, wedges, pressed bands as loads.
-"""
+"""The gear with its width for Abaqus, CalculiX (``.inp``) and ParaView (``.vtu``): hexahedra, wedges, pressed bands."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
+from fegear.case.built.tooth_influence import own_sector_mesh
 from fegear.fem.plane.gear_section import gear_section, uneven_section
-from fegear.fem.plane.imported_mesh import write_mesh_file, write_vtu
-from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
+from fegear.fem.plane.imported_mesh import write_vtu
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.settings import MeshSettings
-from fegear.fem.plane.whole_gear import WholeGear
 from fegear.fem.solid.extruded import SolidMesh, extruded, graded_stations, pressed_band
 from fegear.geometry.gear import Gear
+from fegear.output.deck_cards import material_cards, number_lines
 from fegear.output.dxf import AS_GENERATED
+from fegear.output.file_names import file_name
+
+if TYPE_CHECKING:
+    from fegear.output.formats import Request, Written
 
 _MM = 1e3
 #: Abaqus' names of the elements.
@@ -38,107 +39,33 @@ _FORCE = 1e3
 _MOST_NODES = 3_000_000
 
 
-def write_inp(path: Path, gear: Gear, whole: WholeGear, forces: Array) -> None:
-    """Write an Abaqus or CalculiX deck of the whole gear that runs as it is: bore held, 1 N/mm on tooth 0.
+class PressedGear(NamedTuple):
+    """A whole gear with pressed bands on tooth 0.
 
-    Parameters
+    Attributes
     ----------
-    path : Path
-    gear : Gear
-    whole : WholeGear
-    forces : ndarray, shape (2, N)
-        Nodal forces on tooth 0's sector for a unit line load.
-
-    Notes
-    -----
-    Node sets are the boundaries over all teeth (``BORE``, ``FLANK``, ``FILLET``, ...) and of tooth 0 (``FLANK_0``,
-    ...). Units are mm, N, MPa.
+    mesh : SolidMesh
+        In modules.
+    bands : mapping of str to ndarray, shape (3, P)
+        Nodal forces of a unit force along the transverse line of action, by words for each band.
     """
-    points, width = whole.points * gear.module * _MM, gear.face_width * _MM
-    kind = "CPE6" if gear.plane_assumption == "strain" else "CPS6"
-    out = [
-        "*HEADING",
-        f"Flanks {AS_GENERATED}. Gear of {gear.teeth} teeth, module {gear.module * _MM:.9g} mm; mm, N, MPa",
-        "*NODE, NSET=ALL",
-    ]
-    out += [f"{i}, {x:.12g}, {y:.12g}, 0" for i, (x, y) in enumerate(points.T, start=1)]
-    out.append(f"*ELEMENT, TYPE={kind}, ELSET=GEAR")
-    out += [f"{i}, " + ", ".join(map(str, e)) for i, e in enumerate((whole.triangles + 1).T.tolist(), start=1)]
-    for name in whole.boundaries:
-        out.append(f"*NSET, NSET={name.upper()}")
-        out += _lines(whole.node_set(name) + 1)
-    out += [
-        *_material(gear),
-        f"{width:.12g}",
-        "*BOUNDARY",
-        "BORE, 1, 2",
-        "*STEP",
-        "*STATIC",
-        "*CLOAD",
-    ]
-    for i in np.flatnonzero(np.any(forces != 0.0, axis=0)):
-        node = whole.sector_nodes[0, i] + 1
-        out += [f"{node}, {axis + 1}, {forces[axis, i] * width:.12g}" for axis in range(2)]
-    out += ["*NODE FILE", "U", "*EL FILE", "S", "*NODE PRINT, NSET=FLANK_0", "U", "*END STEP"]
-    path.write_text("\n".join(out) + "\n", encoding="ascii")
+
+    mesh: SolidMesh
+    bands: Mapping[str, Array]
 
 
-def write_meshes(
-    gear: Gear, folder: Path, name: str, formats: set[str], settings: MeshSettings, mesh: SectorMesh | None = None
-) -> list[Path]:
-    """Write the whole gear's mesh as ``<name>.msh``, ``.vtu`` (with displacement and stress) and ``.inp``.
-
-    Parameters
-    ----------
-    gear : Gear
-    folder : Path
-    name : str
-    formats : set of {"msh", "vtu", "inp"}
-    settings : MeshSettings
-    mesh : SectorMesh, optional
-        A user's own sector mesh.
-
-    Returns
-    -------
-    list of Path
-    """
-    whole, field = loaded_gear(gear, settings, mesh)
-    points = whole.points * gear.module * _MM
-    written = []
-    if "msh" in formats:
-        written.append(folder / f"{name}.msh")
-        write_mesh_file(written[-1], points, whole.triangles, whole.boundaries)
-        written[-1].write_text(
-            f"$Comments\nFlanks {AS_GENERATED}.\n$EndComments\n{written[-1].read_text('utf-8')}", "utf-8"
-        )
-    if "vtu" in formats:
-        written.append(folder / f"{name}.vtu")
-        data = nodal_fields(gear, whole, field, 1e3)
-        write_vtu(written[-1], points, (whole.triangles,), data, remark=f"Flanks {AS_GENERATED}.")
-    if "inp" in formats:
-        written.append(folder / f"{name}.inp")
-        write_inp(written[-1], gear, whole, field.forces)
-    return written
-
-
-def write_solid(
+def pressed_gear(
     gear: Gear,
-    folder: Path,
-    name: str,
-    formats: set[str],
     *,
     radius: float | None = None,
     face_positions: Sequence[float] = (0.0,),
     mesh: SectorMesh | None = None,
-) -> list[Path]:
-    """Write the whole solid gear with a pressed band at each face position, as ``<name>_solid.inp`` and ``.vtu``.
+) -> PressedGear:
+    """The whole solid gear with a pressed band at each face position.
 
     Parameters
     ----------
     gear : Gear
-    folder : Path
-    name : str
-    formats : set of {"solid-inp", "solid-vtu"}
     radius : float, optional
         Of the bands' middle [m]; by default the pitch radius, or the flank's end nearest to it.
     face_positions : sequence of float
@@ -148,7 +75,7 @@ def write_solid(
 
     Returns
     -------
-    list of Path
+    PressedGear
 
     Raises
     ------
@@ -165,7 +92,7 @@ def write_solid(
     hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
     body = gear.body_in_modules
     if body is not None and body.holes is not None:
-        rule = "makes meshes of webs without holes alone"
+        rule = "makes meshes of webs without holes only"
         raise InputError("--format", "solid", rule, "leave body.holes out, or take another format")
     section = (
         gear_section(dict.fromkeys(range(gear.teeth), mesh))
@@ -186,15 +113,7 @@ def write_solid(
         f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.external_tooth, place / one, width, hat)
         for hat in hats
     }
-    written = []
-    if "solid-inp" in formats:
-        written.append(folder / f"{name}_solid.inp")
-        write_solid_inp(written[-1], gear, solid, bands, _FORCE, {})
-    if "solid-vtu" in formats:
-        written.append(folder / f"{name}_solid.vtu")
-        data = {f"force_{i}": _FORCE * forces.T for i, forces in enumerate(bands.values())}
-        write_vtu(written[-1], solid.points * one * _MM, (solid.wedges, solid.hexahedra), data)
-    return written
+    return PressedGear(solid, bands)
 
 
 def _room(gear: Gear, radius: float) -> float:
@@ -207,27 +126,37 @@ def _room(gear: Gear, radius: float) -> float:
     return min(at - low, high - at)
 
 
+def written_inp(request: Request) -> Written:
+    """Write ``<gear>_solid.inp``."""
+    found, path = _meshed(request), request.folder / f"{file_name(request.name)}_solid.inp"
+    write_solid_inp(path, request.gear, found.mesh, found.bands, _FORCE, {})
+    return [path], ()
+
+
+def written_vtu(request: Request) -> Written:
+    """Write ``<gear>_solid.vtu`` with the bands' nodal forces."""
+    found, path = _meshed(request), request.folder / f"{file_name(request.name)}_solid.vtu"
+    write_solid_vtu(path, request.gear, found)
+    return [path], ()
+
+
+def _meshed(request: Request) -> PressedGear:
+    """The mesh of a gear, once for all files."""
+    mesh = own_sector_mesh(request.scene, request.name)
+    found: PressedGear = request.cache.call(pressed_gear, request.gear, mesh=mesh).value
+    return found
+
+
+def write_solid_vtu(path: Path, gear: Gear, found: PressedGear) -> None:
+    """Write the mesh and the nodal forces of its bands for ParaView."""
+    mesh = found.mesh
+    data = {f"force_{i}": _FORCE * forces.T for i, forces in enumerate(found.bands.values())}
+    write_vtu(path, mesh.points * gear.module * _MM, (mesh.wedges, mesh.hexahedra), data)
+
+
 def _number(x: float) -> str:
     """At most 20 characters: CalculiX reads no more of a number."""
     return f"{x:.12e}"
-
-
-def _material(gear: Gear) -> list[str]:
-    """Cards of the material, in mm, N and MPa, up to the section that is made of it."""
-    made_of = gear.material
-    return [
-        "*MATERIAL, NAME=GEAR",
-        "*ELASTIC",
-        f"{made_of.young_modulus * 1e-6:.9g}, {made_of.poisson_ratio:.9g}",
-        "*DENSITY",
-        f"{made_of.density * 1e-12:.9g}",
-        "*SOLID SECTION, ELSET=GEAR, MATERIAL=GEAR",
-    ]
-
-
-def _lines(numbers: Index, per_line: int = 12) -> Iterator[str]:
-    for first in range(0, len(numbers), per_line):
-        yield ", ".join(map(str, numbers[first : first + per_line]))
 
 
 def _elements(kind: str, elements: Index, first: int) -> Iterator[str]:
@@ -284,8 +213,8 @@ def write_solid_inp(
     sets |= {"front": mesh.at_station(plane, mesh.layers), "back": mesh.at_station(plane, 0)}
     for name, nodes in {**sets, **printed}.items():
         out.append(f"*NSET, NSET={name.upper()}")
-        out += _lines(nodes + 1)
-    out += [*_material(gear), "*BOUNDARY", "BORE, 1, 3"]
+        out += number_lines(nodes + 1)
+    out += [*material_cards(gear), "*BOUNDARY", "BORE, 1, 3"]
     for name, forces in loads.items():
         out += ["*STEP", "*STATIC", "*CLOAD, OP=NEW", f"** {name}"]
         for node in np.flatnonzero(np.any(forces != 0.0, axis=0)):
