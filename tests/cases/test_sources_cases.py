@@ -13,7 +13,7 @@ from solved_once import CACHE
 import fegear
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "docs"))
+sys.path[:0] = [str(ROOT / "docs"), str(ROOT / "benchmarks")]
 
 import lin_chart_study  # noqa: E402
 import source_inputs  # noqa: E402

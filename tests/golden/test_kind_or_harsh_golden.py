@@ -7,18 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+STUDIES = Path(__file__).resolve().parents[2] / "benchmarks"
 
 
 @pytest.fixture(scope="module")
 def study():
-    sys.path.insert(0, str(DOCS))
+    sys.path.insert(0, str(STUDIES))
     try:
-        spec = importlib.util.spec_from_file_location("kind_or_harsh_study", DOCS / "kind_or_harsh_study.py")
+        spec = importlib.util.spec_from_file_location("kind_or_harsh_study", STUDIES / "kind_or_harsh_study.py")
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
     finally:
-        sys.path.remove(str(DOCS))
+        sys.path.remove(str(STUDIES))
     return module
 
 

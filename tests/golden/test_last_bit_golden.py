@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 _spec = importlib.util.spec_from_file_location(
-    "last_bit_study", Path(__file__).parents[2] / "docs" / "last_bit_study.py"
+    "last_bit_study", Path(__file__).parents[2] / "benchmarks" / "last_bit_study.py"
 )
 study = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(study)

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-_spec = importlib.util.spec_from_file_location("slices_study", Path(__file__).parents[2] / "docs" / "slices_study.py")
+_PLACE = Path(__file__).parents[2] / "benchmarks" / "slices_study.py"
+_spec = importlib.util.spec_from_file_location("slices_study", _PLACE)
 study = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(study)
 

@@ -1,10 +1,11 @@
 """Why fegear's deflections are smaller than NASA's in Mark's Table 1: the table docs/studies/mark_table1.csv.
 
-Run as ``python docs/mark_table1_study.py`` (two minutes). All 30 rows are computed with every choice that the report
-leaves open: how many teeth its sector had and whether its sides were free, plane stress or strain, a load on a point of
-the mesh instead of a Hertzian pressure, kind and size of the elements, and where the body was fixed. Everything here is
-scikit-fem's own assembly of the gear's sector mesh, so that nothing but the mesh is shared with fegear's solution;
-only the rows "Hertz" take that of the case ``sources/mark_table1_fe``, plus what the sector adds to a whole gear.
+Run as ``python benchmarks/mark_table1_study.py`` (two minutes). All 30 rows are computed with every choice that the
+report leaves open: how many teeth its sector had and whether its sides were free, plane stress or strain, a load on a
+point of the mesh instead of a Hertzian pressure, kind and size of the elements, and where the body was fixed.
+Everything here is scikit-fem's own assembly of the gear's sector mesh, so that nothing but the mesh is shared with
+fegear's solution; only the rows "Hertz" take that of the case ``sources/mark_table1_fe``, plus what the sector adds to
+a whole gear.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ CASE = ROOT / "cases" / "sources" / "mark_table1_fe.toml"
 PRINT = ROOT / "tests" / "data" / "mark_table1_loads_deflections.csv"
 TABLE = ROOT / "docs" / "studies" / "mark_table1.csv"
 #: The first line of the table.
-COMMAND = "# python docs/mark_table1_study.py"
+COMMAND = "# python benchmarks/mark_table1_study.py"
 HEAD = (
     "teeth", "sides", "plane", "load", "element", "node_spacing [modules]", "fixed_at [root radii]", "median [%]",
     "lowest [%]", "highest [%]", "scatter [%]",

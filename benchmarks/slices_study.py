@@ -1,6 +1,6 @@
 """What slices get wrong over helix angle and face width: the table docs/studies/slices.csv, and its picture.
 
-Run as ``python docs/slices_study.py`` (a quarter of an hour) to make both anew; ``--picture`` draws the committed
+Run as ``python benchmarks/slices_study.py`` (a quarter of an hour) to make both anew; ``--picture`` draws the committed
 table.
 """
 
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
 
-TABLE = Path(__file__).parent / "studies" / "slices.csv"
-IMAGES = Path(__file__).parent / "images"
+TABLE = Path(__file__).resolve().parents[1] / "docs" / "studies" / "slices.csv"
+IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 PICTURE = "slices_study"
 #: The first line of the table.
-COMMAND = "# python docs/slices_study.py"
+COMMAND = "# python benchmarks/slices_study.py"
 HEAD = (
     "helix_angle [deg]", "face_width [modules]", "body", "mean_te [um]", "peak_to_peak [um]", "face_load_factor",
     "face_load_factor_misaligned",

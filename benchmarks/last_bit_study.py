@@ -1,8 +1,8 @@
 """How far the numbers of every case move with the last bit, by their stated errors: docs/studies/last_bit.csv.
 
-Run as ``python docs/last_bit_study.py FOLDER [NAME ...]`` to make the table anew: hours of one core for all. Each run's
-numbers are kept in the folder, so a study that was ended goes on where it was, and names (of groups or cases) add to
-what is there; rows of others stay in the table. Every case is computed as it is, under noise of one unit in the last
+Run as ``python benchmarks/last_bit_study.py FOLDER [NAME ...]`` to make the table anew: hours of one core for all. Each
+run's numbers are kept in the folder, so a study that was ended goes on where it was, and names (of groups or cases) add
+to what is there; rows of others stay in the table. Every case is computed as it is, under noise of one unit in the last
 place where rounding enters (tests/helpers/other_processor, what another processor would compute), and with every
 quantity of the case file off by up to 1e-12 of itself; so are the random and the unusual gears of tests/golden at a
 tolerance of 1e-3, and ten searches for reliefs of random pairs. A number that has a stated error is compared with it;
@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-DOCS = Path(__file__).parent
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 CASES = DOCS.parent / "cases"
 OTHER = DOCS.parent / "tests" / "helpers" / "other_processor"
 GOLDEN = DOCS.parent / "tests" / "golden"
@@ -38,7 +38,7 @@ PAGE_HEAD = (
     "| case | draws | numbers with an error | last bit | inputs | numbers without | last bit | inputs |",
     "|---|---|---|---|---|---|---|---|",
 )
-COMMAND = "# python docs/last_bit_study.py"
+COMMAND = "# python benchmarks/last_bit_study.py"
 _NUMBERS = ("with_error", "of_its_error", "which", "without_error", "of_its_size", "which_of_these")
 HEAD = ("case", "cases", "noise", "draws", *_NUMBERS)
 SEEDS = (1, 2, 3)

@@ -1,8 +1,8 @@
 """Why K_Hbeta of ISO 6336-1 and of loaded solid flanks differ, cause by cause: docs/studies/khbeta.csv.
 
-Run as ``python docs/khbeta_study.py`` (some minutes) to make the table anew. From the closed formula one assumption
-after the other is given up, until the loaded solid flanks of `cases/khbeta_spur.toml` and `cases/khbeta_helical.toml`
-remain; each row is K_Hbeta with all assumptions above it given up.
+Run as ``python benchmarks/khbeta_study.py`` (some minutes) to make the table anew. From the closed formula one
+assumption after the other is given up, until the loaded solid flanks of `cases/khbeta_spur.toml` and
+`cases/khbeta_helical.toml` remain; each row is K_Hbeta with all assumptions above it given up.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import GearPair, Member
 
-DOCS = Path(__file__).parent
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 CASES = DOCS.parent / "cases"
 TABLE = DOCS / "studies" / "khbeta.csv"
-COMMAND = "# python docs/khbeta_study.py"
+COMMAND = "# python benchmarks/khbeta_study.py"
 HEAD = ("case", "given_up", "K_Hbeta", "change", "K_Hbeta_aligned", "error")
 STUDIED = ("khbeta_spur", "khbeta_helical")
 #: Of the solid gears, and that of a second run whose difference is the estimated error.

@@ -1,7 +1,7 @@
 """Root stress of helical pairs by ISO 6336-3 and AGMA 908 against solid gears: docs/studies/helical_root_stress.csv.
 
-Run as ``python docs/helical_root_stress_study.py`` (a minute a pair) to make the table anew; rows that it has stay,
-unless ``--anew`` is given. The pairs fill a box evenly (a scrambled Sobol sequence): see `LOW` and `HIGH`.
+Run as ``python benchmarks/helical_root_stress_study.py`` (a minute a pair) to make the table anew; rows that it has
+stay, unless ``--anew`` is given. The pairs fill a box evenly (a scrambled Sobol sequence): see `LOW` and `HIGH`.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from fegear.contact.wide.lines import ContactLines
     from fegear.geometry.pair import Member
 
-TABLE = Path(__file__).parent / "studies" / "helical_root_stress.csv"
-COMMAND = "# python docs/helical_root_stress_study.py"
+TABLE = Path(__file__).resolve().parents[1] / "docs" / "studies" / "helical_root_stress.csv"
+COMMAND = "# python benchmarks/helical_root_stress_study.py"
 KEYS = ("teeth", "mate_teeth", "profile_shift", "helix_angle [deg]", "face_width [modules]", "rack_tip_radius")
 HEAD = (
     "pair", "member", *KEYS, "overlap_ratio", "contact_ratio", "tolerance", "fe", "fe_even", "fe_transverse",

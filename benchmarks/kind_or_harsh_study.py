@@ -1,8 +1,8 @@
 """How often each root-stress formula is how far off: tables and pictures of docs/kind-or-harsh.md.
 
-Run as ``python docs/kind_or_harsh_study.py`` (some minutes) to solve the population of spur gears anew into
+Run as ``python benchmarks/kind_or_harsh_study.py`` (some minutes) to solve the population of spur gears anew into
 docs/studies/root_stress_population.csv; ``--page`` draws from the committed tables and fills the page alone. The table
-of helical pairs is made by docs/helical_root_stress_study.py, that of K_Hbeta by docs/khbeta_study.py.
+of helical pairs is made by benchmarks/helical_root_stress_study.py, that of K_Hbeta by benchmarks/khbeta_study.py.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ from fegear.geometry.tooth import Tooth
 from fegear.output.draw_png import draw_pictures
 from fegear.results.gear.root_stress_study import fe_error, sentences, spread_curve, spread_figure
 
-DOCS = Path(__file__).parent
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 TABLE = DOCS / "studies" / "root_stress_population.csv"
 PAGE = DOCS / "kind-or-harsh.md"
-COMMAND = "# python docs/kind_or_harsh_study.py"
+COMMAND = "# python benchmarks/kind_or_harsh_study.py"
 #: Gears of each pressure angle [deg]; their box; settings of the finite elements.
 GEARS = {20: 128, 25: 64}
 BOX = {

@@ -6,7 +6,7 @@ cross, lengths are `FINE` apart, closer than the paper's two decimals can be rea
 length would be a member of the grid and no reading. The page of the paper reads its numbers from what is kept here; a
 long test computes it again.
 
-    python docs/lin_chart_study.py
+    python benchmarks/lin_chart_study.py
 """
 
 from __future__ import annotations

@@ -6,7 +6,8 @@ First the studies, some minutes of one core on a machine that does nothing else:
     fegear cost cases/helical_load.toml --out HELICAL
     fegear cost cases/spur_over_the_face.toml --out SPUR
 
-then ``python docs/cost_study.py NASA HELICAL SPUR`` writes their numbers between the page's marks and takes pictures.
+then ``python benchmarks/cost_study.py NASA HELICAL SPUR`` writes their numbers between the page's marks and takes
+pictures.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-DOCS = Path(__file__).parent
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGE = DOCS / "cost.md"
 #: Quantities of the rig, as the study and as the page calls them.
 RIG = {
