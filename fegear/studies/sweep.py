@@ -254,7 +254,7 @@ def _point(found: Mapping[str, Any]) -> Point:
 _EXAMPLE = "for example --over gear.a.profile_shift=-0.4:0.8:25, =0.1,0.2,0.5 or =10:20:6:mm"
 
 
-_QUANTITY = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s0-9].*|1\s*/.*)?")
+_QUANTITY = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s0-9.,].*|1\s*/.*)?")
 
 
 _MOST = 1_000_000
@@ -362,7 +362,8 @@ def _list(key: str, given: str) -> Axis:
         if not all(math.isfinite(value) for value in values):
             raise InputError("--over", f'"{key}={given}"', "must list finite values", _EXAMPLE)
         return Axis(key, tuple(values), tuple(float(value) for value in values))
-    found = [_QUANTITY.fullmatch(value) if isinstance(value, str) else None for value in values]
+    # A number that TOML reads as one has no unit: 1,5 mm,2,6 mm are four values, not two.
+    found = [_QUANTITY.fullmatch(value if isinstance(value, str) else repr(value)) for value in values]
     units = {match[2] for match in found if match}
     if len(units) > 1 and None in units:
         raise InputError(
