@@ -4,7 +4,8 @@
 
 That a row holds says nothing of its inputs: with other ones it holds, too. Of every row that the ordinary tests run it
 is kept how many numbers it compares, what differences it allows, and a sum of the other side's numbers in which each
-has a weight of its own; `test_verify_unit.py` compares.
+has a weight of its own; where that side is printed, of fegear's numbers as well, which formulas give.
+`test_verify_unit.py` compares.
 """
 
 import argparse
@@ -17,18 +18,21 @@ KEPT = Path(__file__).with_suffix(".json")
 
 
 def of_row(outcome):
-    """What is kept of a row that has run: count, sum of the allowed differences, weighted mean of what is wanted."""
+    """What is kept of a row that has run: count, sum of the allowed differences, weighted means of both sides."""
     weights = np.cos(1.0 + 2.399963 * np.arange(len(outcome.compared)))  # turned by the golden angle: no two alike
     sizes = [one.wanted / one.scale + 0.01 * np.log(one.scale) for one in outcome.compared]
     allowed = sum(one.allowed for one in outcome.compared)
-    return [len(outcome.compared), float(f"{allowed:.6g}"), float(f"{np.dot(weights, sizes) / len(sizes):.9g}")]
+    both = [np.dot(weights, sizes) / len(sizes)]
+    if outcome.row.against == "printed":
+        both.append(np.dot(weights, [one.found / one.scale for one in outcome.compared]) / len(sizes))
+    return [len(outcome.compared), float(f"{allowed:.6g}"), *(float(f"{one:.9g}") for one in both)]
 
 
 def same(old, new):
     """Whether two of these say the same but for another processor's round-off."""
-    count, allowed, size = old
-    return (
-        count == new[0] and abs(allowed - new[1]) <= 1e-5 * allowed and abs(size - new[2]) <= 1e-6 * max(1.0, abs(size))
+    counts = old[0] == new[0] and len(old) == len(new) and abs(old[1] - new[1]) <= 1e-5 * old[1]
+    return counts and all(
+        abs(one - other) <= 1e-6 * max(1.0, abs(one)) for one, other in zip(old[2:], new[2:], strict=True)
     )
 
 

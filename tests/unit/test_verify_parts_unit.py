@@ -16,6 +16,7 @@ from fegear.verify import calculix, own
 from fegear.verify.gearboxes import _Springs
 from fegear.verify.kept import kept
 from fegear.verify.polygons import SETS, apart, by_polygons, described, teeth, touching, wrapped
+from fegear.verify.rolled import enumerated
 
 
 def test_phases_of_an_uneven_set_are_those_of_its_polygons():
@@ -227,3 +228,18 @@ def test_flanks_are_compared_by_load_approach_and_share(monkeypatch):
     assert [one.found for one in rows] == pytest.approx([69.5, 79.0])
     assert [one.wanted for one in rows] == pytest.approx([70.0 * 900 / 906, 80.0 * 900 / 906])
     np.testing.assert_allclose(seen[0], np.linspace(-1.4e-3, 1.4e-3, 15))
+
+
+def test_states_of_contact_are_tried_until_forces_and_gaps_agree():
+    """Springs behind gaps on a body that a linear spring holds: they push where they are pressed, and balance."""
+    rng = np.random.default_rng(11)
+    touching_ones = set()
+    for _ in range(40):
+        rows, k, gap = rng.normal(size=(4, 3)), rng.uniform(1.0, 3.0, 4), rng.uniform(-0.5, 1.0, 4)
+        linear, load = np.diag(rng.uniform(0.5, 2.0, 3)), rng.normal(size=3)
+        force = enumerated(linear, rows, k, gap, load)
+        z = np.linalg.solve(linear, load - rows.T @ force)
+        np.testing.assert_allclose(force, k * np.maximum(rows @ z - gap, 0.0), atol=1e-9)
+        touching_ones.add(int((force > 0.0).sum()))
+    assert {0, 1, 2} <= touching_ones
+    assert enumerated(np.zeros((1, 1)), np.array([[1.0]]), np.ones(1), np.zeros(1), np.array([-1.0])) is None
