@@ -230,7 +230,7 @@ def two_meshes_in_turn() -> Iterator[Compared]:
         opened = box.gaps(moved)
         left = max(float(np.abs(one - other).max()) for one, other in zip(gaps, opened, strict=True))
         gaps = [0.85 * one + 0.15 * other for one, other in zip(gaps, opened, strict=True)]
-        if left < 1e-16:
+        if left < 1e-13:  # forces to 1e-10 of the mean one
             break
     for mine, other, mesh in zip(found.forces, forces, box.meshes, strict=True):
         yield from near(mine[0], other[0], 1e-8, scale=mesh.load / mesh.heights.size)

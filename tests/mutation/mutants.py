@@ -1,7 +1,7 @@
 """Wrong lines: one sign, operator, comparison, index, constant, term or order of arguments of a source file changed.
 
 Text is no subject: docstrings, messages, meanings, annotations and what a `raise` says stay as they are. Numbers below
-1e-6 are guards against round-off and stay, too.
+1e-6 are guards against round-off and stay, too, as does `strict` of `zip`, which only guards.
 """
 
 from __future__ import annotations
@@ -116,6 +116,8 @@ class _Places:
         if isinstance(node, ast.Raise | ast.JoinedStr | ast.Import | ast.ImportFrom | ast.Assert):
             return
         if isinstance(node, ast.Call) and _name(node.func) in TEXTS:
+            return
+        if isinstance(node, ast.keyword) and node.arg == "strict":
             return
         self.mutate(node, within)
         for name, value in ast.iter_fields(node):

@@ -52,6 +52,12 @@ def changed(tool, source=SOURCE):
     return {one.shown(source).splitlines()[-1].strip("+ ") for one in found}, found
 
 
+def test_what_only_guards_stays(tool):
+    lines, _ = changed(tool, b"pairs = zip(a, b, strict=True), some(a, b, deep=True)\n")
+    assert any("deep=False" in line for line in lines)
+    assert not any("strict=False" in line for line in lines)
+
+
 def test_every_kind_of_wrong_line_is_offered(tool):
     lines, found = changed(tool)
     for wrong in (

@@ -83,6 +83,7 @@ def test_a_map_has_its_first_axis_across_and_gaps_where_points_failed():
     assert panel.x.categories == (
         "teeth\n20 to 25", "shift\n0 to 0.4", "te\n0 to 11",
     )  # fmt: skip
+    assert (panel.y.hidden, panel.y.limits, panel.height) == (True, (-0.05, 1.05), 1.2)
     low = panel.items[0]
     np.testing.assert_allclose(low.y, [0.0, 0.0, 0.0, math.nan, 0.0, 0.5, 1.0 / 11.0, math.nan])
     np.testing.assert_allclose(low.x, [0.0, 1.0, 2.0, math.nan] * 2)

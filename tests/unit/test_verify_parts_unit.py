@@ -1,6 +1,7 @@
 """Parts of the rows of `fegear verify` whose rows take seconds: what compares must notice what is off."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -243,3 +244,229 @@ def test_states_of_contact_are_tried_until_forces_and_gaps_agree():
         touching_ones.add(int((force > 0.0).sum()))
     assert {0, 1, 2} <= touching_ones
     assert enumerated(np.zeros((1, 1)), np.array([[1.0]]), np.ones(1), np.zeros(1), np.array([-1.0])) is None
+
+
+def test_a_mesh_is_handed_on_with_the_lag_that_its_load_takes(monkeypatch, tmp_path):
+    """In place of the exported unit: the force that makes the teeth approach as far as the angles say, by bisection."""
+    import shutil
+    import sys
+
+    import fegear
+    from fegear.engine.stage import Task
+    from fegear.verify import handed_on
+
+    results = fegear.run({**handed_on._CASE, "results": ["natural-modes"]}, progress=False)
+    mesh = results.outcomes[Task("gear-train", "")].data.meshes[0]
+    r1, r2 = (0.5 * 3e-3 * z * math.cos(math.radians(20.0)) for z in (23, 41))
+    given = {}
+
+    def simulate(path, fmi_type, stop_time, output_interval, input, start_values, output):  # noqa: A002
+        given.update(path=path, kind=fmi_type, stop=stop_time, step=output_interval, start=start_values, output=output)
+        assert (input["driver_speed"] == 0.0).all()
+        assert (input["driven_speed"] == 0.0).all()
+        assert (input["load"] == 500.0).all()
+        deflection = r1 * input["driver_angle"] - r2 * input["driven_angle"]
+        force = []
+        for far, turned in zip(deflection, input["driver_angle"], strict=True):
+            low, high = 0.0, 2000.0
+            for _ in range(60):
+                middle = 0.5 * (low + high)
+                less = float(np.ravel(mesh.excitation.approach(middle, 23.0 * turned / (2.0 * math.pi)))[0]) < far
+                low, high = (middle, high) if less else (low, middle)
+            force.append(low)
+        # The program gives more times than were asked for, the first twice.
+        times = np.concatenate([[0.0], input["time"]])
+        return {"time": times, "mesh_force": np.array([force[0], *force])}
+
+    monkeypatch.setitem(sys.modules, "fmpy", SimpleNamespace(simulate_fmu=simulate))
+    monkeypatch.setattr(shutil, "which", lambda name: f"/bin/{name}")
+    monkeypatch.setattr(type(results), "export", lambda self, folder, kind: (folder / f"one.{kind}",))
+    found = list(handed_on.fmu())
+    assert len(found) == 41
+    assert all(one.holds for one in found)
+    assert max(one.deviation for one in found) < 1e-9
+    assert {one.wanted for one in found} != {500.0}  # computed, not handed through
+    assert (given["path"].endswith("one.fmu"), given["kind"], given["stop"]) == (True, "ModelExchange", 1.0)
+    assert (given["step"], given["start"], given["output"]) == (0.025, {"damping": 0.0}, ["mesh_force"])
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(Exception, match="needs a C compiler"):
+        list(handed_on.fmu())
+
+
+# ---- what is solved for rows that take long --------------------------------------------------------------------------
+@pytest.fixture
+def solved(monkeypatch):
+    """Gears that would be solved: with what they are asked for, in place of a solution."""
+    for one in (calculix._solid, calculix._on_a_web, calculix._flanks, calculix._pressed):
+        one.cache_clear()
+        monkeypatch.setattr(calculix, one.__name__, one.__wrapped__)
+    asked = []
+    monkeypatch.setattr(
+        "fegear.fem.solid.solution.solve_solid", lambda *given, **more: (asked.append((given, more)), len(asked))[1]
+    )
+    return asked
+
+
+def places(band):
+    """What a pressed band says of itself in single numbers: where it is and how wide."""
+    values = {name: np.asarray(getattr(band, name)) for name in band.__dataclass_fields__}
+    return {
+        name: float(one.ravel()[0])
+        for name, one in values.items()
+        if one.size == 1 and np.issubdtype(one.dtype, np.number)
+    }
+
+
+def test_the_solid_gear_is_the_one_that_calculix_had(solved):
+    from fegear.fem.solid.bands import bands
+    from fegear.fem.solid.settings import SolidSettings
+
+    solution, pressed = calculix._solid("helical")
+    ((given, more),) = solved
+    tooth, twist, width, poisson, bore, settings = given
+    assert solution == 1
+    assert (tooth.teeth, tooth.profile_shift, tooth.rack) == (10, 0.55, BasicRack(1.0, 1.25, 0.25))
+    assert twist == pytest.approx(math.tan(math.radians(20.0)) / tooth.pitch_radius)
+    assert (width, poisson, bore, more) == (4.0, 0.3, 2.5, {"reach": 1})
+    assert settings == replace(SolidSettings().scaled(1.2), waves_per_module=3.0)
+    expected = {
+        "middle": (0, bands(5.5, 0.0, 0.5, 0.25, after=0.5)), "beside": (0, bands(5.5, 1.0, 0.5, 0.25, after=0.5)),
+        "front": (0, bands(5.5, 2.0, 0.5, 0.25, after=0.0)), "back": (0, bands(5.5, -2.0, 0.0, 0.25, after=0.5)),
+        "next": (1, bands(5.5, 0.0, 0.5, 0.25, after=0.5)),
+    }  # fmt: skip
+    assert {name: (k, places(band)) for name, (k, band) in pressed.items()} == {
+        name: (k, places(band)) for name, (k, band) in expected.items()
+    }
+    assert places(expected["front"][1]) != places(expected["middle"][1])
+
+
+@pytest.mark.parametrize(
+    ("which", "web", "lean", "holed"),
+    [("off", (-1.5, -0.5), 0.0, False), ("inclined", (-1.5, -0.5), 20.0, False), ("holes", (-0.5, 0.5), 0.0, True)],
+)
+def test_gears_on_a_web_are_the_ones_that_calculix_had(solved, which, web, lean, holed):
+    from fegear.fem.solid.bands import bands
+    from fegear.fem.solid.settings import SolidSettings
+
+    _, pressed = calculix._on_a_web(which)
+    ((given, more),) = solved
+    tooth, *size, settings = given
+    assert (tooth.teeth, tooth.profile_shift, tooth.rack) == (16, 0.2, BasicRack(1.0, 1.25, 0.25))
+    assert size == [0.0, 4.0, 0.3, 2.0]
+    assert settings == replace(SolidSettings().scaled(1.2 if which == "off" else 1.6), waves_per_module=2.5)
+    body = more.pop("body")
+    assert more == {}
+    assert (body.rim_radius, body.hub_radius, body.web, body.hub) == (5.7, 3.0, web, (-2.0, 2.0))
+    assert body.lean == pytest.approx(math.tan(math.radians(lean)))
+    assert (body.holes is not None) is holed
+    if holed:
+        assert (body.holes.count, body.holes.circle_radius, body.holes.radius) == (6, 4.35, 0.9)
+    tops = [(-2.0, 0.0, 0.5), (-1.0, 0.5, 0.5), (0.0, 0.5, 0.5), (1.0, 0.5, 0.5), (2.0, 0.5, 0.0)]
+    assert [places(one) for one in pressed] == [
+        places(bands(8.2, top, before, 0.25, after=after)) for top, before, after in tops
+    ]
+
+
+def test_a_tooth_above_a_hole_and_one_between_two_are_of_one_solution(solved, monkeypatch):
+    monkeypatch.setattr("fegear.fem.solid.tooth_over_holes.tooth_over_holes", lambda solution, tooth: (solution, tooth))
+    found = [(solution, known) for solution, _, known in calculix._over_holes()]
+    theirs = kept("web_holes_calculix")
+    assert found == [((1, 0), theirs["below"]), ((1, 4), theirs["between"])]
+    assert len(solved) == 1
+
+
+def test_modes_of_a_gear_on_a_web_are_of_coarse_elements_without_nodal_diameters(monkeypatch):
+    from fegear.fem.solid.settings import SolidSettings
+
+    asked = []
+    wanted = kept("gear_body_calculix")["middle"]["frequencies"][0]
+
+    def body_modes(*given, **more):
+        asked.append((given, more))
+        return SimpleNamespace(modes=[SimpleNamespace(frequency=one) for one in wanted])
+
+    monkeypatch.setattr("fegear.fem.solid.body_modes.body_modes", body_modes)
+    rows = list(calculix.calculix_web_frequencies())
+    assert [one.found for one in rows] == wanted
+    assert {one.allowed for one in rows} == {0.005}
+    (((tooth, *size, settings, body), more),) = asked
+    assert (tooth.teeth, body.web, body.lean, body.holes) == (16, (-0.5, 0.5), 0.0, None)
+    assert size == [0.0, 4.0, 0.3, 2.0]
+    usual = SolidSettings()
+    assert settings == replace(usual, section=replace(usual.section.scaled(4.0), order=2))
+    assert more == {"diameters": 0, "each": 2, "fineness": 0.6}
+
+
+def test_flanks_are_loaded_as_calculix_had_them(solved, monkeypatch):
+    from fegear.fem.solid.settings import solid_settings
+
+    pair, gears = calculix._flanks()
+    assert gears == {"driver": 1, "driven": 2}
+    assert [gear.hand for gear in (pair.driver, pair.driven)] == ["right", "left"]
+    for (tooth, *size, settings), more in solved:
+        assert (tooth.teeth, tooth.profile_shift, tooth.rack) == (18, 0.0, BasicRack(1.0, 1.25, 0.25))
+        assert math.degrees(tooth.helix_angle) == pytest.approx(12.0)
+        twist = math.tan(math.radians(12.0)) / (9.0 / math.cos(math.radians(12.0)))
+        assert size[1:] == pytest.approx([3.0, 0.3, 0.5 * tooth.root_radius])
+        assert abs(size[0]) == pytest.approx(twist)
+        assert (settings, more) == (solid_settings(1e-2), {"reach": 1})
+    assert {gear.material.young_modulus for gear in (pair.driver, pair.driven)} == {206.8e9}
+
+    seen = {}
+    monkeypatch.setattr(calculix, "_flanks", lambda: (pair, gears))
+    monkeypatch.setattr(
+        "fegear.contact.wide.lines.contact_lines",
+        lambda of, roll, panel, most_gap: seen.update(roll=roll, panel=panel, most=most_gap) or "lines",
+    )
+    monkeypatch.setattr("fegear.contact.wide.tip_edges.usual_gap", lambda of, load: ("gap", load))
+    monkeypatch.setattr("fegear.contact.wide.compliance.flank_compliance", lambda *given: ("compliance", *given[1:]))
+    monkeypatch.setattr("fegear.contact.wide.complementarity.solve_contact", lambda *given: given)
+    monkeypatch.setattr(calculix, "_tilt_gap", lambda of, lines, over_face: (lines, over_face))
+    for position, share in (("two whole lines", 0.25), ("a line that ends at the tip", 0.02)):
+        lines, (compliance, gap, load) = calculix._pressed(position, 7.0)
+        assert seen["roll"] == pytest.approx([pair.x_start + share * pair.base_pitch])
+        assert (seen["panel"], seen["most"]) == (0.25e-3, ("gap", 900.0))
+        assert (lines, gap, load.tolist()) == ("lines", ("lines", pytest.approx(7e-6)), [900.0])
+        assert compliance == ("compliance", gears, "lines", 900.0)
+
+
+def test_whole_gears_are_checked_at_a_tolerance_and_positions_of_their_own(monkeypatch):
+    from fegear.verify import programs
+
+    asked = []
+
+    def check_gear(scene, name, positions):
+        asked.append((scene, name, positions))
+        rows = (("c_self", 0.1, 0.2), ("c_next", 0.3, 0.4), ("c_prev", 0.5, 0.6), ("root_tension", 0.7, 0.8),
+                ("root_compression", 0.9, 1.0))  # fmt: skip
+        return SimpleNamespace(compared=[
+            SimpleNamespace(quantity=one, difference=off, stated_error=stated) for one, off, stated in rows
+        ])  # fmt: skip
+
+    monkeypatch.setattr("fegear.studies.check.check_gear", check_gear)
+    monkeypatch.setattr(programs, "_whole", programs._whole.__wrapped__)
+    for row, wanted in (
+        (programs.whole_gear_compliance, [(0.1, 0.2), (0.3, 0.4), (0.5, 0.6)]),
+        (programs.whole_gear_root_stress, [(0.7, 0.8), (0.9, 1.0)]),
+    ):
+        found = list(row())
+        assert [(one.deviation, one.allowed) for one in found] == wanted
+        assert [one.stated for one in found] == [one.allowed for one in found]
+    scene, name, positions = asked[0]
+    gear = scene.gears["pinion"]
+    assert (name, positions, scene.case.accuracy.tolerance) == ("pinion", 3, 1e-2)
+    assert (gear.teeth, gear.module, gear.bore_radius) == (17, 3e-3, 14e-3)
+    assert gear.tooth.profile_shift == 0.35
+    asked.clear()
+    assert len(list(programs.ring_supports())) == 10
+    assert [(name, positions, scene.case.accuracy.tolerance) for scene, name, positions in asked] == [
+        ("ring", 1, 5e-2)
+    ] * 2
+    pins, splined = (scene.gears["ring"].support for scene, _, _ in asked)
+    assert (pins.pins, pins.width, math.degrees(pins.angle)) == (4, 6e-3, pytest.approx(17.0))
+    assert splined.pins == 0
+    for scene, _, _ in asked:
+        ring = scene.gears["ring"]
+        assert (ring.teeth, ring.module, ring.tip_radius) == (30, 2e-3, pytest.approx(28.7e-3))
+        assert ring.bore_radius - ring.root_radius == pytest.approx(5e-3)
+        assert ring.tooth.cutter.teeth == 15
