@@ -17,7 +17,7 @@ from fegear.base.shown import shown, shows
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from fegear.base.arrays import Array
     from fegear.base.errors import InputError
@@ -375,6 +375,70 @@ class TransmissionErrorShift:
     amplitude: Array
     stiffness: float
 
+    @property
+    def first_harmonic(self) -> float:
+        """Of the first amplitude; zero where there is none."""
+        return float(self.amplitude[0]) if self.amplitude.size else 0.0
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """Lines of the transmission error, n = 1 to N, under L loads.
+
+    Parameters
+    ----------
+    n : ndarray of int, shape (N,)
+    cosine, sine, amplitude : ndarray, shape (N, L)
+        0-peak [m].
+    """
+
+    n: NDArray[np.int64] = shown("", "harmonic of the tooth-mesh frequency", table="harmonics")
+    cosine: Array = shown("um", "factor of cos(2 pi n x / p_b), 0-peak", table="harmonics")
+    sine: Array = shown("um", "factor of sin(2 pi n x / p_b), 0-peak", table="harmonics")
+    amplitude: Array = shown("um", "0-peak", table="harmonics")
+
+
+@dataclass(frozen=True)
+class RotationalHarmonics:
+    """Lines of the transmission error over the base pitches after which the same teeth meet again, n = 1 to N.
+
+    Parameters
+    ----------
+    cycles : int
+        Base pitches of the period.
+    n : ndarray of int, shape (N,)
+    cosine, sine, amplitude : ndarray, shape (N,)
+        0-peak [m].
+    """
+
+    cycles: int
+    n: NDArray[np.int64] = shown("")
+    cosine: Array = shown("um", "0-peak")
+    sine: Array = shown("um", "0-peak")
+    amplitude: Array = shown("um", "0-peak")
+
+    @property
+    @shows("", "frequency over the tooth-mesh frequency")
+    def mesh_order(self) -> Array:
+        """n over the base pitches of the period, shape (N,)."""
+        return np.asarray(self.n / self.cycles)
+
+    @property
+    def below_mesh(self) -> Array:
+        """Amplitudes below the tooth-mesh frequency [m]."""
+        return self.amplitude[: self.cycles - 1]
+
+    @property
+    @shows("um", name="te_largest_rotational")
+    def largest(self) -> float | None:
+        """Of these [m]; None where there are none."""
+        return float(self.below_mesh.max()) if self.below_mesh.size else None
+
+    @property
+    def at_largest(self) -> int:
+        """Its harmonic."""
+        return int(self.below_mesh.argmax()) + 1
+
 
 @dataclass(frozen=True)
 class ErrorOverPitch:
@@ -458,6 +522,36 @@ class ErrorOverPitch:
     def driver_torque(self) -> Array:
         """Under each load, shape (L,) [N m]."""
         return self.total_load * self.pair.driver.base_radius
+
+    @property
+    def harmonics(self) -> Harmonics:
+        """Lines of its series under every load."""
+        cosine, sine, amplitude = (
+            np.stack([getattr(one, part) for one in self.series], axis=-1) for part in ("cosine", "sine", "amplitude")
+        )
+        return Harmonics(np.arange(1, len(amplitude) + 1), cosine, sine, amplitude)
+
+    @property
+    def rotational_harmonics(self) -> RotationalHarmonics | None:
+        """Lines of the series over several base pitches, where it is computed."""
+        if (one := self.rotational) is None:
+            return None
+        n = np.arange(1, one.amplitude.size + 1)
+        return RotationalHarmonics(self.cycles, n, one.cosine, one.sine, one.amplitude)
+
+    @property
+    def local_stiffness_error(self) -> float | None:
+        """Estimated, of the mean slope at the nominal load: relatively that of the secant stiffness [N/m]."""
+        if self.shift is None:
+            return None
+        return self.shift.stiffness / self.mesh_stiffness_mean * float(self.local_stiffness_mean[self.at])
+
+    @property
+    def mesh_compliance_error(self) -> float | None:
+        """Estimated [m/N]: relatively that of the mean transmission error."""
+        if self.shift is None or self.mesh_compliance_mean is None:
+            return None
+        return self.shift.mean / float(self.te_mean[self.at]) * self.mesh_compliance_mean
 
     @property
     @shows("um", "0-peak")

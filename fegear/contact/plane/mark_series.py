@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.shown import shown, shows
 from fegear.contact.fourier import FourierSeries, Panels, fourier_series
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import pair_stiffness
@@ -40,19 +41,19 @@ class Reciprocal:
     ----------
     exact : FourierSeries
         alpha_(1/K)n by quadrature [m/N].
-    terms : ndarray of int, shape (M,)
     pointwise, convolved : tuple of FourierSeries
         After each number of terms: products taken point by point; and cut off at the harmonics of `exact`.
+    terms : ndarray of int, shape (M,)
     smallest, largest : float
         Of k = K_T / mean(K_T) over the base pitch.
     """
 
     exact: FourierSeries
-    terms: NDArray[np.int64]
     pointwise: tuple[FourierSeries, ...]
     convolved: tuple[FourierSeries, ...]
-    smallest: float
-    largest: float
+    terms: NDArray[np.int64] = shown("", "terms of the series", name="M")
+    smallest: float = shown("", "of mesh stiffness over its mean")
+    largest: float = shown("", "of mesh stiffness over its mean")
 
     @property
     def converges(self) -> bool:
@@ -60,12 +61,25 @@ class Reciprocal:
         return self.smallest > 0.0 and self.largest < 2.0
 
     @property
+    @shows("", "largest |1 - K/mean K|^(M + 1)")
     def bound(self) -> Array:
         """Largest |1 - k|^(M + 1), shape (M,): relative error of the series where it is worst."""
         widest = max(abs(1.0 - self.smallest), abs(self.largest - 1.0))
         return np.asarray(widest ** (self.terms + 1.0))
 
-    def error(self, series: tuple[FourierSeries, ...]) -> Array:
+    @property
+    @shows("", "largest of 1/K's coefficients over mean", name="error", label="largest error over the mean")
+    def pointwise_error(self) -> Array:
+        """With exact products, after each number of terms, shape (M,)."""
+        return self._error(self.pointwise)
+
+    @property
+    @shows("", "with products cut off", name="error_convolved")
+    def convolved_error(self) -> Array:
+        """With products cut off, after each number of terms, shape (M,)."""
+        return self._error(self.convolved)
+
+    def _error(self, series: tuple[FourierSeries, ...]) -> Array:
         """Largest error of any coefficient over the mean compliance, after each number of terms, shape (M,)."""
         exact = self.exact.coefficients
         return np.array([np.abs(one.coefficients - exact).max() for one in series]) / abs(exact[0])
@@ -108,7 +122,7 @@ def reciprocal_series(points: Panels, stiffness: ArrayLike, harmonics: int, term
             pointwise.append(fourier_series(points, s / mean, harmonics))
             convolved.append(FourierSeries(np.asarray(c[harmonics:] / mean, dtype=complex), points.period))
     exact = fourier_series(points, 1.0 / stiff, harmonics)
-    return Reciprocal(exact, wanted, tuple(pointwise), tuple(convolved), float(k.min()), float(k.max()))
+    return Reciprocal(exact, tuple(pointwise), tuple(convolved), wanted, float(k.min()), float(k.max()))
 
 
 def _partial_sum(k: Array, terms: int) -> Array:

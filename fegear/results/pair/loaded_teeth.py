@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.table import Column
 
+#: What declares the column of loads of a table for every load.
+OVER_LOADS = (ErrorOverPitch, "total_load")
 #: Abscissa of figures over one base pitch.
 BASE_PITCH = Axis("roll position over one base pitch", "mm")
 

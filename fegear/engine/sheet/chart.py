@@ -1,0 +1,235 @@
+"""Figures of a sheet: curves, bars and stems of declared quantities over one of them, a panel each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from fegear.engine.declared import axis_of, drawn
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.items import MOST_CURVES, Bars, Curve, Item, Mark, Points, Stems, Zone, few, ramp
+from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.seen import Seen, Text, Where
+
+
+@dataclass(frozen=True)
+class Family:
+    """Objects for each of which a panel has a curve.
+
+    Parameters
+    ----------
+    of : where
+        A mapping of names to objects, or a sequence of objects.
+    label : text
+        Of a member: ``{key}`` is its name, ``{one.…}`` what it declares.
+    role : str
+        ``series`` for members without order, ``ramp`` for ordered ones; else the role of all.
+    most : int
+        More are not drawn: evenly chosen, the first and the last among them.
+    """
+
+    of: Where
+    label: Text = "{key}"
+    role: str = "series"
+    most: int = MOST_CURVES
+
+
+#: The loads of a pair: as many as can be told apart, the nominal one among them.
+LOADS: Literal["loads"] = "loads"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A declared quantity drawn over another.
+
+    Parameters
+    ----------
+    y : str
+    label, role : text
+        Of the legend and of the look; a family has its own.
+    error : where, optional
+        Estimated error of y in SI, drawn as a band.
+    x : str
+        Quantity that it is drawn over, where it is not the panel's.
+    of : where, optional
+        What declares both, if it is not what the chart is of. None there: no line.
+    each : Family or LOADS, optional
+        Members for each of which there is one.
+    kind : {"curve", "bars", "stems", "points"}
+    look : mapping
+        Further options of the item: ``dash``, ``width``, ``markers``, ``fill``, ``symbol``, ``size``.
+    when : where, optional
+        Whether it is drawn.
+    first : int, optional
+        How many points are drawn at most, from the first.
+    """
+
+    y: str
+    label: Text = ""
+    role: Text = "blue"
+    error: Where | None = None
+    x: str = ""
+    of: Where | None = None
+    each: Family | Literal["loads"] | None = None
+    kind: Literal["curve", "bars", "stems", "points"] = "curve"
+    look: dict[str, Any] = field(default_factory=dict)
+    when: Where | None = None
+    first: int | None = None
+
+
+@dataclass(frozen=True)
+class Over:
+    """One panel.
+
+    Parameters
+    ----------
+    x : str or Axis or function
+        Abscissa: a quantity, or an axis of its own, whose numbers are those of the lines' `x`.
+    y : str or Axis or function
+        Ordinate: a quantity, that of the first line if empty.
+    lines : tuple of Line or str
+    marks : where, optional
+        Marks and zones across the panel.
+    options : mapping
+        Of the ordinate where it is a quantity: ``zero``, ``log``, ``limits``.
+    x_options : mapping
+        Of the abscissa where it is a quantity: ``log``, ``whole``, ``second``.
+    title : text
+    panel : mapping
+        Further options of the panel: ``height``, ``stacked``.
+    when : where, optional
+    """
+
+    x: str | Axis | Callable[[Seen], Axis]
+    lines: tuple[Line | str, ...]
+    y: str | Axis | Callable[[Seen], Axis] = ""
+    marks: Where | None = None
+    options: dict[str, Any] = field(default_factory=dict)
+    x_options: dict[str, Any] = field(default_factory=dict)
+    title: Text = ""
+    panel: dict[str, Any] = field(default_factory=dict)
+    when: Where | None = None
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A figure.
+
+    Parameters
+    ----------
+    name, title, caption : text
+    panels : tuple of Over
+    of : where
+        What declares the quantities. None there: no figure.
+    each, when : where, optional
+        Objects for each of which there is such a figure; whether there is one.
+    under : text
+        Load or speed that all of it holds for; LOADS for the load of a pair that has one only.
+    columns : int
+        As that of `Figure`.
+    """
+
+    name: Text
+    title: Text
+    caption: Text
+    panels: tuple[Over, ...]
+    of: Where = ""
+    each: Where | None = None
+    when: Where | None = None
+    under: Text = ""
+    columns: int = 1
+
+    def figures(self, seen: Seen) -> Iterator[Figure]:
+        """Those that there are."""
+        for one in seen.each(self.each):
+            if not one.holds(self.when) or (owner := one.find(self.of)) is None:
+                continue
+            under = _only_load(one) if self.under == LOADS else one.said(self.under)
+            panels = tuple(_panel(one, owner, over) for over in self.panels if one.holds(over.when))
+            yield Figure(
+                one.said(self.name), one.said(self.title), one.said(self.caption), panels, columns=self.columns,
+                under=under,
+            )  # fmt: skip
+
+
+def _only_load(seen: Seen) -> str:
+    """The load that a figure holds for, where the pair has one only; else its legend names them."""
+    return f"{seen.loads[0]:.5g} N" if len(seen.loads) == 1 else ""
+
+
+def _panel(seen: Seen, owner: Any, over: Over) -> Panel:
+    lines = [Line(one) if isinstance(one, str) else one for one in over.lines]
+    lines = [line for line in lines if seen.holds(line.when)]
+    x = _axis(seen, owner, over.x, over.x_options)
+    y = _axis(seen, _owner(seen, owner, lines[0]), over.y or lines[0].y, over.options)
+    base = over.x if isinstance(over.x, str) else "x"
+    items = tuple(item for line in lines for item in _items(seen, owner, line, line.x or base))
+    marks: tuple[Mark | Zone, ...] = () if over.marks is None else tuple(seen.find(over.marks))
+    return Panel(x, y, items, marks, seen.said(over.title), **over.panel)
+
+
+def _axis(seen: Seen, owner: Any, what: str | Axis | Callable[[Seen], Axis], options: dict[str, Any]) -> Axis:
+    if isinstance(what, Axis):
+        return what
+    return axis_of(owner, what, **options) if isinstance(what, str) else what(seen)
+
+
+def _owner(seen: Seen, owner: Any, line: Line) -> Any:
+    """What declares a line's quantities: the first member of a family."""
+    if isinstance(line.each, Family):
+        first = next(iter(seen.each(line.each.of)))
+        return first.one if line.of is None else first.find(line.of)
+    return owner if line.of is None else seen.find(line.of)
+
+
+def _items(seen: Seen, owner: Any, line: Line, x: str) -> Iterator[Item]:
+    if line.each is None:
+        if (found := _owner(seen, owner, line)) is not None:
+            yield _item(seen, found, line, x, seen.said(line.label), seen.said(line.role), seen.nominal)
+    elif isinstance(line.each, Family):
+        members = list(seen.each(line.each.of))
+        chosen = few(len(members), (0, len(members) - 1), line.each.most)
+        for k, role in zip(chosen, _roles(line.each.role, chosen), strict=True):
+            member = members[k]
+            found = member.one if line.of is None else member.find(line.of)
+            yield _item(member, found, line, x, member.said(line.label or line.each.label), role, seen.nominal)
+    else:
+        found = _owner(seen, owner, line)
+        for load, label, role in drawn_loads(seen):
+            yield _item(seen, found, line, x, label, role, load, banded=load == seen.nominal)
+
+
+def _roles(role: str, chosen: list[int]) -> list[str]:
+    if role == "ramp":
+        return ramp(len(chosen))
+    return [f"series:{k}" if role == "series" else role for k in chosen]
+
+
+def drawn_loads(seen: Seen) -> list[tuple[int, str, str]]:
+    """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
+    loads, nominal = seen.loads, seen.nominal or 0
+    chosen = few(len(loads), (nominal,))
+    labels = [f"{loads[i]:.5g} N" + (" (nominal)" if i == nominal and len(loads) > 1 else "") for i in chosen]
+    return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
+
+
+def _item(
+    seen: Seen, owner: Any, line: Line, x: str, label: str, role: str, load: int | None, *, banded: bool = True
+) -> Item:  # fmt: skip
+    """One curve, row of bars or of stems, in the units in which its quantities are read."""
+    upto = slice(line.first)
+    along, y = drawn(owner, x, load=load)[upto], drawn(owner, line.y, load=load)[upto]
+    error = None if line.error is None or not banded else seen.find(line.error)
+    if error is not None:
+        error = drawn(owner, line.y, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
+    if line.kind == "bars":
+        return Bars(along, y, label, role, error)
+    if line.kind == "stems":
+        return Stems(along, y, label, role)
+    if line.kind == "points":
+        return Points(along, y, label, role, error=error, **line.look)
+    return Curve(along, y, label, role, error, **line.look)

@@ -1,0 +1,56 @@
+"""Single numbers of a sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fegear.engine.declared import value_of
+from fegear.engine.sheet.seen import Seen, Text, Where
+from fegear.engine.value import Value
+
+
+@dataclass(frozen=True)
+class Number:
+    """A declared quantity as a single value with its error.
+
+    Parameters
+    ----------
+    quantity : str
+    error : where, optional
+        Its estimated error; unknown where it is None.
+    of : where
+        What declares it. None there: no value.
+    si : where, optional
+        A number in its place; None there: no value.
+    owner, name, meaning, further : text
+        The value's name is ``owner.name``; by default that of the subject and of the quantity. `further` follows the
+        declared meaning.
+    each, when : where, optional
+        Objects for each of which there is such a value; whether there is one.
+    """
+
+    quantity: str
+    error: Where | None = None
+    of: Where = ""
+    si: Where | None = None
+    owner: Text = "{name}"
+    name: Text = ""
+    meaning: Text = ""
+    further: Text = ""
+    each: Where | None = None
+    when: Where | None = None
+
+    def values(self, seen: Seen) -> Iterator[Value]:
+        """Those that there are."""
+        for one in seen.each(self.each):
+            if not one.holds(self.when) or (found := one.find(self.of)) is None:
+                continue
+            if (number := getattr(found, self.quantity) if self.si is None else one.find(self.si)) is None:
+                continue
+            error = None if self.error is None else one.find(self.error)
+            yield value_of(
+                found, self.quantity, one.said(self.owner), None if error is None else float(error), si=number,
+                load=one.nominal, name=one.said(self.name), meaning=one.said(self.meaning),
+                further=one.said(self.further),
+            )  # fmt: skip

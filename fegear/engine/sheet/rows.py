@@ -1,0 +1,221 @@
+"""Tables of a sheet: columns of declared quantities, for one load or several, over a grid, or a row an object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fegear.base.shown import columns_declared
+from fegear.engine.declared import column_of, columns_on_grid, error_column, stacked
+from fegear.engine.sheet.seen import Seen, Text, Where
+from fegear.engine.table import Column, Table
+
+
+@dataclass(frozen=True)
+class Every:
+    """All columns that the class declares for a table; a quantity that a result lacks (None) has none.
+
+    Parameters
+    ----------
+    table : str
+    names : mapping of str to str
+        Columns that have another name than declared, by quantity.
+    """
+
+    table: str
+    names: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A column: a declared quantity, of other numbers or under other words where these are given.
+
+    Parameters
+    ----------
+    quantity : str
+    si : where, optional
+        Numbers in place of the quantity's own; None there: no column.
+    of : where, optional
+        What declares the quantity, if it is not what the table is of; a class where `si` has the numbers.
+    name, meaning, further : text
+        In place of the declared ones; `further` follows the declared meaning.
+    each : where, optional
+        Objects for each of which there is such a column.
+    """
+
+    quantity: str
+    si: Where | None = None
+    of: Where | None = None
+    name: Text = ""
+    meaning: Text = ""
+    further: Text = ""
+    each: Where | None = None
+
+
+@dataclass(frozen=True)
+class Off:
+    """Estimated error of a quantity, a column in its unit.
+
+    Parameters
+    ----------
+    quantity : str
+    error : where
+        None there: no column.
+    meaning : text
+    of : where, optional
+        What declares the quantity.
+    name : text
+        Of the column that it is the error of, where that has a name of its own.
+    """
+
+    quantity: str
+    error: Where
+    meaning: Text = ""
+    of: Where | None = None
+    name: Text = ""
+
+
+Columns = tuple[Every | Cell | Off | str, ...]
+
+
+@dataclass(frozen=True)
+class EveryLoad:
+    """A table of one load's columns for every load, one below the other, where there are several.
+
+    Parameters
+    ----------
+    name, title : text
+    columns : tuple of Every, Cell, Off or str
+    of, load : class, str
+        What declares the column of loads, and under which attribute.
+    """
+
+    name: Text
+    title: Text
+    columns: Columns
+    of: type
+    load: str
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A table; a declared quantity is named by its attribute only.
+
+    Parameters
+    ----------
+    name, title : text
+    columns : tuple of Every, Cell, Off or str
+    of : where, optional
+        What declares the quantities: one object with arrays, or a sequence of objects, a row each. None there: no
+        table.
+    each : where, optional
+        Objects for each of which there is such a table.
+    when : where, optional
+        Whether there is one.
+    every_load : EveryLoad, optional
+        A further table.
+    stacked : where, optional
+        Objects whose rows stand one below the other; `columns` are of these.
+    on : tuple of str
+        Axes of the grid over which the quantities are known; a row for each of its points.
+    printed, matlab : bool
+        As those of `Table`.
+    """
+
+    name: Text
+    title: Text
+    columns: Columns
+    of: Where = ""
+    each: Where | None = None
+    when: Where | None = None
+    every_load: EveryLoad | None = None
+    stacked: Where | None = None
+    on: tuple[str, ...] = ()
+    printed: bool = False
+    matlab: bool = False
+
+    def tables(self, seen: Seen) -> Iterator[Table]:
+        """Those that there are."""
+        for one in seen.each(self.each):
+            if not one.holds(self.when) or (owner := one.find(self.of)) is None:
+                continue
+            yield Table(one.said(self.name), self._columns(one, owner), one.said(self.title), self.printed, self.matlab)
+            if (more := self.every_load) and len(one.loads) > 1:
+                parts = [_flat(one, owner, more.columns, load) for load in range(len(one.loads))]
+                loads = column_of(more.of, more.load, np.repeat(one.loads, [len(part[0]) for part in parts]))
+                yield Table(one.said(more.name), (loads, *stacked(parts)), one.said(more.title))
+
+    def _columns(self, seen: Seen, owner: Any) -> tuple[Column, ...]:
+        if self.on:
+            cells = [one for one in self.columns if isinstance(one, str)]
+            tables = [one.table for one in self.columns if isinstance(one, Every)]
+            return columns_on_grid(owner, self.on, *cells, table=tables[0] if tables else "")
+        if self.stacked is None:
+            return tuple(_flat(seen, owner, self.columns, seen.nominal))
+        return stacked([_flat(one, one.one, self.columns, seen.nominal) for one in seen.each(self.stacked)])
+
+
+def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Column]:
+    """Columns of one object, or of a sequence of objects with a row each."""
+    made: list[Column] = []
+    for spec in columns:
+        if isinstance(spec, Every):
+            made += [
+                _plain(owner, one, load, name=spec.names.get(one, ""))
+                for one in columns_declared(_class(owner), spec.table) if _has(owner, one)
+            ]  # fmt: skip
+        elif isinstance(spec, str):
+            made += [_plain(owner, spec, load)] if _has(owner, spec) else []
+        elif isinstance(spec, Off):
+            made += _off(seen, owner, spec, load)
+        else:
+            for one in seen.each(spec.each):
+                made += _cell(one, owner if spec.each is None else one.one, spec, load)
+    return made
+
+
+def _cell(seen: Seen, owner: Any, spec: Cell, load: int | None) -> list[Column]:
+    declares = owner if spec.of is None else seen.find(spec.of)
+    words: dict[str, Any] = {key: seen.said(getattr(spec, key)) for key in ("name", "meaning", "further")}
+    if spec.si is not None:
+        si = _under(seen.find(spec.si), load)
+        return [] if si is None else [column_of(_class(declares), spec.quantity, si, **words)]
+    return [_plain(declares, spec.quantity, load, **words)] if _has(declares, spec.quantity) else []
+
+
+def _off(seen: Seen, owner: Any, spec: Off, load: int | None) -> list[Column]:
+    declares = owner if spec.of is None else seen.find(spec.of)
+    if isinstance(owner, Sequence) and isinstance(spec.error, str):
+        errors: Any = [getattr(one, spec.error) for one in owner]
+    else:
+        errors = _under(seen.find(spec.error), load)
+    if errors is None:
+        return []
+    column = column_of(_class(declares), spec.quantity, errors, name=seen.said(spec.name))
+    return [error_column(column, errors, seen.said(spec.meaning))]
+
+
+def _plain(owner: Any, attribute: str, load: int | None, **words: Any) -> Column:
+    if isinstance(owner, Sequence):
+        return column_of(type(owner[0]), attribute, [getattr(one, attribute) for one in owner], **words)
+    return column_of(owner, attribute, load=load, **words)
+
+
+def _has(owner: Any, attribute: str) -> bool:
+    """Whether a result has a quantity: it is None where it lacks it."""
+    first = owner[0] if isinstance(owner, Sequence) else owner
+    return getattr(first, attribute) is not None
+
+
+def _class(owner: Any) -> type:
+    if isinstance(owner, type):
+        return owner
+    return type(owner[0]) if isinstance(owner, Sequence) else type(owner)
+
+
+def _under(si: Any, load: int | None) -> Any:
+    """Numbers under one load, where there is an axis of loads."""
+    return si[..., load] if load is not None and np.ndim(si) > 1 else si

@@ -1,0 +1,86 @@
+"""A result's sheet: what it shows of its data, so that `present` is no code of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from fegear.engine.figure.figure import DeferredFigure, Figure
+from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.seen import Seen, Text, Where
+from fegear.engine.table import Table
+from fegear.engine.value import Value
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A sentence that the user should read, where a condition holds, for each of some objects."""
+
+    text: Text
+    when: Where | None = None
+    each: Where | None = None
+
+    def sentences(self, seen: Seen) -> Iterable[str]:
+        """Those that hold."""
+        return [one.said(self.text) for one in seen.each(self.each) if one.holds(self.when)]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a result shows, in the order in which it is shown.
+
+    Parameters
+    ----------
+    tables, values, figures : tuple
+        Elements (`Rows`, `Number`, `Chart`), and for what no element can say functions of all that is seen, which give
+        tables, values or figures.
+    remarks : tuple of Remark or callable
+        A function gives sentences.
+    settings : mapping of str to where
+        What it was computed with; a quantity that is None is left out.
+    of : callable, optional
+        ``of(data, asked)`` -> what is shown in place of the data themselves.
+    loads, nominal : where, optional
+        Loads of the last axis of what is shown [N], and the number of the one that single values are for.
+    name : callable
+        ``name(asked)`` -> of the subject.
+    sharper_by : str
+        As that of `Outcome`.
+    """
+
+    tables: tuple[Rows | Callable[[Seen], Iterable[Table]], ...] = ()
+    values: tuple[Number | str | Callable[[Seen], Iterable[Value]], ...] = ()
+    figures: tuple[Chart | Callable[[Seen], Iterable[Figure | DeferredFigure]], ...] = ()
+    remarks: tuple[Remark | Callable[[Seen], Iterable[str]], ...] = ()
+    settings: Mapping[str, Where] = field(default_factory=dict)
+    of: Callable[[Any, Any], Any] | None = None
+    loads: Where | None = None
+    nominal: Where | None = None
+    name: Callable[[Any], str] = lambda asked: str(asked.name)
+    sharper_by: str = "reduce accuracy.tolerance"
+
+    def present(self, data: Any, asked: Any) -> Outcome:
+        """As `Stage.present`: the sheet filled from a result's data and from what it was asked for."""
+        seen = Seen(data if self.of is None else self.of(data, asked), asked, self.name(asked))
+        if self.loads is not None:
+            seen = Seen(seen.data, asked, seen.name, seen.find(self.loads), seen.find(self.nominal or ""))
+        settings = {key: seen.find(where) for key, where in self.settings.items()}
+        return Outcome(
+            data,
+            tuple(table for one in self.tables for table in (one.tables if isinstance(one, Rows) else one)(seen)),
+            tuple(value for one in self.values for value in _values(one, seen)),
+            {key: setting for key, setting in settings.items() if setting is not None},
+            tuple(line for one in self.remarks for line in (one.sentences if isinstance(one, Remark) else one)(seen)),
+            tuple(figure for one in self.figures for figure in (one.figures if isinstance(one, Chart) else one)(seen)),
+            self.sharper_by,
+        )
+
+
+def _values(one: Number | str | Callable[[Seen], Iterable[Value]], seen: Seen) -> Iterable[Value]:
+    if isinstance(one, str):
+        one = Number(one)
+    return one.values(seen) if isinstance(one, Number) else one(seen)

@@ -1,0 +1,87 @@
+"""Mesh stiffness and transmission error evenly spaced over one tooth of the driver, for programs that want them so.
+
+Curves of a transmission error have their rows where they bend and jump. Programs that integrate a train read a table of
+even steps and repeat it. What even steps lose is said: their means are compared with those of the curves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.shown import shown
+from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark
+
+#: What is tabulated.
+_NAMES = ("te", "mesh_stiffness", "local_stiffness")
+
+
+@dataclass(frozen=True)
+class EvenMesh:
+    """Curves of a transmission error at the nominal load, in even steps over one tooth of the driver.
+
+    Parameters
+    ----------
+    te, mesh_stiffness, local_stiffness : ndarray, shape (N,)
+        [m], [N/m], [N/m].
+    te_error : ndarray, shape (N,), or None
+        [m].
+    lost : mapping of str to float
+        How far means over the rows are from those of the curves, as shares of these.
+    driver_angle : ndarray, shape (N,)
+        [rad]; the row that would repeat the first is not among them.
+    """
+
+    te: Array
+    mesh_stiffness: Array
+    local_stiffness: Array
+    te_error: Array | None
+    lost: dict[str, float]
+    driver_angle: Array = shown("deg", "of the driver, from where the curve of the base pitch begins")
+
+
+def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
+    """Curves of a pair at its nominal load at so many even steps."""
+    pitch = e.pair.base_pitch
+    part = np.arange(count) / count
+    te, secant, local = (over_pitch(e.x, getattr(e, key)[:, e.at], pitch, part) for key in _NAMES)
+    lost = {
+        "transmission error": te.mean() / float(e.te_mean[e.at]) - 1.0,
+        "slope stiffness": local.mean() / float(e.local_stiffness_mean[e.at]) - 1.0,
+    }
+    error = None if e.te_error is None else over_pitch(e.x, e.te_error, pitch, part)
+    return EvenMesh(te, secant, local, error, lost, part * pitch / e.pair.driver.base_radius)
+
+
+def over_pitch(x: Array, values: Array, pitch: float, part: Array) -> Array:
+    """A curve straight between its rows and periodic, at parts of the base pitch counted from its first row."""
+    inside = x < x[0] + pitch
+    at, found = np.append(x[inside], x[0] + pitch), np.append(values[inside], values[0])
+    return np.asarray(np.interp(x[0] + part * pitch, at, found))
+
+
+def _what_even_steps_lose(seen: Seen) -> str:
+    mesh: EvenMesh = seen.data.even
+    means = " and ".join(f"that of the {what} by {share:+.1e}" for what, share in mesh.lost.items())
+    return (
+        f"Pair {seen.name}: the table mesh_table_{seen.name} has {mesh.te.size} even steps over one tooth of the "
+        f"driver, {np.degrees(seen.data.found.pair.base_pitch / seen.data.found.pair.driver.base_radius):.6g} degrees, "
+        f"and repeats from there. Its means differ from those of the curves: {means}; more even_positions bring them "
+        "nearer."
+    )
+
+
+#: Of a result whose data have an `EvenMesh` as ``even``, None where none was asked for.
+MESH_TABLE = Rows(
+    "mesh_table_{name}",
+    "Mesh of {name} over one tooth of the driver, {load:.6g} N",
+    ("driver_angle", *(Cell(key, si=f"even.{key}", of=lambda _: ErrorOverPitch) for key in (*_NAMES, "te_error"))),
+    of="even",
+    matlab=True,
+)
+MESH_REMARK = Remark(_what_even_steps_lose, when="even")
