@@ -82,25 +82,6 @@ Columns = tuple[Every | Cell | Off | str, ...]
 
 
 @dataclass(frozen=True)
-class EveryLoad:
-    """A table of one load's columns for every load, one below the other, where there are several.
-
-    Parameters
-    ----------
-    name, title : text
-    columns : tuple of Every, Cell, Off or str
-    of, load : class, str
-        What declares the column of loads, and under which attribute.
-    """
-
-    name: Text
-    title: Text
-    columns: Columns
-    of: type
-    load: str
-
-
-@dataclass(frozen=True)
 class Rows:
     """A table; a declared quantity is named by its attribute only.
 
@@ -115,8 +96,6 @@ class Rows:
         Objects for each of which there is such a table.
     when : where, optional
         Whether there is one.
-    every_load : EveryLoad, optional
-        A further table.
     stacked : where, optional
         Objects whose rows stand one below the other; `columns` are of these.
     on : tuple of str
@@ -131,7 +110,6 @@ class Rows:
     of: Where = ""
     each: Where | None = None
     when: Where | None = None
-    every_load: EveryLoad | None = None
     stacked: Where | None = None
     on: tuple[str, ...] = ()
     printed: bool = False
@@ -143,10 +121,6 @@ class Rows:
             if not one.holds(self.when) or (owner := one.find(self.of)) is None:
                 continue
             yield Table(one.said(self.name), self._columns(one, owner), one.said(self.title), self.printed, self.matlab)
-            if (more := self.every_load) and len(one.loads) > 1:
-                parts = [_flat(one, owner, more.columns, load) for load in range(len(one.loads))]
-                loads = column_of(more.of, more.load, np.repeat(one.loads, [len(part[0]) for part in parts]))
-                yield Table(one.said(more.name), (loads, *stacked(parts)), one.said(more.title))
 
     def _columns(self, seen: Seen, owner: Any) -> tuple[Column, ...]:
         if self.on:
@@ -156,6 +130,36 @@ class Rows:
         if self.stacked is None:
             return tuple(_flat(seen, owner, self.columns, seen.nominal))
         return stacked([_flat(one, one.one, self.columns, seen.nominal) for one in seen.each(self.stacked)])
+
+
+@dataclass(frozen=True)
+class EveryLoad:
+    """Columns of one load for every load, one below the other, behind a column of the loads; none for one load only.
+
+    Parameters
+    ----------
+    name, title : text
+    columns : tuple of Every, Cell, Off or str
+    of : where
+        What declares the quantities.
+    over : tuple of class and str
+        What declares the column of loads, and under which attribute.
+    """
+
+    name: Text
+    title: Text
+    columns: Columns
+    of: Where
+    over: tuple[type, str]
+
+    def tables(self, seen: Seen) -> Iterator[Table]:
+        """It, if there is one."""
+        if len(seen.loads) < 2:
+            return
+        owner = seen.find(self.of)
+        parts = [_flat(seen, owner, self.columns, load) for load in range(len(seen.loads))]
+        loads = column_of(*self.over, np.repeat(seen.loads, [len(part[0]) for part in parts]))
+        yield Table(seen.said(self.name), (loads, *stacked(parts)), seen.said(self.title))
 
 
 def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Column]:

@@ -10,7 +10,7 @@ from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.outcome import Outcome
 from fegear.engine.sheet.chart import Chart
 from fegear.engine.sheet.number import Number
-from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.rows import EveryLoad, Rows
 from fegear.engine.sheet.seen import Seen, Text, Where
 from fegear.engine.table import Table
 from fegear.engine.value import Value
@@ -36,8 +36,8 @@ class Sheet:
     Parameters
     ----------
     tables, values, figures : tuple
-        Elements (`Rows`, `Number`, `Chart`), and for what no element can say functions of all that is seen, which give
-        tables, values or figures.
+        Elements (`Rows`, `EveryLoad`, `Number`, `Chart`), and for what no element can say functions of all that is
+        seen, which give tables, values or figures.
     remarks : tuple of Remark or callable
         A function gives sentences.
     settings : mapping of str to where
@@ -52,7 +52,7 @@ class Sheet:
         As that of `Outcome`.
     """
 
-    tables: tuple[Rows | Callable[[Seen], Iterable[Table]], ...] = ()
+    tables: tuple[Rows | EveryLoad | Callable[[Seen], Iterable[Table]], ...] = ()
     values: tuple[Number | str | Callable[[Seen], Iterable[Value]], ...] = ()
     figures: tuple[Chart | Callable[[Seen], Iterable[Figure | DeferredFigure]], ...] = ()
     remarks: tuple[Remark | Callable[[Seen], Iterable[str]], ...] = ()
@@ -71,11 +71,11 @@ class Sheet:
         settings = {key: seen.find(where) for key, where in self.settings.items()}
         return Outcome(
             data,
-            tuple(table for one in self.tables for table in (one.tables if isinstance(one, Rows) else one)(seen)),
+            tuple(table for one in self.tables for table in (one(seen) if callable(one) else one.tables(seen))),
             tuple(value for one in self.values for value in _values(one, seen)),
             {key: setting for key, setting in settings.items() if setting is not None},
-            tuple(line for one in self.remarks for line in (one.sentences if isinstance(one, Remark) else one)(seen)),
-            tuple(figure for one in self.figures for figure in (one.figures if isinstance(one, Chart) else one)(seen)),
+            tuple(line for one in self.remarks for line in (one(seen) if callable(one) else one.sentences(seen))),
+            tuple(figure for one in self.figures for figure in (one(seen) if callable(one) else one.figures(seen))),
             self.sharper_by,
         )
 

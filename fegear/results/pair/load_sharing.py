@@ -87,9 +87,9 @@ _SHEET = Sheet(
         Rows(
             "load_sharing_{name}", _TITLE + ", {load:.6g} N",
             (Every("path"), Cell("corner", of="history"), Off("load", "history.load_error")), of="history.found",
-            every_load=EveryLoad(
-                "load_sharing_loads_{name}", _TITLE + " for every load", (Every("path"),), *OVER_LOADS
-            ),
+        ),
+        EveryLoad(
+            "load_sharing_loads_{name}", _TITLE + " for every load", (Every("path"),), "history.found", OVER_LOADS
         ),
         Rows(
             "tip_corner_loads_{name}", "Load on tip corners of {name} for every load",

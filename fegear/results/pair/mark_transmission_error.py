@@ -102,6 +102,11 @@ class MarkData:
         )
 
     @property
+    def count(self) -> int:
+        """Harmonics of the series."""
+        return int(self.series.linear.amplitude.size)
+
+    @property
     def at(self) -> int:
         """Place of the number of terms asked for among those of the convergence."""
         return int(np.flatnonzero(self.series.reciprocal.terms == self.series.terms)[0])
@@ -151,7 +156,7 @@ MARK_TABLES = (
         (
             "n", "exact",
             Cell("series", meaning="0-peak, Mark's series, M = {d.by_mark.series.terms}, exact products"),
-            Cell("convolved", meaning="0-peak, products cut off at {d.by_mark.harmonics.n.size} harmonics"),
+            Cell("convolved", meaning="0-peak, products cut off at {d.by_mark.count} harmonics"),
             "limit", "truncation",
         ),
         of="by_mark.harmonics",

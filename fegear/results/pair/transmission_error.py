@@ -77,9 +77,6 @@ _TITLE = "Transmission error of {name} over one base pitch"
 _TABLES = (
     Rows(
         "transmission_error_{name}", _TITLE + ", {load:.6g} N", (Every("pitch"), "te_error"), of="found",
-        every_load=EveryLoad(
-            "transmission_error_loads_{name}", _TITLE + ", every load (Harris map)", (Every("pitch"),), *OVER_LOADS
-        ),
     ),
     Rows(
         "transmission_error_harmonics_{name}", "Harmonics of the transmission error of {name}",
@@ -89,6 +86,10 @@ _TABLES = (
         "transmission_error_summary_{name}", "Transmission error of {name} for every load",
         ("total_load", Every("loads", {"local_stiffness_mean": "local_stiffness"})), of="found",
         when=lambda seen: len(seen.loads) > 1,
+    ),
+    EveryLoad(
+        "transmission_error_loads_{name}", _TITLE + ", every load (Harris map)", (Every("pitch"),), "found",
+        OVER_LOADS,
     ),
     Rows(
         "transmission_error_rotational_{name}", "Rotational harmonics of the transmission error of {name}",
