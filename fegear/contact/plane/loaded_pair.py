@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.fourier import FourierSeries
 from fegear.contact.loaded_teeth import (
     HARMONICS,
     MOST_CYCLES,
     POSITIONS,
-    ErrorOverPitch,
     FlankLoad,
     LoadHistory,
     Neglected,

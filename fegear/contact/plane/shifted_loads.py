@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.error_over_pitch import TransmissionErrorShift
 from fegear.contact.fourier import EFFECTIVE_HARMONICS, FourierSeries, effective_error, fourier_series
-from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.plane.base_pitch import mean_secant_stiffness
 from fegear.contact.plane.engagement import Engagement, solve_again
 from fegear.contact.plane.independent_errors import independent_errors

@@ -12,14 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, first_of_largest
+from fegear.contact.error_over_pitch import ErrorOverPitch, TransmissionErrorShift
 from fegear.contact.loaded_teeth import (
-    ErrorOverPitch,
     FlankLoad,
     Largest,
     LoadHistory,
     Neglected,
     RootStressInMesh,
-    TransmissionErrorShift,
 )
 from fegear.contact.plane.tooth_stress import ToothStress
 from fegear.contact.surface import FrictionLaw

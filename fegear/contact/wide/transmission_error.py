@@ -8,8 +8,8 @@ import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
+from fegear.contact.error_over_pitch import TransmissionErrorShift
 from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
-from fegear.contact.loaded_teeth import TransmissionErrorShift
 from fegear.contact.wide.complementarity import secant_compliance
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.loaded import LoadedFlanks

@@ -15,7 +15,7 @@ from fegear.case.csv_file import read_columns
 from fegear.case.pair_excitation import ExcitationPart, MeshErrorPart
 from fegear.case.part import at
 from fegear.case.reading import Scene
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
 from fegear.engine.figure.axis import Axis

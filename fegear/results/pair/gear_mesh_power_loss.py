@@ -17,7 +17,7 @@ from fegear.base.errors import RangeError
 from fegear.case.built.pair_surface import PairFriction, check_speed, pair_friction, pair_speed
 from fegear.case.built.train import build_train, check_train, train_inputs, train_part
 from fegear.case.reading import Scene
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.surface import FrictionLaw
 from fegear.contact.tooth_loss import ToothLoss
 from fegear.engine.citation import Citation

@@ -13,7 +13,8 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.solid_influence import check_ends
-from fegear.contact.loaded_teeth import ErrorOverPitch, LoadHistory
+from fegear.contact.error_over_pitch import ErrorOverPitch
+from fegear.contact.loaded_teeth import LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, column_of, error_column, value_of
 from fegear.engine.figure.axis import Axis

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, error_column, value_of
 from fegear.engine.outcome import Outcome

@@ -16,7 +16,7 @@ from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.declared import column_of, stacked
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, few, ramp

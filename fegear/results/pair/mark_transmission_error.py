@@ -236,14 +236,13 @@ MARK_FIGURES = (
         "Pair {name}: harmonics of the static transmission error, exactly and by Mark's series for the reciprocal mesh "
         "stiffness with M = {d.by_mark.series.terms}.",
         (
-            Over(
-                Axis("harmonic of the tooth-mesh frequency", whole=True),
+            Over("n",
                 (
-                    Line("exact", "exact", "ink", x="n", kind="bars", first=_BARS),
-                    Line("series", "series, M = {d.by_mark.series.terms}", x="n", kind="bars", first=_BARS),
-                    Line("convolved", "products cut off", "orange", x="n", kind="bars", first=_BARS),
+                    Line("exact", "exact", "ink", kind="bars", first=_BARS),
+                    Line("series", "series, M = {d.by_mark.series.terms}", kind="bars", first=_BARS),
+                    Line("convolved", "products cut off", "orange", kind="bars", first=_BARS),
                 ),
-                _AMPLITUDE,
+                _AMPLITUDE, x_options={"whole": True},
             ),
         ),
         of="by_mark.harmonics",

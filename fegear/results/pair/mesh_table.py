@@ -12,7 +12,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
-from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.errors import InputError
-from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES, ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch
+from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis, Scale
@@ -140,10 +141,9 @@ _FIGURES = (
         "transmission_error_harmonics_{name}", "Harmonics of the transmission error of pair {name}",
         "Pair {name}: harmonics of the static transmission error, {d.found.integrated}.",
         (
-            Over(
-                Axis("harmonic of the tooth-mesh frequency", whole=True),
-                (Line("amplitude", x="n", error="found.shift.amplitude", each=LOADS, kind="bars", first=_BARS),),
-                _AMPLITUDE,
+            Over("n",
+                (Line("amplitude", error="found.shift.amplitude", each=LOADS, kind="bars", first=_BARS),),
+                _AMPLITUDE, x_options={"whole": True},
             ),
         ),
         of="found.harmonics", under=LOADS,

@@ -1,0 +1,212 @@
+"""Transmission error and mesh stiffness of loaded teeth over one base pitch, with their harmonics and errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.shown import shown, shows
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fourier import FourierSeries
+    from fegear.geometry.pair import GearPair
+
+
+@dataclass(frozen=True)
+class TransmissionErrorShift:
+    """Estimated errors of a transmission error's numbers, each the sum of the changes by the shifted compliances."""
+
+    mean: float
+    peak_to_peak: float
+    effective: float
+    amplitude: Array
+    stiffness: float
+
+    @property
+    def first_harmonic(self) -> float:
+        """Of the first amplitude; zero where there is none."""
+        return float(self.amplitude[0]) if self.amplitude.size else 0.0
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """Lines of the transmission error, n = 1 to N, under L loads.
+
+    Parameters
+    ----------
+    n : ndarray of int, shape (N,)
+    cosine, sine, amplitude : ndarray, shape (N, L)
+        0-peak [m].
+    """
+
+    n: NDArray[np.int64] = shown("", "harmonic of the tooth-mesh frequency", table="harmonics")
+    cosine: Array = shown("um", "factor of cos(2 pi n x / p_b), 0-peak", table="harmonics")
+    sine: Array = shown("um", "factor of sin(2 pi n x / p_b), 0-peak", table="harmonics")
+    amplitude: Array = shown("um", "0-peak", table="harmonics")
+
+
+@dataclass(frozen=True)
+class RotationalHarmonics:
+    """Lines of the transmission error over the base pitches after which the same teeth meet again, n = 1 to N.
+
+    Parameters
+    ----------
+    cycles : int
+        Base pitches of the period.
+    n : ndarray of int, shape (N,)
+    cosine, sine, amplitude : ndarray, shape (N,)
+        0-peak [m].
+    """
+
+    cycles: int
+    n: NDArray[np.int64] = shown("")
+    cosine: Array = shown("um", "0-peak")
+    sine: Array = shown("um", "0-peak")
+    amplitude: Array = shown("um", "0-peak")
+
+    @property
+    @shows("", "frequency over the tooth-mesh frequency")
+    def mesh_order(self) -> Array:
+        """n over the base pitches of the period, shape (N,)."""
+        return np.asarray(self.n / self.cycles)
+
+    @property
+    def below_mesh(self) -> Array:
+        """Amplitudes below the tooth-mesh frequency [m]."""
+        return self.amplitude[: self.cycles - 1]
+
+    @property
+    @shows("um", name="te_largest_rotational")
+    def largest(self) -> float | None:
+        """Of these [m]; None where there are none."""
+        return float(self.below_mesh.max()) if self.below_mesh.size else None
+
+    @property
+    def at_largest(self) -> int:
+        """Its harmonic."""
+        return int(self.below_mesh.argmax()) + 1
+
+
+@dataclass(frozen=True)
+class ErrorOverPitch:
+    """Transmission error and mesh stiffness at P roll positions over one base pitch, under L loads, N harmonics.
+
+    Parameters
+    ----------
+    pair : GearPair
+    loads : tuple of float
+        Ascending [N].
+    at : int
+        Number of the nominal one.
+    positions : int
+        Roll positions that were asked for.
+    integrated : str
+        How the harmonics come about, for their figure.
+    series : tuple of FourierSeries
+        Of the transmission error under every load.
+    shift : TransmissionErrorShift or None
+        Estimated errors at the nominal load.
+    x : ndarray, shape (P,)
+        Roll positions [m].
+    te, mesh_stiffness, local_stiffness, pairs_in_contact : ndarray, shape (P, L)
+        [m], [N/m], [N/m].
+    te_mean, te_peak_to_peak, te_effective, local_stiffness_mean : ndarray, shape (L,)
+        Of the whole base pitch [m], [m], [m], [N/m].
+    mesh_stiffness_mean : float
+        At the nominal load [N/m].
+    mesh_compliance_mean : float or None
+        Mean of 1/K_T of perfect flanks [m/N]; none where no pair of them is on the path at some roll positions.
+    te_error : ndarray, shape (P,), or None
+        Estimated at the nominal load along the curve, where it is known [m].
+    rotational : FourierSeries or None
+        Over the base pitches after which the same teeth meet again, with spacing errors, where it is computed.
+    cycles : int
+        How many base pitches these are; 1 where teeth stand evenly or none but this one is looked at.
+    only : int or None
+        The one base pitch that is looked at although each has a transmission error of its own.
+    """
+
+    pair: GearPair
+    loads: tuple[float, ...]
+    at: int
+    positions: int
+    integrated: str
+    series: tuple[FourierSeries, ...]
+    shift: TransmissionErrorShift | None
+    x: Array = shown("mm", "roll position: the pair that is last to come into contact", table="pitch")
+    te: Array = shown("um", "loaded transmission error", label="transmission error", table="pitch")
+    mesh_stiffness: Array = shown(
+        "N/um", "secant, sum over the pairs in contact", label="mesh stiffness", table="pitch"
+    )
+    pairs_in_contact: Array = shown("", "tooth pairs that carry load", table="pitch")
+    local_stiffness: Array = shown("N/um", "slope of load over transmission error", table="pitch")
+    te_mean: Array = shown("um", "mean transmission error over the base pitch", label="mean", table="loads")
+    te_peak_to_peak: Array = shown("um", "peak to peak", label="peak to peak", table="loads")
+    te_effective: Array = shown("um", "A_e of NASA TM-89901, 0-peak", table="loads")
+    local_stiffness_mean: Array = shown("N/um", "slope of load, mean over the base pitch", table="loads")
+    mesh_stiffness_mean: float = shown("N/um", "secant stiffness, mean")
+    mesh_compliance_mean: float | None = shown(
+        "um/N", "mean of 1/K_T, perfect flanks with every pair of the path in contact (Mark, A.11)"
+    )
+    te_error: Array | None = shown("um", "estimated error of te", default=None)
+    rotational: FourierSeries | None = None
+    cycles: int = 1
+    only: int | None = None
+
+    @property
+    def load(self) -> float:
+        """The nominal load [N]."""
+        return self.loads[self.at]
+
+    @property
+    @shows("N", "along the line of action", label="load along the line of action")
+    def total_load(self) -> Array:
+        """Every load, shape (L,) [N]."""
+        return np.array(self.loads)
+
+    @property
+    @shows("N.m", "torque on the driver under that load", label="torque on the driver", table="loads")
+    def driver_torque(self) -> Array:
+        """Under each load, shape (L,) [N m]."""
+        return self.total_load * self.pair.driver.base_radius
+
+    @property
+    def harmonics(self) -> Harmonics:
+        """Lines of its series under every load."""
+        cosine, sine, amplitude = (
+            np.stack([getattr(one, part) for one in self.series], axis=-1) for part in ("cosine", "sine", "amplitude")
+        )
+        return Harmonics(np.arange(1, len(amplitude) + 1), cosine, sine, amplitude)
+
+    @property
+    def rotational_harmonics(self) -> RotationalHarmonics | None:
+        """Lines of the series over several base pitches, where it is computed."""
+        if (one := self.rotational) is None:
+            return None
+        n = np.arange(1, one.amplitude.size + 1)
+        return RotationalHarmonics(self.cycles, n, one.cosine, one.sine, one.amplitude)
+
+    @property
+    def local_stiffness_error(self) -> float | None:
+        """Estimated, of the mean slope at the nominal load: relatively that of the secant stiffness [N/m]."""
+        if self.shift is None:
+            return None
+        return self.shift.stiffness / self.mesh_stiffness_mean * float(self.local_stiffness_mean[self.at])
+
+    @property
+    def mesh_compliance_error(self) -> float | None:
+        """Estimated [m/N]: relatively that of the mean transmission error."""
+        if self.shift is None or self.mesh_compliance_mean is None:
+            return None
+        return self.shift.mean / float(self.te_mean[self.at]) * self.mesh_compliance_mean
+
+    @property
+    @shows("um", "0-peak")
+    def te_first_harmonic(self) -> Array:
+        """Amplitude of the first harmonic under each load, shape (L,) [m]; zero where none is known."""
+        return np.array([one.amplitude[0] if one.amplitude.size else 0.0 for one in self.series])
