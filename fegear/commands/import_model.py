@@ -8,12 +8,14 @@ from typing import Annotated
 import typer
 
 from fegear.commands.common import Quiet, Voice
+from fegear.exchange.importers import IMPORTERS
+
+#: Kinds of models of fegear itself.
+_KINDS = "; ".join(row.about for row in IMPORTERS.values())
 
 
 def import_(
-    model: Annotated[
-        Path, typer.Argument(metavar="MODEL", help="REXS 1.0 to 1.7: XML, JSON or archive.", show_default=False)
-    ],
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help=f"{_KINDS}.", show_default=False)],
     out: Annotated[
         str | None, typer.Option("--out", metavar="CASE", help="Case file to write; default the model's name.")
     ] = None,
@@ -30,7 +32,11 @@ def import_(
     ] = None,
     kind: Annotated[
         str | None,
-        typer.Option("--as", metavar="KIND", help="Kind of model, where its suffix does not say it; default rexs."),
+        typer.Option(
+            "--as",
+            metavar="KIND",
+            help=f"Kind of model, where its suffix does not say it; default {next(iter(IMPORTERS))}.",
+        ),
     ] = None,
     unchecked: Annotated[bool, typer.Option("--unchecked", help="Write a case that cannot be planned, too.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
@@ -42,21 +48,13 @@ def import_(
     from fegear.exchange.importers import importer_for
 
     voice = Voice(quiet)
-    other = importer_for(model, kind)
-    text = _of_rexs(model, load_case, spectrum=spectrum) if other is None else other.read(model)
+    text = importer_for(model, kind).case_of(model, {"load_case": load_case, "spectrum": spectrum})
     if not unchecked:
         refuse_unplanned(text, model.name)
     path = case_file(out or model.stem.replace(".", "_"), force=force)
     write_file(path, text.encode(), "--out")
     notes = sum(line.startswith("# Note: ") for line in text.splitlines())
     voice.say(f"Wrote {path}, with {notes} notes at its end; next: fegear run {path}")
-
-
-def _of_rexs(model: Path, load_case: int | None, *, spectrum: bool | None) -> str:
-    from fegear.exchange.rexs.gearbox import case_of
-    from fegear.exchange.rexs.reading import read_model
-
-    return case_of(read_model(model), load_case, model.name, spectrum=spectrum)
 
 
 def refuse_unplanned(text: str, name: str) -> None:

@@ -33,6 +33,8 @@ class Entry(NamedTuple):
         Name by which older cases ask for it; empty for most.
     effects : tuple of str
         Effects that change what it computes.
+    quantities : tuple of str
+        Quantities that a study of cost takes for its results; empty where it knows none.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Entry(NamedTuple):
     extra: str = ""
     formerly: str = ""
     effects: tuple[str, ...] = ()
+    quantities: tuple[str, ...] = ()
 
 
 def _entry(stage: Stage) -> Entry:

@@ -1,16 +1,16 @@
-"""Models that ``fegear import`` reads: REXS, and the kinds that other distributions add, each a row."""
+"""Models that ``fegear import`` reads, each kind a row: fegear's own, and those that other distributions add."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from fegear.base.errors import InputError, shown
 from fegear.base.extensions import added
-
-#: Name of the kind that fegear itself reads.
-REXS = "rexs"
 
 
 @dataclass(frozen=True)
@@ -20,47 +20,84 @@ class Importer:
     Parameters
     ----------
     suffixes : tuple of str
-        Of its files, in small letters, with their dots.
+        Of its files, in small letters, with their dots; none for a kind that is known by what is in its files.
     about : str
         What it is, for lists.
-    read : callable
-        ``read(path)`` -> the text of a case. What it cannot read it refuses by an `InputError`.
+    read : callable or str
+        ``read(path)`` -> the text of a case, or its place, ``"module:function"``. What it cannot read it refuses by an
+        `InputError`.
+    options : tuple of str
+        Names of what `read` takes besides, of those that the command has; given by name where the user does.
     """
 
     suffixes: tuple[str, ...]
     about: str
-    read: Callable[[Path], str]
+    read: Callable[..., str] | str
+    options: tuple[str, ...] = ()
+
+    def case_of(self, path: Path, given: Mapping[str, Any]) -> str:
+        """The text of the case that a model makes.
+
+        Parameters
+        ----------
+        path : Path
+            Of the model.
+        given : mapping of str
+            Options by their names; those that are None were not given.
+
+        Raises
+        ------
+        InputError
+            If an option is given that models of this kind do not take, or the model cannot be read.
+        """
+        wanted = {name: value for name, value in given.items() if value is not None}
+        for name in sorted(wanted.keys() - set(self.options)):
+            flag, rule = f"--{name.replace('_', '-')}", f"is not known to models of this kind ({self.about})"
+            raise InputError(flag, shown(wanted[name]), rule, f"remove {flag}")
+        read = self.read
+        if isinstance(read, str):
+            module, _, function = read.partition(":")
+            read = getattr(import_module(module), function)
+        return str(read(path, **wanted))
+
+
+#: Kinds of fegear itself; the first reads what no other kind claims by its suffix.
+IMPORTERS: Mapping[str, Importer] = MappingProxyType({
+    "rexs": Importer(
+        (), "REXS 1.0 to 1.7: XML, JSON or archive", "fegear.exchange.rexs.gearbox:read_case", ("load_case", "spectrum")
+    ),
+})  # fmt: skip
 
 
 def importers() -> Mapping[str, Importer]:
-    """Those that other distributions add, by entry points of ``fegear.importers``.
+    """Those of fegear, and those that other distributions add by entry points of ``fegear.importers``.
 
     Raises
     ------
     InputError
         See `fegear.base.extensions.added`.
     """
-    return added("importers", Importer, {REXS: None})
+    return MappingProxyType({**IMPORTERS, **added("importers", Importer, IMPORTERS)})
 
 
-def importer_for(path: Path, name: str | None) -> Importer | None:
-    """Which of other distributions reads a model: the one that is named, else one of its suffix; None for REXS.
+def importer_for(path: Path, name: str | None) -> Importer:
+    """What reads a model: the kind that is named, else the one of its suffix, else the first.
 
     Raises
     ------
     InputError
         If there is none of that name, or two read files of that suffix.
     """
-    if name == REXS:
-        return None
+    if name is not None and name in IMPORTERS:
+        return IMPORTERS[name]
     known = importers()
     if name is not None:
         if name not in known:
-            remedy = f"choose from {', '.join((REXS, *known))}"
+            remedy = f"choose from {', '.join(known)}"
             raise InputError("--as", shown(name), "is no kind of model that fegear reads", remedy)
         return known[name]
-    fitting = [one for one, importer in known.items() if path.suffix.lower() in importer.suffixes]
+    fitting = [kind for kind, importer in known.items() if path.suffix.lower() in importer.suffixes]
     if len(fitting) > 1:
         rule = f"may be read as {' or '.join(fitting)}"
         raise InputError("MODEL", shown(path.name), rule, f"say which: --as {fitting[0]}")
-    return known[fitting[0]] if fitting else None
+    return known[fitting[0] if fitting else next(iter(known))]

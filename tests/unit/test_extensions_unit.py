@@ -17,7 +17,7 @@ from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
 from fegear.commands.schema import schema_text
 from fegear.engine.plan import make_plan
-from fegear.exchange.importers import importer_for
+from fegear.exchange.importers import IMPORTERS, importer_for
 from fegear.output.export import export_gears
 from fegear.output.formats import FORMATS, formats
 from fegear.results.catalogue import STAGES
@@ -106,8 +106,12 @@ def test_formats_and_importers_of_another_distribution(weights):
     assert done.returncode == 0, done.stderr
     assert "teeth = 57" in (weights / "drive.toml").read_text()
     with pytest.raises(InputError, match="must hold numbers of teeth"):
-        importer_for(Path("x.TEETH"), None).read(PAGE)
-    assert importer_for(Path("x.rexs"), None) is None
+        importer_for(Path("x.TEETH"), None).case_of(PAGE, {"load_case": None})
+    assert importer_for(Path("x.rexs"), None) is importer_for(model, "rexs") is IMPORTERS["rexs"]
+    for option, value in (("--load-case", 2), ("--spectrum", True)):
+        given = {option[2:].replace("-", "_"): value}
+        with pytest.raises(InputError, match=f"{option} = .*is not known to models of this kind"):
+            importer_for(model, None).case_of(model, given)
     with pytest.raises(InputError, match="choose from rexs, teeth"):
         importer_for(model, "kissoft")
 

@@ -26,6 +26,7 @@ from fegear.exchange.rexs.places import (
     turn_to_axes,
 )
 from fegear.exchange.rexs.planetary import planetary_of
+from fegear.exchange.rexs.reading import read_model
 from fegear.exchange.rexs.said import Said
 from fegear.exchange.rexs.sets import set_tables
 from fegear.exchange.rexs.shafts import (
@@ -41,6 +42,8 @@ from fegear.exchange.rexs.teeth import flank_of, gear_keys, module_of, profile_s
 from fegear.geometry.involute import inv
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fegear.exchange.rexs.flow import Flow
     from fegear.exchange.rexs.loads import Bins
     from fegear.exchange.rexs.model import Component, Model
@@ -61,6 +64,11 @@ _IDLE = 1e-9
 _APART = 1e-9
 #: Stages that are not cylindrical.
 _OTHER_STAGES = (BEVEL, "worm_stage")
+
+
+def read_case(path: Path, load_case: int | None = None, *, spectrum: bool | None = None) -> str:
+    """The text of the case that a REXS file makes; see `case_of`."""
+    return case_of(read_model(path), load_case, path.name, spectrum=spectrum)
 
 
 def case_of(model: Model, load_case: int | None = None, source: str = "", *, spectrum: bool | None = None) -> str:

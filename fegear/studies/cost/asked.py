@@ -14,26 +14,13 @@ from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.built.train import motion_inputs
 from fegear.case.reading import Scene
 from fegear.case.train import TrainPart
+from fegear.results.catalogue import STAGES
 from fegear.results.gear.load_positions import contact_half_width, load_radii
 from fegear.results.pair.loaded_teeth import plane_pairs
 from fegear.studies.cost.quantities import OF_FLANKS, OF_GEAR, Quantity
 
 #: Quantities that each wanted result stands for.
-_OF_RESULT = {
-    "stiffness": ("c_0", "c_1"),
-    "root-stress": ("root-stress",),
-    "crosscheck": ("c_0", "root-stress"),
-    "root-stress-history": ("root-stress",),
-    "transmission-error": ("te-peak-to-peak",),
-    "load-sharing": ("tooth-force",),
-    "relief": ("te-peak-to-peak",),
-    "relief-chart": ("te-peak-to-peak",),
-    "robustness": ("te-peak-to-peak",),
-    "tooth-force": ("tooth-force",),
-    "mesh-force-spectrum": ("tooth-force",),
-    "dynamic-root-stress": ("root-stress", "tooth-force"),
-    "dynamic-factor": ("dynamic-factor",),
-}
+_OF_RESULT = {name: entry.quantities for entry in STAGES.entries if entry.quantities for name in entry.results}
 #: Results that report a pair over its face, and those of plane gears, which a study of such a pair says nothing of.
 _OVER_FACE = frozenset({"load-distribution", "transmission-error", "load-sharing"})
 _OF_PLANE_GEARS = frozenset({"stiffness", "root-stress", "crosscheck"})
