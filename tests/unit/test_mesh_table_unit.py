@@ -8,7 +8,7 @@ from scipy.io import loadmat
 
 import fegear
 from fegear.output.tables import write_table
-from fegear.results.pair.transmission_error import over_pitch
+from fegear.results.pair.mesh_table import over_pitch
 
 CASE = {
     "title": "A mesh for another program",
