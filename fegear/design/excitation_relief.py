@@ -13,7 +13,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction, refuse_beyond_path
 from fegear.design.oil_film import OilFilm
-from fegear.geometry.pair import Member
+from fegear.geometry.pair import MEMBERS, Member
 
 
 @dataclass(frozen=True)
@@ -52,20 +52,11 @@ class MinimumExcitationRelief:
         at, pair = np.asarray(x, dtype=float), self.compliance.pair
         inside = np.clip(at, self.loading.x_start, self.loading.x_end)
         w = self.load * self.loading.fraction(at)
-        source, face = self.compliance.source(self.member), self.compliance.face_width
-        radius = self._radius(inside)
-        own = source.own(radius)
-        line = np.maximum(w / face, 1e-30)
-        if source.log_slope > 0.0 and self.compliance.hertz != "none":
-            curvature = [pair.flank_curvature_radius(inside, m) for m in ("driver", "driven")]
-            relative = np.maximum(curvature[0] * curvature[1] / (curvature[0] + curvature[1]), 1e-9)
-            nominal = self.compliance.nominal_load
-            loaded = line * face if self.compliance.hertz == "load-dependent" else np.asarray(nominal)
-            b = self.compliance.half_width(loaded, relative)
-            own = own + source.log_slope * np.log(source.reference_half_width(radius) / b)
-        if source.power > 0.0:
-            fixed = {"load-dependent": line, "linear": np.asarray(self.compliance.nominal_load / face)}
-            own = own + source.power * fixed.get(self.compliance.hertz, np.asarray(1e5)) ** -0.1
+        c, face = self.compliance, self.compliance.face_width
+        curvature = [pair.flank_curvature_radius(inside, m) for m in MEMBERS]
+        relative = np.maximum(curvature[0] * curvature[1] / (curvature[0] + curvature[1]), 1e-9)
+        load = np.maximum(w / face, 1e-30) * face if c.hertz == "load-dependent" else c.contact_load
+        own = sum(c.own_parts(self.member, self._radius(inside), relative, load))
         return np.asarray(own * w / face)
 
     def deflection_by_neighbours(self, x: ArrayLike) -> Array:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.contact.fourier import Panels, effective_error, fourier_series, panels
 from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
 from fegear.geometry.relief import Relief
 
@@ -50,7 +49,7 @@ class Bench:
         load : array_like, shape () or (C,)
             [N].
         """
-        contacts, m = self.grid.contacts, self.grid.matrices
+        contacts = self.grid.contacts
         base = np.where(contacts.present, contacts.gap, np.inf)[:, :, None]
         cases = modifications.shape[2]
         loads = np.broadcast_to(np.asarray(load, dtype=float), (cases,))
@@ -59,9 +58,7 @@ class Bench:
         for first in range(0, cases, step):
             part = slice(first, min(first + step, cases))
             e = base + np.where(contacts.present[:, :, None], modifications[:, :, part], 0.0)
-            te[:, part] = share_load(
-                m.compliance, e, loads[part], m.log_slope, m.reference_load, m.edges, m.power
-            ).transmission_error
+            te[:, part] = self.grid.matrices.share(e, loads[part]).transmission_error
         series = fourier_series(self.points, te, 12)
         return Metrics(effective_error(series), np.ptp(te, axis=0), np.asarray(series.mean), te)
 

@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.errors import RangeError
 
+#: Of the load in the deflection.
+EXPONENT = 0.9
+
 
 def approach(line_load: ArrayLike, face_width: float, young_modulus: float) -> NDArray[np.float64]:
     """Contact deflection of one tooth, W q_c = 1.275 (W/E)^0.9 / F^0.8 = 1.275 (w/E)^0.9 F^0.1 [m], w = W/F.
@@ -38,4 +41,4 @@ def approach(line_load: ArrayLike, face_width: float, young_modulus: float) -> N
     for name, value in (("face width", face_width), ("young_modulus", young_modulus)):
         if not (math.isfinite(value) and value > 0.0):
             raise RangeError(name, value, "must be positive and finite")
-    return np.asarray(1.275 * (w / young_modulus) ** 0.9 * face_width**0.1)
+    return np.asarray(1.275 * (w / young_modulus) ** EXPONENT * face_width**0.1)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from fegear.base.errors import InputError, RangeError
+from fegear.contact.contact_law import ContactLaw
 from fegear.contact.plane.load_sharing import share_load
 
 
@@ -73,7 +74,7 @@ def problems(draw):
 @given(problems())
 def test_agrees_with_brute_force(problem):
     c, e, total, kappa, ref = problem
-    got = share_load(c[:, :, None], e[:, None], [total], kappa[:, None], ref[:, None])
+    got = share_load(c[:, :, None], e[:, None], [total], ContactLaw(kappa[:, None], ref[:, None]))
     w, z = got.loads[:, 0, 0], got.transmission_error[0, 0]
     answers = brute_force(c, e, total, kappa, ref)
     assert answers, "brute force found nothing"
@@ -93,8 +94,11 @@ def test_agrees_with_brute_force(problem):
 def test_the_order_of_the_pairs_does_not_matter(problem, seed):
     c, e, total, kappa, ref = problem
     order = np.random.default_rng(seed).permutation(len(e))
-    a = share_load(c[:, :, None], e[:, None], [total], kappa[:, None], ref[:, None])
-    b = share_load(c[np.ix_(order, order)][:, :, None], e[order][:, None], [total], kappa[:, None], ref[:, None])
+    law = ContactLaw(kappa[:, None], ref[:, None])
+    a = share_load(c[:, :, None], e[:, None], [total], law)
+    b = share_load(
+        c[np.ix_(order, order)][:, :, None], e[order][:, None], [total], ContactLaw(kappa[:, None], ref[:, None])
+    )
     np.testing.assert_allclose(b.loads[:, 0, 0], a.loads[order, 0, 0], atol=1e-12 * total)
 
 
@@ -103,7 +107,7 @@ def test_two_pairs_with_a_logarithm_over_ten_decades_of_load(log_load, log_error
     """Two uncoupled pairs: one monotone equation in the first load, solved by bracketing."""
     total, e2 = 10.0**log_load, 10.0**log_error * skew  # [N/m], [m]
     c1, c2, kappa, ref = 8e-11, 9e-11, 5.6e-12, 3.5e5
-    got = share_load(np.diag([c1, c2])[:, :, None], [[0.0], [e2]], [total], kappa, ref)
+    got = share_load(np.diag([c1, c2])[:, :, None], [[0.0], [e2]], [total], ContactLaw(kappa, ref))
 
     def misfit(w):
         return own(w, c1, kappa, ref) - own(total - w, c2, kappa, ref) - e2
@@ -122,16 +126,16 @@ def test_many_positions_and_loads_are_the_same_as_one_by_one():
         c[:, :, p] = np.eye(n) * 2 + 0.1 * (a + a.T)
     e = rng.normal(size=(n, positions))
     e[2, :3] = np.inf
-    together = share_load(c, e, loads, 0.05, 1.0)
+    together = share_load(c, e, loads, ContactLaw(0.05))
     for p in range(positions):
         for i, w in enumerate(loads):
-            alone = share_load(c[:, :, [p]], e[:, [p]], [w], 0.05, 1.0)
+            alone = share_load(c[:, :, [p]], e[:, [p]], [w], ContactLaw(0.05))
             np.testing.assert_allclose(together.loads[:, p, i], alone.loads[:, 0, 0], rtol=0, atol=1e-13 * w)
     assert (together.loads[2, :3] == 0).all()
 
 
 def test_a_small_load_rests_on_the_nearest_pair_alone():
-    got = share_load(np.diag([1.0, 1.0])[:, :, None], [[1e-3], [0.0]], [1e-6], 0.03, 1.0)
+    got = share_load(np.diag([1.0, 1.0])[:, :, None], [[1e-3], [0.0]], [1e-6], ContactLaw(0.03))
     assert got.loads[0, 0, 0] == 0.0
     assert got.loads[1, 0, 0] == pytest.approx(1e-6, rel=1e-14)
     assert got.pairs_in_contact[0, 0] == 1
@@ -143,7 +147,7 @@ def test_wrong_questions_are_refused():
     with pytest.raises(InputError, match="no tooth pair in reach"):
         share_load(np.ones((1, 1, 2)), [[0.0, np.inf]], [1.0])
     with pytest.raises(RangeError, match="so wide"):
-        share_load(np.ones((1, 1, 1)), [[0.0]], [1e30], 0.1, 1.0)
+        share_load(np.ones((1, 1, 1)), [[0.0]], [1e30], ContactLaw(0.1))
 
 
 def test_a_pair_that_only_just_touches_is_settled_like_any_other():
@@ -151,7 +155,9 @@ def test_a_pair_that_only_just_touches_is_settled_like_any_other():
     c, kappa, ref, total = np.array([[2.1e-9, 3.3e-10], [3.3e-10, 1.9e-9]]), 3.7e-10, 1000.0, 1234.5
     apart = own(total, c[0, 0], kappa, ref) - c[1, 0] * total  # the second pair is just not reached
     short = apart * (1.0 - 10.0 ** -np.linspace(4.0, 13.0, 200))
-    found = share_load(np.tile(c[:, :, None], short.size), np.stack([np.zeros(short.size), short]), [total], kappa, ref)
+    found = share_load(
+        np.tile(c[:, :, None], short.size), np.stack([np.zeros(short.size), short]), [total], ContactLaw(kappa, ref)
+    )
     assert found.steps < 15
     w, z = found.loads[:, :, 0], found.transmission_error[:, 0]
     assert (w[1] > 0.0).sum() > 150
@@ -163,7 +169,9 @@ def test_a_pair_that_only_just_touches_is_settled_like_any_other():
     wide[1:3, 1:3] = c[:, :, None]
     wide[0, 0] = wide[3, 3] = 1.0
     far = np.full((1, short.size), np.inf)
-    again = share_load(wide, np.concatenate([far, np.zeros((1, short.size)), short[None], far]), [total], kappa, ref)
+    again = share_load(
+        wide, np.concatenate([far, np.zeros((1, short.size)), short[None], far]), [total], ContactLaw(kappa, ref)
+    )
     assert (again.loads[1:3] == found.loads).all()
     assert not again.loads[[0, 3]].any()
     assert (again.transmission_error == found.transmission_error).all()

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from smooth_tooth import SmoothTooth
 
+from fegear.contact.contact_law import ContactLaw
 from fegear.contact.plane.engagement import Engagement, Loaded
-from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.neglected_effects import corners_bear
 from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
 from fegear.contact.plane.roll_grids import RollGrid
@@ -81,8 +81,8 @@ def sharing(draw):
 @given(sharing())
 def test_each_pair_has_the_slope_of_its_own_load(problem):
     c, e, kappa, power, load = problem
-    shared = share_load(c[:, :, None], e[:, None], [load], kappa[:, None], 1.0, None, power)
-    matrices = PairMatrices(c[:, :, None], kappa[:, None], 1.0, None, power)
+    matrices = PairMatrices(c[:, :, None], ContactLaw(kappa[:, None], 1.0, None, power))
+    shared = matrices.share(e[:, None], [load])
     state = Loaded(RollGrid(np.zeros(1), None, matrices), np.array([load]), shared, e[:, None])
     zeta, h = float(shared.transmission_error[0, 0]), 1e-5
     low, middle, high = (loads_at(z, c, e, kappa, power) for z in (zeta - h, zeta, zeta + h))

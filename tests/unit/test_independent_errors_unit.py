@@ -10,7 +10,6 @@ from fegear.contact.plane import independent_errors as module
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
-from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -47,7 +46,7 @@ def errors(loaded):
 
 def solved_again(loaded, pairs):
     m = softened(loaded.grid.matrices, pairs)
-    return share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.edges, m.power)
+    return m.share(loaded.separation, loaded.load)
 
 
 def test_loads_change_as_with_each_pair_softer_by_itself(loaded):

@@ -13,6 +13,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.compliance import OneTooth, Rigid
 from fegear.contact.plane.spline import Spline, spline
 from fegear.formulas.outcome import ComplianceSource
+from fegear.formulas.palmgren import EXPONENT
 from fegear.formulas.sources import source as formula_source
 from fegear.geometry.gear import Gear
 
@@ -112,8 +113,8 @@ def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
     power = 0.0
     if abs(exponent - 1.0) < 1e-9:
         own += here / w
-    elif abs(exponent - 0.9) < 1e-9:
-        power = float(here[0] / w**0.9)
+    elif abs(exponent - EXPONENT) < 1e-9:
+        power = float(here[0] / w**EXPONENT)
     else:
         raise InputError("compliance.source", f'"{name}"', f"has a contact that grows with the power {exponent:.4f}")
     return ClosedFormCompliance(gear, formula, spline(lengths, own), b, max(slope, 0.0), power)

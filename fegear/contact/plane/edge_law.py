@@ -28,7 +28,7 @@ import numpy as np
 from fegear.base.tally import tallied
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
 
@@ -68,13 +68,9 @@ class EdgeContacts:
         by_tilt = (edge_law(*at)[1] - by_room) / np.where(self.tilt == 0.0, 1.0, self.tilt)
         return np.asarray(by_tilt * tilt + by_room / np.where(self.room == 0.0, 1.0, self.room) * room)
 
-    def with_loads(self) -> EdgeContacts:
-        """The same with an axis for loads at the end."""
-        return EdgeContacts(self.tilt[..., None], self.wedge[..., None], self.room[..., None])
-
-    def only(self, index: NDArray[np.intp] | NDArray[np.int64]) -> EdgeContacts:
-        """Columns at `index`."""
-        return EdgeContacts(self.tilt[..., index], self.wedge[..., index], self.room[..., index])
+    def under(self, root: Array) -> EdgeContacts:
+        """The same with other reference loads, `root` the root of the old one over the new one, with an axis more."""
+        return EdgeContacts(self.tilt * root, self.wedge, self.room * root)
 
     @classmethod
     def none(cls, shape: tuple[int, ...]) -> EdgeContacts:

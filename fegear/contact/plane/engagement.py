@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.tally import note
-from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent, share_load
+from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrid, RollGrids
@@ -90,12 +90,12 @@ class Loaded:
     @property
     def corner_bears(self) -> Array:
         """Whether a loaded pair touches at a tip corner or so near to one that it is narrower, bool, shape (P, L)."""
-        contacts, edges = self.grid.contacts, self.grid.matrices.edges
+        contacts, law = self.grid.contacts, self.grid.matrices.law
         at_corner = np.broadcast_to((contacts.gap > 0.0)[:, :, None], self.loads.shape)
-        if edges is not None:
+        if law.edges is not None:
             # the Hertzian width grows with the square root of the load; see `edge_law`
-            width = np.sqrt(self.loads / self.grid.matrices.reference_load)
-            at_corner = at_corner | (edges.tilt[:, :, None] > -width)
+            width = np.sqrt(self.loads / law.reference_load)
+            at_corner = at_corner | (law.edges.tilt[:, :, None] > -width)
         return np.asarray(((self.loads > 0.0) & at_corner).any(axis=0))
 
 
@@ -226,6 +226,6 @@ class Engagement:
 def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
     """Solve with another engagement's compliances at the same contacts, loads and separations."""
     grid = loaded.grid
-    m = other.compliance.matrices(grid.contacts)
-    shared = share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.edges, m.power)
-    return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)
+    matrices = other.compliance.matrices(grid.contacts)
+    shared = matrices.share(loaded.separation, loaded.load)
+    return Loaded(RollGrid(grid.x, grid.contacts, matrices), loaded.load, shared, loaded.separation)

@@ -22,16 +22,11 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array, Mask
 from fegear.base.errors import ConvergenceError, InputError, RangeError
 from fegear.base.tally import note, tallied
-from fegear.contact.plane.edge_law import EdgeContacts
+from fegear.contact.contact_law import LINEAR, SMALLEST_SHARE, ContactLaw
 
-#: Share below which the logarithm is continued by its tangent: W ln W has an infinite slope at zero. Its effect on any
-#: share is below its own size.
-_SMALLEST_SHARE = 1e-20
 _MOST_STEPS = 40
 #: Of a share: the whole load is one.
 _ROUND_OFF = 1e-15
-#: Exponent of the load in Palmgren's contact deflection.
-_PALMGREN = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +64,7 @@ def share_load(
     compliance: ArrayLike,
     separation: ArrayLike,
     load: ArrayLike,
-    log_slope: ArrayLike = 0.0,
-    reference_load: ArrayLike = 1.0,
-    edges: EdgeContacts | None = None,
-    power: ArrayLike = 0.0,
+    law: ContactLaw = LINEAR,
 ) -> SharedLoad:
     """Share total loads among the tooth pairs at many roll positions.
 
@@ -80,19 +72,13 @@ def share_load(
     ----------
     compliance : array_like, shape (n, n, P)
         c_jj' of the pairs, both gears added [m/N]: deflection of pair j per unit load on pair j'; the diagonal holds
-        at the reference load.
+        at the reference load of the law.
     separation : array_like, shape (n, P) or (n, P, L)
         e_j [m], initial distance of pair j along the line of action; infinite where the pair is out of reach.
     load : array_like, shape (L,) or (P, L)
         W [N], positive.
-    log_slope : array_like, shape () or (n, P)
-        kappa_j, change of both bodies' approach per unit load with ln(1 / half-width) [m/N]; 0 for a linear contact.
-    reference_load : array_like, shape () or (n, P)
-        W_ref [N], the load at which the diagonal of `compliance` holds.
-    edges : EdgeContacts, optional
-        Contacts near tip corners at the reference load, shape (n, P); see `edge_law`.
-    power : array_like, shape () or (n, P)
-        q_j of a further deflection q_j W_j^0.9 [m/N^0.9]: Palmgren's contact.
+    law : ContactLaw
+        Of the n contacts at P positions: what their load changes of the diagonal; proportional by default.
 
     Returns
     -------
@@ -123,27 +109,20 @@ def share_load(
             "increase the contact ratio",
         )
     near = reach.any(axis=(1, 2))  # pairs that are nowhere in reach would only cost time
-    slope, reference, bent = (
-        np.broadcast_to(np.asarray(one, dtype=float), (n, positions))[near]
-        for one in (log_slope, reference_load, power)
-    )
-    narrow = None if edges is None else EdgeContacts(edges.tilt[near], edges.wedge[near], edges.room[near])
-    shared = _share(c[np.ix_(near, near)], e[near], total, slope, reference, bent, narrow)
+    shared = _share(c[np.ix_(near, near)], e[near], total, law.each(lambda values: values[near]))
     loads = np.zeros((n, positions, cases))
     loads[near] = shared.loads
     return SharedLoad(loads, shared.transmission_error, shared.steps)
 
 
-def _share(
-    c: Array, e: Array, total: Array, log_slope: Array, reference_load: Array, power: Array, edges: EdgeContacts | None
-) -> SharedLoad:
+def _share(c: Array, e: Array, total: Array, law: ContactLaw) -> SharedLoad:
     """`share_load` of arrays of full shape and of pairs that are in reach somewhere."""
     n, positions, cases = e.shape
     reach = e < np.inf
-    kappa, at, bent = (one[:, :, None] for one in (log_slope, reference_load, power))
     # In shares v = W_j / W every load is the same problem: only the diagonal and the separations change with W.
-    diagonal = c[np.arange(n), np.arange(n)][:, :, None] - 0.5 * kappa * np.log(total / at)
-    _refuse_wide_contact(np.where(reach, diagonal, np.inf), kappa, total)
+    less, in_shares = law.in_shares(total)
+    diagonal = c[np.arange(n), np.arange(n)][:, :, None] - less
+    _refuse_wide_contact(np.where(reach, diagonal, np.inf), np.asarray(in_shares.log_slope), total)
     size = positions * cases
 
     def flat(values: Array) -> Array:
@@ -156,17 +135,9 @@ def _share(
     problem = _Problem(
         coupling=np.ascontiguousarray(np.repeat(coupling, cases, axis=2)) if coupling.any() else None,
         diagonal=flat(diagonal),
-        half_slope=flat(0.5 * kappa) if kappa.any() else None,
         gap=flat(np.where(reach, e - nearest, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
-        edges=None
-        if edges is None
-        else EdgeContacts(
-            flat(edges.tilt[:, :, None] * np.sqrt(at / total)),
-            flat(edges.wedge[:, :, None]),
-            flat(edges.room[:, :, None] * np.sqrt(at / total)),
-        ),
-        power=flat(bent * total ** (_PALMGREN - 1.0)) if bent.any() else None,
+        law=LINEAR if law.is_linear else in_shares.each(flat),
     )
     v, z, steps = _solve(problem)
     loads = (v / v.sum(axis=0)).reshape(n, positions, cases) * total
@@ -204,22 +175,18 @@ class _Problem:
 
     coupling: Array | None
     diagonal: Array
-    half_slope: Array | None
     gap: Array
     reach: Mask
-    edges: EdgeContacts | None
-    power: Array | None
+    law: ContactLaw
 
     def only(self, index: NDArray[np.int64]) -> _Problem:
         """The problems at `index`."""
         return _Problem(
             None if self.coupling is None else self.coupling[:, :, index],
             self.diagonal[:, index],
-            None if self.half_slope is None else self.half_slope[:, index],
             self.gap[:, index],
             self.reach[:, index],
-            None if self.edges is None else self.edges.only(index),
-            None if self.power is None else self.power[:, index],
+            self.law.at(index),
         )
 
 
@@ -244,8 +211,8 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
     # What is farther off than the nearest pair gives way under the whole load begins unloaded.
     most = np.where(problem.reach & (problem.gap == 0.0), problem.diagonal, 0.0).max(axis=0)
     active = problem.reach & (problem.gap <= most)
-    v = np.where(active, 1.0 / np.maximum(active.sum(axis=0), 1), _SMALLEST_SHARE)
-    steps = 0
+    v = np.where(active, 1.0 / np.maximum(active.sum(axis=0), 1), SMALLEST_SHARE)
+    steps, straight = 0, problem.law.is_linear
     while index.size and steps < _MOST_STEPS:
         steps += 1
         new, z = _newton_step(problem, active, v)
@@ -257,12 +224,11 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
         # Newton squares the relative error: a last step of 1e-8 leaves nothing but round-off, which is that of the
         # whole load: the share of a pair that just touches keeps moving by it.
         close = (np.abs(new - v) <= 1e-8 * np.abs(new) + _ROUND_OFF).all(axis=0, where=active)
-        straight = problem.half_slope is None and problem.power is None
         done = settled.all(axis=0) & (close | straight)
         if done.any():
             shares[:, index[done]], approach[index[done]] = np.where(stays, new, 0.0)[:, done], z[done]
         active = stays | enters
-        v = np.where(stays, np.minimum(new, 1.0), _SMALLEST_SHARE)
+        v = np.where(stays, np.minimum(new, 1.0), SMALLEST_SHARE)
         if done.any():
             left = np.flatnonzero(~done)
             index, problem = index[left], problem.only(left)
@@ -273,26 +239,10 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
 
 
 def _newton_step(problem: _Problem, active: Mask, v: Array) -> tuple[Array, Array]:
-    """Solve the contact conditions of the active pairs, linearised about the shares v.
-
-    The tangent of -(kappa/2) v ln v at v is -(kappa/2)(1 + ln v) times the new share, plus (kappa/2) v. The function is
-    concave, so from below the iteration stays below and converges monotonically.
-    """
-    w = np.maximum(v, _SMALLEST_SHARE)
-    slope, constant = problem.diagonal, problem.gap
-    if problem.half_slope is not None or problem.power is not None:
+    """Solve the contact conditions of the active pairs, their law linearised about the shares v."""
+    if not problem.law.is_linear:
         note("nonlinear steps")
-    if problem.half_slope is not None:
-        slope = slope - problem.half_slope * (1.0 + np.log(w))
-        constant = constant + problem.half_slope * w
-    if problem.edges is not None and problem.half_slope is not None:
-        psi, t_slope = problem.edges.law(np.sqrt(w))
-        slope = slope + problem.half_slope * (2.0 * psi - t_slope)
-        constant = constant + problem.half_slope * w * t_slope
-    if problem.power is not None:
-        approach = problem.power * w**_PALMGREN
-        slope = slope + _PALMGREN * approach / w
-        constant = constant + (1.0 - _PALMGREN) * approach
+    slope, constant = problem.law.linearised(problem.diagonal, v, problem.gap)
     if problem.coupling is None:
         inverse = np.where(active, 1.0 / np.where(active, slope, 1.0), 0.0)
         z = (1.0 + (inverse * constant).sum(axis=0)) / inverse.sum(axis=0)
@@ -344,11 +294,11 @@ def _enumerate(problem: _Problem) -> tuple[Array, Array]:
             continue
         index = np.flatnonzero(valid)
         part, active = problem.only(index), chosen[:, index]
-        v = np.where(active, _SMALLEST_SHARE, 0.0)
+        v = np.where(active, SMALLEST_SHARE, 0.0)
         z = np.zeros(index.size)
         new = v
         for _ in range(80):
-            v = np.clip(new, _SMALLEST_SHARE, 1.0)
+            v = np.clip(new, SMALLEST_SHARE, 1.0)
             new, z = _newton_step(part, active, v)
         apart = part.reach & ~active
         scale = np.abs(part.diagonal).max(axis=0)

@@ -10,9 +10,17 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.tally import tallied
+from fegear.contact.contact_law import LINEAR, ContactLaw
 from fegear.contact.plane.edge_law import EdgeContacts
+from fegear.contact.plane.load_sharing import SharedLoad, share_load
+from fegear.formulas.palmgren import EXPONENT
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import GearCompliance
     from fegear.contact.plane.meshing import Contacts
@@ -32,41 +40,29 @@ class PairMatrices:
     ----------
     compliance : ndarray, shape (n, n, P)
         c_jj' [m/N], the diagonal at the reference load; zero in rows of pairs that are absent.
-    log_slope : ndarray, shape (n, P)
-        kappa [m/N].
-    reference_load : float
-        [N].
-    edges : EdgeContacts or None
-        Contacts near tip corners, shape (n, P); None when corners do not matter.
-    power : float
-        q of a contact deflection q W^0.9 [m/N^0.9].
+    law : ContactLaw
+        What the loads change of the diagonal.
     """
 
     compliance: Array
-    log_slope: Array
-    reference_load: float
-    edges: EdgeContacts | None = None
-    power: float = 0.0
+    law: ContactLaw = LINEAR
 
     def at_load(self, loads: Array) -> Array:
         """Secant compliances at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
-        return self._with_diagonal(loads, 0.0)
+        return self._with_diagonal(loads, ContactLaw.secant)
 
     def tangent(self, loads: Array) -> Array:
         """Derivatives d u_j / d W_j' at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
-        return self._with_diagonal(loads, 1.0)
+        return self._with_diagonal(loads, ContactLaw.tangent)
 
-    def _with_diagonal(self, loads: Array, tangent: float) -> Array:
-        n = loads.shape[0]
-        c = np.broadcast_to(self.compliance[..., None], (n, *loads.shape)).copy()
-        w = np.maximum(loads, 1e-20 * self.reference_load) / self.reference_load
-        added = -0.5 * (np.log(w) + tangent)
-        if self.edges is not None:
-            psi, t_slope = self.edges.with_loads().law(np.sqrt(w))
-            added += psi - 0.5 * tangent * t_slope
-        c[np.arange(n), np.arange(n)] += self.log_slope[:, :, None] * added
-        if self.power:
-            c[np.arange(n), np.arange(n)] += (1.0 - 0.1 * tangent) * self.power * (w * self.reference_load) ** -0.1
+    def share(self, separation: ArrayLike, load: ArrayLike) -> SharedLoad:
+        """Loads of the pairs at separations [m] under loads [N]; see `share_load`."""
+        return share_load(self.compliance, separation, load, self.law)
+
+    def _with_diagonal(self, loads: Array, of: Callable[[ContactLaw, Array, Array], Array]) -> Array:
+        each = np.arange(loads.shape[0])
+        c = np.broadcast_to(self.compliance[..., None], (each.size, *loads.shape)).copy()
+        c[each, each] = of(self.law.each(lambda values: values[..., None]), c[each, each], loads)
         return c
 
 
@@ -144,33 +140,59 @@ class PairCompliance:
         face, present = self.face_width, at.present
         c = np.zeros((n, n, positions))
         slope = np.zeros((n, positions))
-        reference = _REFERENCE_LINE_LOAD * face
-        at_load = self.nominal_load if self.hertz == "linear" else reference
+        reference, follows = _REFERENCE_LINE_LOAD * face, self.hertz == "load-dependent"
         for j in range(n):
             here = present[j]
             if not here.any():
                 c[j, j] = 1.0
                 continue
-            own = np.zeros(int(here.sum()))
-            for source, radius in ((self.driver, at.radius_driver), (self.driven, at.radius_driven)):
-                r = radius[j, here]
-                own += source.own(r)
-                if self.hertz != "load-dependent" and source.power > 0.0:
-                    own += source.power * (at_load / face) ** -0.1
-                if self.hertz != "none" and source.log_slope > 0.0:
-                    b = self.half_width(np.asarray(at_load), at.relative_radius[j, here])
-                    own += source.log_slope * np.log(source.reference_half_width(r) / b)
+            relative = at.relative_radius[j, here]
+            parts = [
+                part
+                for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True)
+                for part in self.own_parts(member, radius[j, here], relative, self.contact_load, power=not follows)
+            ]
+            own = np.asarray(sum(parts))
             c[j, j, here] = own / face
             c[j, j, ~here] = 1.0
-            if self.hertz == "load-dependent":
+            if follows:
                 slope[j, here] = self.log_slope
         if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
             self._couple(c, at)
         edges = None
-        if self.hertz == "load-dependent" and at.edge.max() > -np.inf and self.log_slope > 0.0:
+        if follows and at.edge.max() > -np.inf and self.log_slope > 0.0:
             edges = self._edges(at, self.half_width(np.asarray(reference), at.relative_radius))
-        q = self.driver.power + self.driven.power if self.hertz == "load-dependent" else 0.0
-        return PairMatrices(c, slope, reference, edges, q * face**-0.9)
+        q = self.driver.power + self.driven.power if follows else 0.0
+        return PairMatrices(c, ContactLaw(slope, reference, edges, q * face**-EXPONENT))
+
+    @property
+    def contact_load(self) -> float:
+        """Load at which the diagonal of `matrices` holds, and all of a contact that does not follow its load [N]."""
+        return self.nominal_load if self.hertz == "linear" else _REFERENCE_LINE_LOAD * self.face_width
+
+    def own_parts(
+        self, member: Member, radius: Array, relative_radius: Array, load: ArrayLike, *, power: bool = True
+    ) -> tuple[Array, ...]:
+        """What a tooth's own compliance per line load adds up from, its contact that of a load [m^2/N].
+
+        Parameters
+        ----------
+        member : {"driver", "driven"}
+        radius, relative_radius : ndarray, shape (P,)
+            Of points of the flank, and of curvature there [m].
+        load : array_like, shape () or (P,)
+            [N].
+        power : bool
+            Whether Palmgren's contact counts.
+        """
+        source = self.source(member)
+        parts = [source.own(radius)]
+        if power and source.power > 0.0:
+            parts.append(np.asarray(source.power * (np.asarray(load) / self.face_width) ** (EXPONENT - 1.0)))
+        if self.hertz != "none" and source.log_slope > 0.0:
+            b = self.half_width(np.asarray(load), relative_radius)
+            parts.append(source.log_slope * np.log(source.reference_half_width(radius) / b))
+        return tuple(parts)
 
     def _edges(self, at: Contacts, half_width: Array) -> EdgeContacts:
         """Contacts near the tips: that of the driven gear touches at the start of the path, the driver's at its end."""

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Mask
+from fegear.contact.contact_law import ContactLaw
 from fegear.contact.plane.edge_law import EdgeContacts
-from fegear.contact.plane.load_sharing import SharedLoad, share_load
+from fegear.contact.plane.load_sharing import SharedLoad
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
 from fegear.geometry.pair import GearPair
@@ -132,8 +133,7 @@ class RollGrids:
             if one.grid is grid and np.array_equal(one.load, load) and np.array_equal(one.separation, separation):
                 self._shared = (*self._shared[:number], *self._shared[number + 1 :], one)
                 return one.found
-        m = grid.matrices
-        found = share_load(m.compliance, separation, load, m.log_slope, m.reference_load, m.edges, m.power)
+        found = grid.matrices.share(separation, load)
         kept = {id(one.grid) for one in self._kept}
         others = [one for one in self._shared if one.grid is not grid and id(one.grid) in kept]
         own = [one for one in self._shared if one.grid is grid]
@@ -165,26 +165,26 @@ def _joined(x: Array, old: RollGrid, column: NDArray[np.intp], new: RollGrid | N
         return found
 
     places = {name: columns(attrgetter(f"contacts.{name}")) for name in _PLACES}
-    none = old.matrices.edges is None and (new is None or new.matrices.edges is None)
-    matrices = replace(
-        old.matrices,
-        compliance=columns(lambda grid: grid.matrices.compliance),
-        log_slope=columns(lambda grid: grid.matrices.log_slope),
-        edges=None if none else EdgeContacts(*columns(lambda grid: _edges(grid.matrices))),
+    none = old.matrices.law.edges is None and (new is None or new.matrices.law.edges is None)
+    law = replace(
+        old.matrices.law,
+        log_slope=columns(lambda grid: grid.matrices.law.log_slope),
+        edges=None if none else EdgeContacts(*columns(lambda grid: _edges(grid.matrices.law))),
     )
+    matrices = PairMatrices(columns(lambda grid: grid.matrices.compliance), law)
     return RollGrid(x, replace(old.contacts, **places), matrices)
 
 
-def _edges(matrices: PairMatrices) -> Array:
+def _edges(law: ContactLaw) -> Array:
     """Tilt, wedge and room, shape (3, n, P); none at all is the same as far inside of every corner."""
-    found = matrices.edges or EdgeContacts.none(matrices.log_slope.shape)
+    found = law.edges or EdgeContacts.none(np.shape(law.log_slope))
     return np.stack([found.tilt, found.wedge, found.room])
 
 
 def _read_only(grid: RollGrid) -> RollGrid:
-    edges = grid.matrices.edges
-    for part in (grid.contacts, grid.matrices) if edges is None else (grid.contacts, grid.matrices, edges):
-        for one in fields(part):
+    parts = (grid.contacts, grid.matrices, grid.matrices.law, grid.matrices.law.edges)
+    for part in parts:
+        for one in fields(part) if part is not None else ():
             value = getattr(part, one.name)
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)

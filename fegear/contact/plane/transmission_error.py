@@ -13,7 +13,6 @@ from fegear.base.errors import InputError
 from fegear.base.shown import shows
 from fegear.contact.changes import sign_changes
 from fegear.contact.fourier import SIDE, FourierSeries, Panels, effective_error, fourier_series, panels
-from fegear.contact.plane.load_sharing import share_load
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -248,13 +247,10 @@ def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int,
     per_pitch = max(12, -(-harmonics // cycles))
     points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=per_pitch, order=order)
     grid = engagement.grid(points.x)
-    m, e = grid.matrices, engagement.separation(grid.contacts)
+    e = engagement.separation(grid.contacts)
     finite = np.where(grid.contacts.present, e - engagement.spacing(grid.contacts, 0), np.inf)
     errors = np.concatenate([engagement.spacing(grid.contacts, k) for k in range(cycles)], axis=1)
-    shared = share_load(
-        m.compliance, finite[:, :, None] + errors[:, None, :], np.full(cycles, load),
-        m.log_slope, m.reference_load, m.edges, m.power,
-    )  # fmt: skip
+    shared = grid.matrices.share(finite[:, :, None] + errors[:, None, :], np.full(cycles, load))
     # The points of every base pitch lie alike, so that the sum over the base pitches is a fast Fourier transform: a
     # kernel of all points times all harmonics would take gigabytes for hunting tooth numbers.
     over_pitches = np.fft.fft(shared.transmission_error, axis=1)

@@ -22,6 +22,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
 from fegear.base.tally import note, tallied
+from fegear.contact.contact_law import logarithm
 from fegear.contact.plane.edge_law import edge_law
 from fegear.contact.wide.averages import GAUSS, LocalMatrix
 
@@ -263,9 +264,9 @@ def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.
             load = np.maximum(local.read(near, f), least)
             q = known.width_factor[place]
             square = (a * q[:, :-1] + b * q[:, 1:]) * load
-            psi, change = _at_edges(known, place, (a, b), square)
-            slope = -s * (np.log(square / unit[:, :-1] ** 2) + own - 2.0 * psi + own * change)
-            local.add(near, part * slope, part * s * load * (1.0 + change))
+            edge = _at_edges(known, place, (a, b), square)
+            slope = -s * logarithm(square / unit[:, :-1] ** 2, own, edge)
+            local.add(near, part * slope, part * s * load * (1.0 if edge is None else 1.0 + edge[1]))
         else:
             width = known.fixed_half_width[place]
             relative = (a * width[:, :-1] + b * width[:, 1:]) / unit[:, :-1]
@@ -274,11 +275,13 @@ def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.
     return matrix, local.constant[:, local.inside] * density
 
 
-def _at_edges(known: FlankCompliance, place: Index, share: tuple[float, float], square: Array) -> tuple[Array, Array]:
+def _at_edges(
+    known: FlankCompliance, place: Index, share: tuple[float, float], square: Array
+) -> tuple[Array, Array] | None:
     """What sharp tip edges add beside and beyond the ends of the path: psi and t dpsi/dt of `edge_law`, (B, M - 1)."""
     edges = known.lines.edges
     if edges is None:
-        return np.zeros_like(square), np.zeros_like(square)
+        return None
     tilt = np.maximum(edges.tilt[place], -_FAR)
     at = share[0] * tilt[:, :-1] + share[1] * tilt[:, 1:]
     return edge_law(at / np.sqrt(square))

@@ -13,7 +13,6 @@ from fegear.base.errors import FegearError
 from fegear.contact.fourier import Panels, panels
 from fegear.contact.plane.compliance import RootStressInfluence, largest_stress
 from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
 from fegear.contact.plane.tooth_table import RootTable, light, root_table
 from fegear.contact.plane.transmission_error import transmission_error
@@ -196,11 +195,9 @@ def quadrature(engagement: Engagement, kinks_of: Engagement) -> Panels:
 def loaded(engagement: Engagement, load: float, x: Array) -> State:
     """Share the load at roll positions x [m] in every base pitch that teeth 0 pass."""
     grid = engagement.grid(x)
-    c, m = grid.contacts, grid.matrices
+    c = grid.contacts
     separation = np.stack([engagement.separation(c, int(cycle)) for cycle in c.number], axis=2)
-    shared = share_load(
-        m.compliance, separation, np.full(c.number.size, load), m.log_slope, m.reference_load, m.edges, m.power
-    )
+    shared = grid.matrices.share(separation, np.full(c.number.size, load))
     return State(grid, c.number, shared.loads, shared.transmission_error)
 
 

@@ -90,7 +90,7 @@ class Between:
         """Compliances, gaps, depths and edges at the positions, shape (n n + 6 n, P)."""
         grid = self.bench.grid
         n = self.depths.shape[1]
-        edges = grid.matrices.edges or EdgeContacts.none(self.depths.shape[1:])
+        edges = grid.matrices.law.edges or EdgeContacts.none(self.depths.shape[1:])
         parts = [
             grid.matrices.compliance.reshape(n * n, -1),
             np.where(grid.contacts.present, grid.contacts.gap, 0.0),
@@ -145,10 +145,10 @@ class Between:
         c_rise, gap_rise, depth_rise, tilt_rise, _, room_rise = np.split(rising, parts)
         c, c_rise = c.reshape(n, n, count), c_rise.reshape(n, n, count)
         depths, depth_rise = depths.reshape(2, n, count), depth_rise.reshape(2, n, count)
-        own = self.bench.grid.matrices
+        law = self.bench.grid.matrices.law
         number, _, load = at.where
-        edges = EdgeContacts(tilt, wedge, room) if own.edges else None
-        m = PairMatrices(c, own.log_slope[:, at.where[1]], own.reference_load, edges, own.power)
+        edges = EdgeContacts(tilt, wedge, room) if law.edges else None
+        m = PairMatrices(c, replace(law.at(at.where[1]), edges=edges))
         numbers = p[number].T[:, None]
         removal, by_number = removed(depths, numbers, self.power)
         w = np.where(at.on, at.loads, 0.0)
@@ -160,8 +160,7 @@ class Between:
         tangent = m.tangent(np.maximum(loads, np.where(at.on, 0.0, _JUST * self.totals[load]))[..., None])[..., 0]
         rises = np.einsum("ijk,jk->ik", c_rise, loads) + gap_rise
         if edges is not None:
-            root = np.sqrt(np.maximum(loads, 1e-20 * own.reference_load) / own.reference_load)
-            rises += m.log_slope * edges.rise(root, tilt_rise, room_rise) * loads
+            rises += m.law.rise(loads, tilt_rise, room_rise)
         slopes = np.array([
             -numbers[2 * g] / numbers[2 * g + 1] * depth_rise[g]
             * (np.where(1.0 - depths[g] / numbers[2 * g + 1] > _NONE, 1.0, 0.0) if self.power == 1.0

@@ -17,7 +17,6 @@ import numpy as np
 from fegear.base.arrays import Array, Floats
 from fegear.base.errors import FegearError, InputError
 from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.roll_grids import RollGrid
 from fegear.design.quick_sharing import quick_sharing
 from fegear.design.robustness.deviated_pair import Bench, deviated
@@ -137,10 +136,9 @@ class _Trials:
             tips = _tips(engagement, p, self.power)
             own = engagement.modification(grid.contacts)
             m = own + sum(tip.removal(roll) for tip, roll in zip(tips, _rolls(grid), strict=True))
-            at, c = grid.matrices, grid.contacts
+            c = grid.contacts
             e = np.where(c.present, c.gap + m + engagement.spacing(c, 0), np.inf)
-            shared = share_load(at.compliance, e, [self.load], at.log_slope, at.reference_load, at.edges, at.power)
-            peaks.append(np.ptp(shared.transmission_error))
+            peaks.append(np.ptp(grid.matrices.share(e, [self.load]).transmission_error))
         return self._percentile(np.array(peaks))
 
 

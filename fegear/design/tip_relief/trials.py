@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fegear.base.arrays import Floats, Index, Mask
-from fegear.contact.plane.load_sharing import SharedLoad, share_load
+from fegear.contact.plane.load_sharing import SharedLoad
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
 from fegear.design.relief_bench import Bench
 from fegear.design.tip_relief.between_positions import Bends
@@ -278,13 +278,13 @@ class Trials:
 
     def _shared(self, removal: Floats) -> SharedLoad:
         """Exact load sharing of removals (C, n, P), cases C times L."""
-        contacts, m = self.bench.grid.contacts, self.bench.grid.matrices
+        contacts = self.bench.grid.contacts
         n, positions = contacts.x.shape
         shape = (n, positions, removal.shape[0], self.loads.size)
         added = np.broadcast_to(np.moveaxis(removal, 0, 2)[..., None], shape).reshape(n, positions, -1)
         e = np.where(contacts.present, contacts.gap, np.inf)[:, :, None] + added
         loads = np.tile(self.loads, removal.shape[0])
-        return share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.edges, m.power)
+        return self.bench.grid.matrices.share(e, loads)
 
     def mean(self) -> float:
         """Mean transmission error of the unmodified pair over all loads, in proportion at the largest [m]."""
