@@ -13,6 +13,7 @@ from fegear.base.errors import InputError
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.sector import mesh_inside, mesh_sector
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.solid.settings import solid_settings
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
@@ -188,3 +189,16 @@ def test_a_request_to_stop_that_arrives_below_gmsh_is_not_lost(monkeypatch, capf
     assert next(asked) > 2  # it was in the callback
     assert "ctypes" not in capfd.readouterr().err
     assert_same(drawn("z 8"), wanted)
+
+
+@pytest.mark.parametrize(("teeth", "land"), [(17, 0.002), (103, 0.003), (103, 0.02)])
+def test_a_root_land_of_next_to_no_length_makes_no_fine_mesh(teeth, land):
+    """The sides started with ten edges as short as it: flat, so that all edges were shortened, to 1,328 triangles."""
+    half_space = (0.5 * math.pi / 2.0 - 1.4 * math.tan(USUAL.pressure_angle)) - land
+    full = half_space / (1.0 / math.cos(USUAL.pressure_angle) - math.tan(USUAL.pressure_angle))
+    tooth = Tooth(teeth, BasicRack(1.0, 1.4, full, USUAL.pressure_angle))
+    assert tooth.root_radius * tooth.root_land_half_angle == pytest.approx(land, rel=0.2)
+    for tolerance in (1e-1, 1e-2):
+        mesh = mesh_sector(tooth, 0.5 * tooth.root_radius, solid_settings(tolerance).section, frontal=True)
+        assert mesh.triangles.shape[1] < 300
+        assert mesh.edges["side_a"].shape[1] < 20

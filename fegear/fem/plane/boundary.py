@@ -23,9 +23,10 @@ from fegear.geometry.outline import turned
 Law = Callable[[Array], Array]
 
 
-#: Root lands shorter than this [modules] (a rack tip all but full) are dropped: the fillets meet on the sector's
-#: side. Fillet and root circle are tangent there, so the outline moves by the square of it.
-_SHORTEST_LAND = 2e-4
+#: Root lands shorter than this [modules], or than this share of the fillet's edge beside them (a rack tip all but full),
+#: are dropped: the fillets meet on the sector's side. Fillet and root circle are tangent there, so the outline moves by
+#: the square of it; the sides' edges would start as short as the land.
+_SHORTEST_LAND, _LEAST_LAND = 2e-4, 0.04
 #: A fillet turns by up to 70 degrees however short it is: elements with fewer edges along it may turn inside out.
 _FEWEST_FILLET_EDGES = 4
 #: Shorter fillets [modules] are all curvature: so many edges at the default fraction of its radius, and in proportion
@@ -150,7 +151,8 @@ def sector_boundary(
     check_bore(tooth, bore_radius)
     pieces, side = tooth.outline, tooth.side
     pitch_angle = 2.0 * math.pi / tooth.teeth
-    short = tooth.root_radius * tooth.root_land_half_angle < _SHORTEST_LAND
+    beside = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
+    short = tooth.root_radius * tooth.root_land_half_angle < max(_SHORTEST_LAND, _LEAST_LAND * beside)
     land = (
         []
         if tooth.root_land is None or short
@@ -191,7 +193,7 @@ def sector_boundary(
         rim = settings.rim_fraction * side * (outer - bore_radius)
         return np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
 
-    side_b = _side(top[:, 0], bore_radius, body_size)
+    side_b = _side(top[:, 0], bore_radius, body_size, first)
     vertices, middles, tangents = (
         turned(part, -pitch_angle)[:, ::-1] for part in (side_b.vertices, side_b.middles, -side_b.tangents)
     )
@@ -362,7 +364,8 @@ def _front_sizes(
     }
 
 
-def _side(top: Array, bore_radius: float, size: Law) -> Chain:
+def _side(top: Array, bore_radius: float, size: Law, first: float) -> Chain:
+    """Nodes from bore to outline, where the edges are as long as the `first` along it."""
     outer = float(np.hypot(*top))
     side = 1.0 if outer > bore_radius else -1.0
     total = side * (outer - bore_radius)
@@ -370,6 +373,8 @@ def _side(top: Array, bore_radius: float, size: Law) -> Chain:
     depths = side * (outer - np.geomspace(outer, bore_radius, 513))
     depths[0], depths[-1] = 0.0, total
     at = np.union1d(np.linspace(0.0, total, 513), np.clip(depths, 0.0, total))
+    if at[1] > first:  # short edges at the outline of a deep body: sampled evenly they would go on below
+        at = np.union1d(at, np.geomspace(0.1 * first, at[1], 65))
     radii = outer - side * graded(total, size, at=at)[::-1]
     direction = top / outer
     middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))

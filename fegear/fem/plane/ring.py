@@ -332,7 +332,7 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
     """Return the same for a few neighbours of a ring of many teeth, in some log2(z) real steps.
 
     Two chains of sectors joined, the side between them eliminated, are one longer chain; so all sectors but those
-    between sides -reach and reach become one, whose ends close the ring.
+    between sides 0 and reach become one, whose ends close the ring. What is to the other side follows by reciprocity.
     """
     from scipy.linalg import lapack
 
@@ -348,23 +348,25 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
         return chain
 
     rest: Array | None = None
-    power, left = condensed, z - 2 * reach
+    power, left = condensed, z - reach
     while left:
         if left & 1:
             rest = power if rest is None else joined(rest, power)
         left >>= 1
         power = joined(power, power) if left else power
-    sides = 2 * reach + 1
+    sides = reach + 1
     whole = np.zeros((sides, m, sides, m))
-    for chain, first, last in [*((condensed, i, i + 1) for i in range(2 * reach)), (rest, sides - 1, 0)]:
+    for chain, first, last in [*((condensed, i, i + 1) for i in range(reach)), (rest, reach, 0)]:
         if chain is not None:
             block = chain.reshape(2, m, 2, m)
             ends = np.array([first, last])
-            whole[ends[:, None], :, ends] += block.transpose(0, 2, 1, 3)
+            # One after the other: where both ends are one side, all four blocks are that side's.
+            for i, j in np.ndindex(2, 2):
+                whole[ends[i], :, ends[j]] += block[i, :, j]
     right = np.zeros((sides, m, m))
-    right[reach] = np.eye(m)
+    right[0] = np.eye(m)
     found = lapack.dpotrs(_factor(whole.reshape(sides * m, -1)), right.reshape(-1, m), lower=1)[0].reshape(sides, m, m)
-    return {k: (found[reach + k] if k >= 0 else found[reach - k].T) for k in range(-reach, reach + 1)}
+    return {k: (found[k] if k >= 0 else found[-k].T) for k in range(-reach, reach + 1)}
 
 
 def _factor(stiffness: Array) -> Array:

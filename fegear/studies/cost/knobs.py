@@ -294,15 +294,15 @@ def _partial(best: TransmissionError, harmonics: int) -> float:
 _FACTORS, _WAVES = (1.5, 1.25, 1.0, 0.8, 0.6), (0.75, 1.0, 1.5, 2.0, 3.0)
 
 
-#: Edges of slices over the usual ones, then those of the solid gear that shows how far off slices are.
-_OF_SLICES = np.array([*_FACTORS[:-1], 1.0])
+#: The last ones of a quick study, which take half of the time and more, are left out.
+_QUICK = slice(0, -1)
 
 
 #: What is looked at, and what it is called.
 _NAMES = {"c_self": "c_0 over the face", "c_next": "c_1 over the face", "root_tension": "root tension over the face"}
 
 
-def solid_knobs(asked: Asked) -> list[Knob]:
+def solid_knobs(asked: Asked, *, quick: bool = False) -> list[Knob]:
     """What edges of the section and functions along the face cost, for the bands of ``[stiffness] face_positions``.
 
     The error of root stress is that of its curve along the face where it is large, as in the table over the face.
@@ -310,25 +310,30 @@ def solid_knobs(asked: Asked) -> list[Knob]:
     Parameters
     ----------
     asked : Asked
+    quick : bool
+        Without the finest edges and the most functions.
 
     Returns
     -------
     list of Knob
     """
     usual, edge = SolidSettings(), SolidSettings().section.root_edge_length
-    by_edge = [replace(usual, section=usual.section.scaled(factor)) for factor in _FACTORS]
-    by_wave = [replace(usual, waves_per_module=waves, least_degree=3) for waves in _WAVES]
+    factors, counts = (_FACTORS[_QUICK], _WAVES[_QUICK]) if quick else (_FACTORS, _WAVES)
+    by_edge = [replace(usual, section=usual.section.scaled(factor)) for factor in factors]
+    by_wave = [replace(usual, waves_per_module=waves, least_degree=3) for waves in counts]
     by_slice = [replace(one, source="slices") for one in by_edge[:-1]]
     gear = asked.scene.gears[asked.gear]
+    # Edges of slices, then those of the solid gear that shows how far off slices are.
+    of_slices = np.array([*factors[:-1], 1.0])
     # Slices know external discs, whose bore is held, only.
     sliced = gear.body is None and gear.support is None and not gear.tooth.internal
     return [
         *_varied(asked, by_edge, "edges of the section", f"{usual.waves_per_module:g} functions per module of face",
-                 edge * np.array(_FACTORS), edge * np.array(_FACTORS)),
-        *_varied(asked, by_wave, "functions per module of face", f"edges of {edge:g} modules", np.array(_WAVES),
-                 1.0 / np.array(_WAVES)),
+                 edge * np.array(factors), edge * np.array(factors)),
+        *_varied(asked, by_wave, "functions per module of face", f"edges of {edge:g} modules", np.array(counts),
+                 1.0 / np.array(counts)),
         *(_varied(asked, [*by_slice, usual], "edges of the section, slices", "coupled slices of the plane section",
-                  edge * _OF_SLICES, edge * _OF_SLICES, "the solid gear") if sliced else ()),
+                  edge * of_slices, edge * of_slices, "the solid gear") if sliced else ()),
     ]  # fmt: skip
 
 

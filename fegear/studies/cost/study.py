@@ -34,11 +34,11 @@ from fegear.studies.cost.result import CostResults, Measured
 #: What answering takes from a solved gear, about [s].
 _ANSWER_SECONDS = {"te-peak-to-peak": 0.1, "tooth-force": 0.2, "dynamic-factor": 2.0}
 _KNOB_SECONDS = 3.0
-#: How many gears with their width the knobs solve, in seconds of one with the usual settings.
-_SOLIDS = 12.0
+#: How many gears with their width the knobs solve, in seconds of one with the usual settings; of a quick study.
+_SOLIDS, _QUICK_SOLIDS = 12.0, 5.0
 
 
-def forecast(asked: Asked, ladder: Ladder) -> float:
+def forecast(asked: Asked, ladder: Ladder, *, quick: bool = False) -> float:
     """About how long a study takes on one core [s]."""
     if asked.over_face:
         return flank_seconds(asked, ladder)
@@ -46,7 +46,7 @@ def forecast(asked: Asked, ladder: Ladder) -> float:
     total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.configurations) + 2)
     if asked.scene.case.stiffness.face_positions is not None and asked.gear:
         gear = asked.scene.gears[asked.gear]
-        total += _SOLIDS * seconds_of_solid_gear(SolidSettings(), gear.face_width / gear.module)
+        total += (_QUICK_SOLIDS if quick else _SOLIDS) * seconds_of_solid_gear(SolidSettings(), gear.face_width / gear.module)
     for configuration in [ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)]:
         if configuration.settings is not None:
             one = seconds_of_gear(configuration.settings)
@@ -88,7 +88,7 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
     started = time.perf_counter()
     ladder = ladder_of(asked, quick=quick)
     found = Found(asked)
-    steps = _flank_steps(found, ladder) if asked.over_face else _steps(found, ladder)
+    steps = _flank_steps(found, ladder) if asked.over_face else _steps(found, ladder, quick=quick)
     try:
         with one_thread():
             for number, (title, work) in enumerate(steps, start=1):
@@ -101,6 +101,11 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
             raise
         found.remarks.append("Interrupted: only the configurations that were finished are here.")
     found.remarks.extend(asked.notes)
+    if quick:
+        found.remarks.append(
+            f"Quick study: fewer configurations, and a coarser reference ({ladder.reference.label}), whose own error is "
+            "the floor of each quantity; without --quick both are finer."
+        )
     if asked.over_face and (rings := internal_gears(asked)):
         found.remarks.append(
             f"Coupled slices are left out: their laws were fitted to external gears, and gear {', '.join(rings)} is "
@@ -132,7 +137,7 @@ def _saved_by_condensation(rows: Sequence[Measured]) -> str:
     return ""
 
 
-def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]:
+def _steps(found: Found, ladder: Ladder, *, quick: bool) -> list[tuple[str, Callable[[], None]]]:
     """Everything that will be done, in order, with the words for the watcher."""
     asked = found.asked
     kept: dict[str, FiniteElements] = {}
@@ -158,7 +163,7 @@ def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]
             ("Knobs of load sharing and dynamics", lambda: found.knobs.extend(pair_knobs(asked, _of_pair(asked, kept))))
         )
     if asked.scene.case.stiffness.face_positions is not None and asked.gear:
-        steps.append(("Knobs of the gear with its width", lambda: found.knobs.extend(solid_knobs(asked))))
+        steps.append(("Knobs of the gear with its width", partial(_vary_width, found, quick=quick)))
     return steps
 
 
@@ -171,6 +176,10 @@ def _flank_steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], N
         more = f" and {len(group) - 1} more" if len(group) > 1 else ""
         steps.append((group[0].label + more, partial(measure_flanks, found, group)))
     return steps
+
+
+def _vary_width(found: Found, *, quick: bool) -> None:
+    found.knobs += solid_knobs(found.asked, quick=quick)
 
 
 def _of_pair(asked: Asked, kept: Mapping[str, Source]) -> Source:
