@@ -73,7 +73,9 @@ def cost(
         ladder = ladder_of(studied, quick=quick)
         quantities = ", ".join(q.name for q in studied.quantities)
         voice.say(f"Cost study: {len(ladder.configurations)} configurations for {quantities}.")
-        voice.say(f"Predicted: about {forecast(studied, ladder, quick=quick):.2g} s of one core, measured on a usual machine.")
+        voice.say(
+            f"Predicted: about {forecast(studied, ladder, quick=quick):.2g} s of one core, measured on a usual machine."
+        )
         with whole_or_nothing(target) as scratch:
             with voice.watcher() as watching:
                 results = study_cost(studied, quick=quick, watcher=watching)

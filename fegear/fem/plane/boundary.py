@@ -23,9 +23,9 @@ from fegear.geometry.outline import turned
 Law = Callable[[Array], Array]
 
 
-#: Root lands shorter than this [modules], or than this share of the fillet's edge beside them (a rack tip all but full),
-#: are dropped: the fillets meet on the sector's side. Fillet and root circle are tangent there, so the outline moves by
-#: the square of it; the sides' edges would start as short as the land.
+#: Root lands shorter than this [modules], or than this share of the fillet's edge beside them (a rack tip all but
+#: full), are dropped: the fillets meet on the sector's side. Fillet and root circle are tangent there, so the outline
+#: moves by the square of it; the sides' edges would start as short as the land.
 _SHORTEST_LAND, _LEAST_LAND = 2e-4, 0.04
 #: A fillet turns by up to 70 degrees however short it is: elements with fewer edges along it may turn inside out.
 _FEWEST_FILLET_EDGES = 4

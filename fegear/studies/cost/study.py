@@ -46,7 +46,8 @@ def forecast(asked: Asked, ladder: Ladder, *, quick: bool = False) -> float:
     total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.configurations) + 2)
     if asked.scene.case.stiffness.face_positions is not None and asked.gear:
         gear = asked.scene.gears[asked.gear]
-        total += (_QUICK_SOLIDS if quick else _SOLIDS) * seconds_of_solid_gear(SolidSettings(), gear.face_width / gear.module)
+        solids = _QUICK_SOLIDS if quick else _SOLIDS
+        total += solids * seconds_of_solid_gear(SolidSettings(), gear.face_width / gear.module)
     for configuration in [ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)]:
         if configuration.settings is not None:
             one = seconds_of_gear(configuration.settings)
@@ -103,8 +104,8 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
     found.remarks.extend(asked.notes)
     if quick:
         found.remarks.append(
-            f"Quick study: fewer configurations, and a coarser reference ({ladder.reference.label}), whose own error is "
-            "the floor of each quantity; without --quick both are finer."
+            f"Quick study: fewer configurations and a coarser reference ({ladder.reference.label}), whose own error is "
+            "the floor of each quantity. Without --quick both are finer."
         )
     if asked.over_face and (rings := internal_gears(asked)):
         found.remarks.append(
