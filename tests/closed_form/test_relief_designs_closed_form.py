@@ -318,12 +318,28 @@ def test_a_relief_deeper_than_the_tooth_is_refused_with_the_shortest_zone_that_d
         designed(share, load)
     words = str(refused.value)
     assert words.startswith(f"design.contact_ratio = {share:.6g}")
+    assert " um on the driven, " in words  # whose teeth are softer
     least = float(words.split("choose at least ")[1].split(" ", maxsplit=1)[0])
     length = float(words.split("(design.length ")[1].split(" mm", maxsplit=1)[0]) * 1e-3
     assert length == pytest.approx(least * engaged().pair.base_pitch, rel=1e-3)
     designed(least, load)
     with pytest.raises(RangeError, match="times what its tooth can take"):
         designed(least - 2e-3 if least > share + 2e-3 else share, load)
+
+
+def test_one_relief_that_is_too_deep_is_enough():
+    """A tenth of a module is 300 um: of the softer gear 6 for 4 um of the other."""
+    engagement = engaged()
+    pair = engagement.pair
+    loading = LoadingFunction(1.2 * pair.base_pitch, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end))
+    reliefs = [MinimumExcitationRelief(engagement.compliance, m, loading, 1.0) for m in ("driver", "driven")]
+    deepest = [float(one.at(np.linspace(pair.x_start, pair.x_end, 241)).max()) for one in reliefs]
+    load = 0.1 * MODULE / (0.5 * (deepest[0] + deepest[1]))
+    with pytest.raises(RangeError, match="times what its tooth can take") as refused:
+        designed(1.2, load)
+    depth = float(str(refused.value).split("on the driven, ")[1].split(" times")[0])
+    assert depth >= 1.0
+    assert deepest[1] * load > 0.1 * MODULE > deepest[0] * load
 
 
 def test_where_no_zone_does_the_largest_load_is_named():
