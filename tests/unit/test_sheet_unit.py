@@ -53,6 +53,7 @@ SEEN = Seen(DATA, SimpleNamespace(name="I", tolerance=1e-3), "I", DATA.loads, 1)
 def test_paths_lead_to_what_stands_there_and_end_at_none() -> None:
     assert SEEN.find("swing.x") is SWING.x
     assert SEEN.find("") is DATA
+    assert SEEN.find("parts.b.x") is DATA.parts["b"].x
     assert SEEN.find("nothing.anything.more") is None
     assert SEEN.find(lambda seen: seen.asked.tolerance) == 1e-3
     with pytest.raises(AttributeError):

@@ -11,8 +11,8 @@ import numpy as np
 from fegear.base.shown import declared
 from fegear.base.units import from_si
 
-#: Where something stands: a path of attributes ("found.load") from what is shown, or a function of all that is seen.
-#: A path that meets None ends there.
+#: Where something stands: a path of attributes and of names in mappings ("found.errors.load") from what is shown, or a
+#: function of all that is seen. A path that meets None ends there.
 Where: TypeAlias = "str | Callable[[Seen], Any]"
 #: A sentence or a word: a text with fields in braces (see `Seen.said`), or a function of all that is seen.
 Text: TypeAlias = "str | Callable[[Seen], str]"
@@ -54,7 +54,7 @@ class Seen:
         for attribute in where.split(".") if where else ():
             if found is None:
                 return None
-            found = getattr(found, attribute)
+            found = found[attribute] if isinstance(found, Mapping) else getattr(found, attribute)
         return found
 
     def said(self, text: Text) -> str:

@@ -40,8 +40,8 @@ class Sheet:
         seen, which give tables, values or figures.
     remarks : tuple of Remark or callable
         A function gives sentences.
-    settings : mapping of str to where
-        What it was computed with; a quantity that is None is left out.
+    settings : mapping of str to where, or callable
+        What it was computed with; a setting that is None is left out. A function gives all of them.
     of : callable, optional
         ``of(data, asked)`` -> what is shown in place of the data themselves.
     loads, nominal : where, optional
@@ -56,7 +56,7 @@ class Sheet:
     values: tuple[Number | str | Callable[[Seen], Iterable[Value]], ...] = ()
     figures: tuple[Chart | Callable[[Seen], Iterable[Figure | DeferredFigure]], ...] = ()
     remarks: tuple[Remark | Callable[[Seen], Iterable[str]], ...] = ()
-    settings: Mapping[str, Where] = field(default_factory=dict)
+    settings: Mapping[str, Where] | Callable[[Seen], Mapping[str, object]] = field(default_factory=dict)
     of: Callable[[Any, Any], Any] | None = None
     loads: Where | None = None
     nominal: Where | None = None
@@ -68,7 +68,8 @@ class Sheet:
         seen = Seen(data if self.of is None else self.of(data, asked), asked, self.name(asked))
         if self.loads is not None:
             seen = Seen(seen.data, asked, seen.name, seen.find(self.loads), seen.find(self.nominal or ""))
-        settings = {key: seen.find(where) for key, where in self.settings.items()}
+        given = self.settings
+        settings = given(seen) if callable(given) else {key: seen.find(where) for key, where in given.items()}
         return Outcome(
             data,
             tuple(table for one in self.tables for table in (one(seen) if callable(one) else one.tables(seen))),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,6 +63,14 @@ class StiffnessTable:
     c_self_reduction: Array = shown(
         "um.mm/N", "reduction of c_self by contact with a mating flank near the tip; not applied to c_self"
     )
+
+    @cached_property
+    def over_roll(self) -> StiffnessTable:
+        """The same in the order of the roll angle, root compression as a magnitude."""
+        order = np.argsort(self.roll_angle)
+        arrays = {one.name: getattr(self, one.name)[order] for one in fields(self) if one.metadata}
+        arrays["root_compression"] = -arrays["root_compression"]
+        return replace(self, errors={key: error[order] for key, error in self.errors.items()}, **arrays)
 
 
 def stiffness_table(

@@ -3,57 +3,81 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array, first_of_largest
+from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import DeferredFigure, Figure
-from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.figure import DeferredFigure
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.table import Column, Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import deformed_figure
 from fegear.results.gear.load_positions import chosen_gears
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
     from fegear.case.reading import Scene
+    from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.influence import Side
     from fegear.fem.plane.table import StiffnessTable
 
 #: Line load of the deformed gear's picture when the case names none [N/m].
 _USUAL_LINE_LOAD = 100e3
 #: Angle of the fillet's tangent with the tooth's centre line at which ISO 6336-3 looks [deg].
 _ISO_TANGENT = 30.0
+_SIDES: tuple[Side, ...] = ("tension", "compression")
 
 
-def _curve_columns(influence: GearInfluence, radius: float) -> tuple[Column, ...]:
-    m, at = influence.gear.module, np.array([radius])
-    fillets = [influence.fine.fillets[side] for side in ("tension", "compression")]
-    stress = {
-        k: np.concatenate([influence.fillet_stress(k, side, at)[:, 0] for side in ("tension", "compression")])
-        for k in (-1, 0, 1)
-    }
-    side = np.repeat(np.array(["tension", "compression"]), [fillet.arc.size for fillet in fillets])
+@dataclass(frozen=True)
+class FilletStress:
+    """Tangential stress along one fillet under a load on the tooth, and on its neighbours under the same load.
 
-    def both(attribute: str, scale: float) -> Array:
-        return np.concatenate([getattr(fillet, attribute) for fillet in fillets]) * scale
+    Parameters
+    ----------
+    arc, radius, angle, tangent_angle : ndarray, shape (P,)
+        [m], [m], [rad], [rad].
+    stress, stress_prev, stress_next : ndarray, shape (P,)
+        Per line load [1/m].
+    side : ndarray of str, shape (P,)
+    """
 
-    return (
-        Column("arc", both("arc", m), "mm", "arc length along the fillet from the root land"),
-        Column("side", side, "", "fillet below the loaded flank (tension) or the other one"),
-        Column("radius", both("radius", m), "mm", "distance from the gear's centre"),
-        Column("angle", both("angle", 1.0), "deg", "clockwise angle from the tooth's centre line"),
-        Column("tangent_angle", both("tangent_angle", 1.0), "deg", "fillet tangent to tooth centre line"),
-        Column("stress", stress[0], "MPa.mm/N", "tangential stress per line load on the same tooth"),
-        Column("stress_prev", stress[-1], "MPa.mm/N", "the same on the tooth before the loaded one"),
-        Column("stress_next", stress[1], "MPa.mm/N", "the same on the tooth after the loaded one"),
+    arc: Array = shown("mm", "arc length along the fillet from the root land", label="arc length from the root land")
+    radius: Array = shown("mm", "distance from the gear's centre")
+    angle: Array = shown("deg", "clockwise angle from the tooth's centre line")
+    tangent_angle: Array = shown("deg", "fillet tangent to tooth centre line")
+    stress: Array = shown(
+        "MPa.mm/N", "tangential stress per line load on the same tooth", label="tangential stress per line load"
     )
+    stress_prev: Array = shown("MPa.mm/N", "the same on the tooth before the loaded one")
+    stress_next: Array = shown("MPa.mm/N", "the same on the tooth after the loaded one")
+    side: NDArray[np.str_] = shown("", "fillet below the loaded flank (tension) or the other one")
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """Zero stress, and where ISO 6336-3 looks."""
+        tangent, arc, iso = np.rad2deg(self.tangent_angle), self.arc * 1e3, _ISO_TANGENT
+        inside = tangent.min() < iso < tangent.max()
+        at = (Mark("x", float(np.interp(-iso, -tangent, arc)), "30° tangent"),) if inside else ()
+        return (Mark("y", 0.0), *at)
+
+
+def _fillet_stress(influence: GearInfluence, side: Side, radius: float) -> FilletStress:
+    fillet, m, at = influence.fine.fillets[side], influence.gear.module, np.array([radius])
+    own, before, after = (influence.fillet_stress(k, side, at)[:, 0] for k in (0, -1, 1))
+    name = np.repeat(np.array([side]), fillet.arc.size)
+    angle, tangent = np.asarray(fillet.angle), np.asarray(fillet.tangent_angle)
+    return FilletStress(fillet.arc * m, fillet.radius * m, angle, tangent, own, before, after, name)
 
 
 @dataclass(frozen=True)
@@ -68,7 +92,12 @@ class FilletCurves:
     """
 
     table: StiffnessTable
-    radius: float
+    radius: float = shown("mm", "radius of the contact")
+
+    @cached_property
+    def sides(self) -> dict[Side, FilletStress]:
+        """By fillet."""
+        return {side: _fillet_stress(self.table.influence, side, self.radius) for side in _SIDES}
 
 
 @dataclass(frozen=True)
@@ -89,44 +118,42 @@ def _worst_load(_asked: FilletInputs, upstream: Upstream, _work: Work) -> Fillet
     return FilletCurves(table, float(table.radius[int(first_of_largest(table.root_tension))]))
 
 
-def _present_curves(found: FilletCurves, asked: FilletInputs) -> Outcome:
-    name, radius = asked.name, found.radius
-    title = f"Root stress along the fillets of gear {name}, load at radius {radius * 1e3:.6g} mm"
-    influence = found.table.influence
-    table = Table(f"root_stress_{name}", _curve_columns(influence, radius), title)
-    figures: tuple[Figure | DeferredFigure, ...] = (
-        _fillet_figure(name, radius, table),
-        DeferredFigure(
-            f"deformed_{name}", f"Deformed gear {name}", partial(deformed_figure, name, influence, asked.line_load)
+def _deformed(seen: Seen) -> Iterator[DeferredFigure]:
+    """The gear as its load bends it."""
+    name, draw = seen.name, partial(deformed_figure, seen.name, seen.data.table.influence, seen.asked.line_load)
+    yield DeferredFigure(f"deformed_{name}", f"Deformed gear {name}", draw)
+
+
+def _panel(side: Side, title: str) -> Over:
+    lines = (("stress", "loaded tooth"), ("stress_next", "next tooth"), ("stress_prev", "previous tooth"))
+    return Over(
+        "arc",
+        tuple(
+            Line(key, role, role, of=lambda seen: seen.data.sides[side], look={"markers": False}) for key, role in lines
         ),
+        marks=lambda seen: seen.data.sides[side].marks,
+        title=title,
     )
-    return Outcome(found, (table,), figures=figures)
 
 
-def _fillet_figure(name: str, radius: float, table: Table) -> Figure:
-    panels = []
-    columns = {column.name: column.values for column in table.columns}
-    for side, title in (("tension", "Fillet below the loaded flank"), ("compression", "Fillet of the other flank")):
-        here = columns["side"] == side
-        arc, tangent = (np.asarray(columns[key][here], dtype=float) for key in ("arc", "tangent_angle"))
-        marks = [Mark("y", 0.0)]
-        if tangent.min() < _ISO_TANGENT < tangent.max():
-            marks.append(Mark("x", float(np.interp(-_ISO_TANGENT, -tangent, arc)), "30° tangent"))
-        curves = tuple(
-            Curve(arc, np.asarray(columns[key][here], dtype=float), role, role, markers=False)
-            for key, role in (
-                ("stress", "loaded tooth"), ("stress_next", "next tooth"), ("stress_prev", "previous tooth")
-            )
-        )  # fmt: skip
-        axes = Axis("arc length from the root land", "mm"), Axis("tangential stress per line load", "MPa.mm/N")
-        panels.append(Panel(*axes, curves, tuple(marks), title))
-    return Figure(
-        f"fillet_{name}",
-        f"Stress along the fillets of gear {name}",
-        f"Gear {name}: tangential stress along both fillets with the load at radius {radius * 1e3:.6g} mm.",
-        tuple(panels),
-        columns=2,
-    )
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "root_stress_{name}", "Root stress along the fillets of gear {name}, load at radius {d.radius:.6g}",
+            ("arc", "side", "radius", "angle", "tangent_angle", "stress", "stress_prev", "stress_next"),
+            stacked="sides",
+        ),
+    ),
+    figures=(
+        Chart(
+            "fillet_{name}", "Stress along the fillets of gear {name}",
+            "Gear {name}: tangential stress along both fillets with the load at radius {d.radius:.6g}.",
+            (_panel("tension", "Fillet below the loaded flank"), _panel("compression", "Fillet of the other flank")),
+            of="sides.tension", columns=2,
+        ),
+        _deformed,
+    ),
+)  # fmt: skip
 
 
 ROOT_STRESS = Stage(
@@ -134,7 +161,7 @@ ROOT_STRESS = Stage(
     needs=lambda _scene, name: (Task("stiffness", name),),
     inputs=FilletInputs.of,
     compute=_worst_load,
-    present=_present_curves,
+    present=_SHEET.present,
     cites=citing(*RING, Citation("iso-6336-3", "the 30 degree tangent that the place is compared with", "clause 6")),
     forecast=lambda _scene, _name: Forecast({}, 0.01),
     internal=True,

@@ -15,23 +15,26 @@ from fegear.base.errors import InputError
 from fegear.base.shown import declared
 from fegear.case.built.solid_influence import check_source
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, repeated, tiled, value_of
+from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import DeferredFigure, Figure, SolidMeshField
 from fegear.engine.figure.items import Curve, HeatMap, Skin
 from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Table
-from fegear.engine.value import Value
 from fegear.results.forecasts import RING
 from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, stiffness_inputs
 from fegear.results.gear.solved_gear import needs_solid_solution
-from fegear.results.gear.stiffness import compliance_errors, tolerance_remarks
-from fegear.results.gear.teeth_over_holes import teeth_over_holes
+from fegear.results.gear.stiffness import COMPLIANCE_ERRORS, tolerance_remarks
+from fegear.results.gear.teeth_over_holes import HOLES_FIGURE, HOLES_TABLE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.reading import Scene
+    from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.field import SolidField
     from fegear.fem.solid.table import SolidTable
@@ -46,49 +49,54 @@ _SECONDS_PER_BAND, _SECONDS_OF_TABLE = 5e-3, 0.1
 _USUAL_FORCE = 1e3
 
 
-_SIDES: tuple[tuple[Side, str], ...] = (
-    ("tension", "largest tangential stress of the fillet below the loaded flank, anywhere along the face"),
-    ("compression", "most negative tangential stress of the other fillet, anywhere along the face"),
-)
+_SIDES: dict[Side, str] = {
+    "tension": "largest tangential stress of the fillet below the loaded flank, anywhere along the face",
+    "compression": "most negative tangential stress of the other fillet, anywhere along the face",
+}
 
 
-def _table(name: str, t: SolidTable) -> Table:
-    rows, places = t.c_self.shape
-    columns = [
-        *repeated(columns_of(t, "radius", "roll_angle"), places),
-        *tiled(columns_of(t, "position"), rows),
-        *(column_of(t, key, getattr(t, key).ravel()) for key in ("c_self", "c_prev", "c_next")),
-        *repeated(columns_of(t, "half_width", "pressed_half_width"), places),
-        *tiled(columns_of(t, "before", "after"), rows),
-    ]
-    errors = [*compliance_errors(t)]
-    for side, meaning in _SIDES:
-        found = t.root[side]
-        root = column_of(found, "value", found.value.ravel(), name=f"root_{side}", meaning=meaning)
-        columns.append(root)
-        columns += [
-            column_of(found, key, getattr(found, key).ravel(), name=f"root_{side}_{key}")
-            for key in ("position", "radius", "axial", "shear")
-        ]
-        errors.append(error_column(root, t.errors[root.name].ravel()))
-    title = f"Compliance and root stress of gear {name} over its face, per force on a band"
-    return Table(f"stiffness_over_face_{name}", (*columns, *errors), title)
+def _over_positions(key: str) -> Cell:
+    """A quantity that is known for each radius, in every row of it."""
+    return Cell(key, si=lambda seen: np.repeat(getattr(seen.data, key), seen.data.position.size))
 
 
-def _values(name: str, t: SolidTable) -> tuple[Value, ...]:
-    found = []
-    for key, owner, attribute, error, sign in (
-        ("largest_band_c_self", t, "c_self", "c_self", 1.0),
-        ("smallest_band_c_self", t, "c_self", "c_self", -1.0),
-        ("largest_band_root_tension", t.root["tension"], "value", "root_tension", 1.0),
-        ("largest_band_root_compression", t.root["compression"], "value", "root_compression", -1.0),
-    ):
-        values = getattr(owner, attribute)
+def _over_radii(key: str) -> Cell:
+    """A quantity that is known for each face position, in every row of it."""
+    return Cell(key, si=lambda seen: np.tile(getattr(seen.data, key), seen.data.radius.size))
+
+
+def _flat(key: str) -> Cell:
+    """A quantity of every band."""
+    return Cell(key, si=lambda seen: getattr(seen.data, key).ravel())
+
+
+def _root(side: Side, key: str, name: str, meaning: str = "") -> Cell:
+    return Cell(
+        key, of=f"root.{side}", si=lambda seen: getattr(seen.data.root[side], key).ravel(), name=name, meaning=meaning
+    )
+
+
+def _root_error(side: Side) -> Off:
+    key = f"root_{side}"
+    return Off("value", lambda seen: seen.data.errors[key].ravel(), of=f"root.{side}", name=key)
+
+
+def _extreme(name: str, of: str, quantity: str, error: str, sign: float) -> Number:
+    """The largest value of a quantity over all bands, or the smallest."""
+
+    def at(seen: Seen) -> tuple[int, int]:
+        values = getattr(seen.find(of), quantity)
         i, j = np.unravel_index(int(first_of_largest(sign * values)), values.shape)
-        where = f"per force on a band at radius {t.radius[i] * 1e3:.6g} mm, face position {t.position[j] * 1e3:.6g} mm"
-        off = float(t.errors[error][i, j])
-        found.append(value_of(owner, attribute, name, off, si=values[i, j], name=key, meaning=where))
-    return tuple(found)
+        return int(i), int(j)
+
+    def where(seen: Seen) -> str:
+        (i, j), t = at(seen), seen.data
+        return f"per force on a band at radius {t.radius[i] * 1e3:.6g} mm, face position {t.position[j] * 1e3:.6g} mm"
+
+    return Number(
+        quantity, lambda seen: seen.data.errors[error][at(seen)], of,
+        si=lambda seen: getattr(seen.find(of), quantity)[at(seen)], name=name, meaning=where,
+    )  # fmt: skip
 
 
 def _compute(asked: StiffnessInputs, upstream: Upstream, _work: Work) -> SolidTable:
@@ -99,42 +107,27 @@ def _compute(asked: StiffnessInputs, upstream: Upstream, _work: Work) -> SolidTa
     return solid_table(asked.gear, influence, asked.radii, places, asked.half_widths)
 
 
-def _present(table: SolidTable, asked: StiffnessInputs) -> Outcome:
-    name, m = asked.name, asked.gear.module
-    reach = float(max(table.before.max(), table.after.max())) * 1e3
-    width = f"{table.pressed_half_width.min() * 1e3:.4g} to {table.pressed_half_width.max() * 1e3:.4g}"
-    bands = (
-        f"Gear {name} over its face: each force presses on a band of the contact line, falling linearly along the face "
-        f"over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
+def _bands(seen: Seen) -> str:
+    """Say what a band is, and what is known of it."""
+    t: SolidTable = seen.data
+    reach = float(max(t.before.max(), t.after.max())) * 1e3
+    width = f"{t.pressed_half_width.min() * 1e3:.4g} to {t.pressed_half_width.max() * 1e3:.4g}"
+    return (
+        f"Gear {seen.name} over its face: each force presses on a band of the contact line, falling linearly along the "
+        f"face over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
         f"half-width; neighbours and root stress are for a pressure of {width} mm half-width up the flank."
     )
-    holes = None if asked.gear.body is None else asked.gear.body.holes
-    tables, figures = teeth_over_holes(name, table.influence.fine, None if holes is None else holes.tooth)
-    return Outcome(
-        table,
-        (_table(name, table), *tables),
-        _values(name, table),
-        remarks=(bands, *_sliced(table, asked), *_missed(table, asked), *asked.assumed),
-        figures=(*solid_figures(name, asked.gear, table, _USUAL_FORCE * m / 1e-3), *figures),
-    )
 
 
-def _sliced(table: SolidTable, asked: StiffnessInputs) -> tuple[str, ...]:
-    """Say what slices are."""
-    if table.influence.settings.source == "solid":
-        return ()
-    said = "coupled slices of its plane section are used instead of the solid; errors are their largest on solid gears"
-    return (f"Gear {asked.name} over its face: {said}.",)
-
-
-def _missed(t: SolidTable, asked: StiffnessInputs) -> list[str]:
+def _missed(seen: Seen) -> list[str]:
     """Say where the tolerance is missed."""
+    t: SolidTable = seen.data
     values = {"c_self": t.c_self, **{f"root_{side}": found.value for side, found in t.root.items()}}
     relative = {label: np.abs(t.errors[label] / value).max(axis=1) for label, value in values.items()}
-    who = f"Gear {asked.name} over its face"
+    who = f"Gear {seen.name} over its face"
     return [
         remark for label, one in relative.items()
-        for remark in tolerance_remarks(who, label, one, t.radius, asked.tolerance, "radii")
+        for remark in tolerance_remarks(who, label, one, t.radius, seen.asked.tolerance, "radii")
     ]  # fmt: skip
 
 
@@ -182,11 +175,11 @@ _TOP = 99.0
 _LAYERS, _MOST_LAYERS = 3.0, 60
 
 
-def solid_figures(name: str, gear: Gear, t: SolidTable, force: float) -> tuple[Figure | DeferredFigure, ...]:
-    """Describe all figures of a solid gear's table; `force` [N] is that of the deformed tooth."""
-    title = f"Deformed tooth of gear {name}"
-    deformed = DeferredFigure(f"deformed_tooth_{name}", title, partial(deformed_tooth, name, gear, t, force))
-    return (*((_map(name, t),) if min(t.c_self.shape) > 1 else ()), _along(name, t), deformed)
+def _deformed(seen: Seen) -> Iterator[DeferredFigure]:
+    """The tooth as a usual force bends it."""
+    name, gear = seen.name, seen.asked.gear
+    draw = partial(deformed_tooth, name, gear, seen.data, _USUAL_FORCE * gear.module / 1e-3)
+    yield DeferredFigure(f"deformed_tooth_{name}", f"Deformed tooth of gear {name}", draw)
 
 
 def worst_band(t: SolidTable) -> tuple[int, int]:
@@ -200,8 +193,11 @@ def worst_band(t: SolidTable) -> tuple[int, int]:
     return int(i), int(j)
 
 
-def _map(name: str, t: SolidTable) -> Figure:
+def _map(seen: Seen) -> Iterator[Figure]:
     """c_self and the largest root tension over the flank."""
+    name, t = seen.name, seen.data
+    if min(t.c_self.shape) < 2:
+        return
     x, y = axis_of(t, "position"), axis_of(t, "roll_angle")
     order, sequence = np.argsort(t.roll_angle), np.argsort(t.position)
     at = drawn(t, "position")[sequence], drawn(t, "roll_angle")[order]
@@ -211,7 +207,7 @@ def _map(name: str, t: SolidTable) -> Figure:
         return Panel(x, y, (HeatMap(*at, values, label, unit),), title=label)
 
     worst = float(np.max(t.errors["c_self"] / t.c_self))
-    return Figure(
+    yield Figure(
         f"flank_{name}",
         f"Flank of gear {name}",
         f"Gear {name}, per force on a band: approach of the contact, and the largest tension that it causes in the "
@@ -221,8 +217,9 @@ def _map(name: str, t: SolidTable) -> Figure:
     )
 
 
-def _along(name: str, t: SolidTable) -> Figure:
+def _along(seen: Seen) -> Iterator[Figure]:
     """Largest stress up each fillet along the face, at the radius of the largest tension."""
+    name, t = seen.name, seen.data
     row, _ = worst_band(t)
     count = t.position.size
     chosen = np.unique(np.round(np.linspace(0, count - 1, min(count, _MOST_CURVES))).astype(int))
@@ -231,7 +228,7 @@ def _along(name: str, t: SolidTable) -> Figure:
         ("tension", 1.0, "Fillet below the loaded flank", "largest tension up the fillet"),
         ("compression", -1.0, "Fillet of the other flank", "largest compression (magnitude)"),
     ):
-        found = t.root[side]  # type: ignore[index]
+        found = t.root[side]
         places, along = drawn(found, "places"), sign * drawn(found, "along")[row]
         curves = tuple(
             Curve(places, along[j], f"band at {t.position[j] * 1e3:.4g} mm",
@@ -240,7 +237,7 @@ def _along(name: str, t: SolidTable) -> Figure:
         )  # fmt: skip
         axes = axis_of(found, "places"), axis_of(found, "along", label, zero=True)
         panels.append(Panel(*axes, curves, title=title))
-    return Figure(
+    yield Figure(
         f"root_stress_over_face_{name}",
         f"Root stress of gear {name} along its face",
         f"Gear {name}: largest tangential stress up each fillet along the face, per force on bands at radius "
@@ -314,12 +311,52 @@ def _skin(field: SolidField) -> Index:
     return np.hstack([*(np.stack(strip) for strip in strips), *ends])
 
 
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "stiffness_over_face_{name}",
+            "Compliance and root stress of gear {name} over its face, per force on a band",
+            (
+                *map(_over_positions, ("radius", "roll_angle")), _over_radii("position"),
+                *map(_flat, ("c_self", "c_prev", "c_next")),
+                *map(_over_positions, ("half_width", "pressed_half_width")), *map(_over_radii, ("before", "after")),
+                *(
+                    _root(side, key, f"root_{side}" + ("" if key == "value" else f"_{key}"),
+                          meaning if key == "value" else "")
+                    for side, meaning in _SIDES.items() for key in ("value", "position", "radius", "axial", "shear")
+                ),
+                *COMPLIANCE_ERRORS,
+                *map(_root_error, _SIDES),
+            ),
+        ),
+        HOLES_TABLE,
+    ),
+    values=(
+        _extreme("largest_band_c_self", "", "c_self", "c_self", 1.0),
+        _extreme("smallest_band_c_self", "", "c_self", "c_self", -1.0),
+        _extreme("largest_band_root_tension", "root.tension", "value", "root_tension", 1.0),
+        _extreme("largest_band_root_compression", "root.compression", "value", "root_compression", -1.0),
+    ),
+    figures=(_map, _along, _deformed, HOLES_FIGURE),
+    remarks=(
+        Remark(_bands),
+        Remark(
+            "Gear {name} over its face: coupled slices of its plane section are used instead of the solid; errors are "
+            "their largest on solid gears.",
+            when=lambda seen: seen.data.influence.settings.source != "solid",
+        ),
+        _missed,
+        lambda seen: seen.asked.assumed,
+    ),
+)  # fmt: skip
+
+
 SOLID_STIFFNESS = Stage(
     subjects=_subjects,
     needs=lambda _scene, name: needs_solid_solution(name),
     inputs=stiffness_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(*RING, Citation("iso-21771", "the transverse section, turned along the face")),
     forecast=_forecast,

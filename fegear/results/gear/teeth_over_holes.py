@@ -2,53 +2,91 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown, shows
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.table import Column, Table
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.rows import Every, Rows
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.engine.sheet.seen import Seen
     from fegear.fem.solid.solution import SolidSolution
 
-_COLUMNS = {
-    "deflection": "deflection of a band at half height in the middle of the face, over its mean over all teeth",
-    "root_tension": "largest root tension under it along the face, over its mean over all teeth",
-    "root_compression": "largest root compression under it along the face, over its mean over all teeth",
-}
 
+@dataclass(frozen=True)
+class TeethOverHoles:
+    """What each tooth does under the same load, over the mean of all, shape (T,)."""
 
-def teeth_over_holes(
-    name: str, solution: SolidSolution, tooth: int | None = None
-) -> tuple[tuple[Table, ...], tuple[Figure, ...]]:
-    """What teeth over holes depart from their mean; nothing where all are alike.
-
-    `tooth` is the one that pairs take for all, if they do not take the mean.
-    """
-    if (
-        solution.body is None
-        or solution.body.holes is None
-        or solution.uneven is None
-        or solution.uneven.deflection.size == 1
-    ):
-        return (), ()
-    teeth = np.arange(solution.uneven.deflection.size)
-    shares = {key: getattr(solution.uneven, key) / getattr(solution.uneven, key).mean() for key in _COLUMNS}
-    columns = [Column(key, share, "", _COLUMNS[key]) for key, share in shares.items()]
-    title = f"Teeth of gear {name} over the holes of its web, each under the same load"
-    table = Table(f"teeth_over_holes_{name}", (Column("tooth", teeth, "", "clockwise from tooth 0"), *columns), title)
-    curves = tuple(
-        Curve(teeth, 100.0 * (share - 1.0), key.replace("_", " "), f"series:{i}")
-        for i, (key, share) in enumerate(shares.items())
+    tooth: NDArray[np.int64] = shown("", "clockwise from tooth 0", label="tooth", table="teeth")
+    deflection: Array = shown(
+        "", "deflection of a band at half height in the middle of the face, over its mean over all teeth", table="teeth"
     )
+    root_tension: Array = shown(
+        "", "largest root tension under it along the face, over its mean over all teeth", table="teeth"
+    )
+    root_compression: Array = shown(
+        "", "largest root compression under it along the face, over its mean over all teeth", table="teeth"
+    )
+
+    @property
+    @shows("", "off the mean, in %")
+    def deflection_off(self) -> Array:
+        """[%]."""
+        return 100.0 * (self.deflection - 1.0)
+
+    @property
+    @shows("", "off the mean, in %")
+    def root_tension_off(self) -> Array:
+        """[%]."""
+        return 100.0 * (self.root_tension - 1.0)
+
+    @property
+    @shows("", "off the mean, in %")
+    def root_compression_off(self) -> Array:
+        """[%]."""
+        return 100.0 * (self.root_compression - 1.0)
+
+
+def _uneven(seen: Seen) -> TeethOverHoles | None:
+    """Nothing where all teeth are alike."""
+    solution: SolidSolution = seen.data.influence.fine
+    found = solution.uneven
+    if solution.body is None or solution.body.holes is None or found is None or found.deflection.size == 1:
+        return None
+    shares = (one / one.mean() for one in (found.deflection, found.root_tension, found.root_compression))
+    return TeethOverHoles(np.arange(found.deflection.size), *shares)
+
+
+def _caption(seen: Seen) -> str:
+    tooth = seen.asked.gear.body.holes.tooth
     taken = "the mean" if tooth is None else f"tooth {tooth} for all"
-    figure = Figure(
-        f"teeth_over_holes_{name}", title,
-        f"Gear {name}: each tooth loaded at half height in the middle of the face; pairs take {taken}.",
-        (Panel(Axis("tooth", whole=True), Axis("off the mean", "%"), curves),),
-    )  # fmt: skip
-    return (table,), (figure,)
+    return f"Gear {seen.name}: each tooth loaded at half height in the middle of the face; pairs take {taken}."
+
+
+_TITLE = "Teeth of gear {name} over the holes of its web, each under the same load"
+#: Of a result whose data have the `SolidInfluence` of a gear as ``influence``.
+HOLES_TABLE = Rows("teeth_over_holes_{name}", _TITLE, (Every("teeth"),), of=_uneven)
+HOLES_FIGURE = Chart(
+    "teeth_over_holes_{name}",
+    _TITLE,
+    _caption,
+    (
+        Over(
+            "tooth",
+            tuple(
+                Line(f"{key}_off", key.replace("_", " "), f"series:{i}")
+                for i, key in enumerate(("deflection", "root_tension", "root_compression"))
+            ),
+            Axis("off the mean", "%"),
+            x_options={"whole": True},
+        ),
+    ),
+    of=_uneven,
+)
