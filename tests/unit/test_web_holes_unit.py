@@ -11,12 +11,13 @@ import pytest
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.built.solid_influence import solid_support_remarks
 from fegear.case.reading import build_scene
+from fegear.engine.sheet.seen import Seen
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.mass import mass_properties
 from fegear.geometry.tooth import Tooth
 from fegear.output.solid_mesh_files import pressed_gear
 from fegear.results.gear import body_modes
-from fegear.results.gear.teeth_over_holes import teeth_over_holes
+from fegear.results.gear.teeth_over_holes import HOLES_FIGURE, HOLES_TABLE
 
 HOLES = {"count": 5, "circle_diameter": "27 mm", "diameter": "6 mm"}
 
@@ -97,7 +98,11 @@ def test_the_figure_of_the_teeth_says_what_pairs_take():
     uneven = SimpleNamespace(deflection=each, root_tension=each, root_compression=-each)
     solution = SimpleNamespace(body=SimpleNamespace(holes=WebHoles(1, 3.0, 0.5)), uneven=uneven, support=None)
     for tooth, words in ((None, "pairs take the mean."), (2, "pairs take tooth 2 for all.")):
-        _, (figure,) = teeth_over_holes("a", solution, tooth)
+        asked = SimpleNamespace(gear=SimpleNamespace(body=SimpleNamespace(holes=SimpleNamespace(tooth=tooth))))
+        seen = Seen(SimpleNamespace(influence=SimpleNamespace(fine=solution)), asked, "a")
+        (figure,), (table,) = HOLES_FIGURE.figures(seen), HOLES_TABLE.tables(seen)
         assert figure.caption.endswith(words)
+        np.testing.assert_allclose(table["deflection"], each / each.mean())
+        np.testing.assert_allclose(figure.panels[0].items[0].y, 100.0 * (each / each.mean() - 1.0))
     (remark,) = solid_support_remarks("a", SimpleNamespace(fine=solution), 2)
     assert remark.startswith("Gear a: over the hole of its web 3 teeth in a row differ.")
