@@ -10,8 +10,9 @@ import pytest
 
 from fegear.base.shown import shown, shows
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import Bars, Curve, Stems
-from fegear.engine.sheet.chart import LOADS, Chart, Family, Line, Over
+from fegear.engine.figure.items import Bars, Curve, HeatMap, Stems
+from fegear.engine.sheet.chart import LOADS, Bundle, Chart, Family, Line, Map, Over
+from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
 from fegear.engine.sheet.seen import Seen
@@ -65,6 +66,7 @@ def test_paths_lead_to_what_stands_there_and_end_at_none() -> None:
     [
         ("Pair {name}: no field", "Pair I: no field"),
         ("at {load:.5g} N", "at 200 N"),
+        ("{d.swing.largest:.3g!} um", "6 um"),
         ("{d.swing.largest:.3g} at most", "6 µm at most"),  # of the nominal load, in its unit
         ("{d.swing.word} teeth", "stiff teeth"),
         ("within {asked.tolerance:.0e}", "within 1e-03"),
@@ -173,6 +175,81 @@ def test_a_chart_draws_families_bars_and_bands() -> None:
     assert isinstance(bars, Bars)
     np.testing.assert_allclose(bars.y, [2.0])
     assert third.y.label == "how far"
+
+
+@dataclass(frozen=True)
+class Field:
+    """A number over a grid, beside what it is compared with."""
+
+    x: np.ndarray = shown("mm", "along")
+    z: np.ndarray = shown("mm", "across")
+    heat: np.ndarray | None = shown("um", "removal")
+    mean: float = shown("um", "mean")
+
+
+FIELD = Field(np.array([0.0, 1e-3, 2e-3]), np.array([0.0, 1e-3]), np.arange(6.0).reshape(2, 3) * 1e-6, 2.5e-6)
+
+
+def test_a_path_leads_to_a_quantity() -> None:
+    off = Off("swing.deflection", "swing.off")
+    (table,) = Rows("t", "T", ("swing.x", Cell("swing.deflection", name="sag"), off, "swing.lacking")).tables(SEEN)
+    assert table.keys() == ("x", "sag", "deflection_error")
+    np.testing.assert_allclose(table["sag"], [2.0, 6.0])
+    several = Rows("t", "T", ("swing.word",), of=lambda seen: [seen.data, seen.data])
+    assert next(iter(several.tables(SEEN)))["word"].tolist() == ["stiff", "stiff"]
+
+
+def test_maps_level_lines_and_panels_for_each() -> None:
+    seen = Seen({"a": FIELD, "b": replace(FIELD, heat=None)}, name="I")
+    over = Over(
+        "x",
+        (
+            Map("heat", "z", limits=lambda seen: (0.0, 5e-6), centre=lambda seen: (1e-6, 1e-6), numbers=True),
+            Line("mean", "mean", look={"dash": "dash"}),
+            Line("mean", "ends", ends=True),
+        ),
+        each=lambda seen: seen.data, title="{key}",
+    )  # fmt: skip
+    (figure,) = Chart("f", "F", "C", (over,)).figures(seen)
+    first, second = figure.panels
+    assert (first.title, second.title) == ("a", "b")
+    heat, level, ends = first.items
+    assert isinstance(heat, HeatMap)
+    assert (heat.label, heat.unit, heat.limits, heat.centre, heat.numbers) == ("removal", "um", (0, 5), (1, 1), True)
+    np.testing.assert_allclose(heat.z, [[0, 1, 2], [3, 4, 5]])
+    np.testing.assert_allclose(heat.y, [0.0, 1.0])
+    assert isinstance(level, Curve)
+    assert isinstance(ends, Curve)
+    np.testing.assert_allclose(level.y, [2.5, 2.5, 2.5])
+    np.testing.assert_allclose((ends.x, ends.y), ([0.0, 2.0], [2.5, 2.5]))
+    assert (first.y.label, len(second.items)) == ("across", 2)  # what is None is not drawn
+    of = Over("x", ("mean",), each=lambda seen: [seen], of=lambda seen: seen.one.data["b"])
+    assert next(Chart("f", "F", "C", (of,)).figures(seen)).panels[0].y.label == "mean"
+
+
+def test_a_bundle_draws_all_lines_of_a_member_before_the_next() -> None:
+    lines = (Line("deflection", look={"dash": "dot"}), Line("largest", "{key}", ends=True))
+    chart = Chart("f", "F", "C", (Over("x", (Bundle(Family("parts", "no", "ramp"), lines),)),), of="swing")
+    (figure,) = chart.figures(replace(SEEN, loads=()))
+    items = figure.panels[0].items
+    assert [(one.name, one.dash, one.role) for one in items if isinstance(one, Curve)] == [
+        ("", "dot", "ramp:0.000"), ("a", "", "ramp:0.000"), ("", "dot", "ramp:1.000"), ("b", "", "ramp:1.000"),
+    ]  # fmt: skip
+    assert figure.panels[0].y.label == "deflection"
+
+
+def test_elements_are_repeated_together() -> None:
+    both = Each("parts", Number("largest", owner="{key}"), lambda seen: [seen.key], when=lambda seen: seen.key == "b")
+    value, key = both.values(SEEN)
+    assert (value.name, key) == ("b.largest", "b")
+    tables = Each("parts", Rows("x_{key}", "X", ("x",)), Rows("w_{key}", "W", ("deflection",)))
+    assert [table.name for table in tables.tables(SEEN)] == ["x_a", "w_a", "x_b", "w_b"]
+    figures = Each("parts", Chart("f_{key}", "F", "C", (Over("x", ("deflection",)),)))
+    assert [one.key for one in figures.figures(SEEN)] == ["f_a", "f_b"]
+    assert list(Each("parts", Remark("{key} swings.")).sentences(SEEN)) == ["a swings.", "b swings."]
+    assert list(Each("nothing", Remark("Never.")).sentences(SEEN)) == []
+    outcome = Sheet(tables=(tables,), remarks=(Each("parts", Remark("{key}.")),)).present(DATA, SEEN)
+    assert (len(outcome.tables), outcome.remarks) == (4, ("a.", "b."))
 
 
 def test_a_sheet_is_presented_in_its_order_and_lacks_what_is_not_there() -> None:

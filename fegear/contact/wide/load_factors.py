@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown
 from fegear.contact.wide.lines import ContactLines, long_line
 
 if TYPE_CHECKING:
@@ -40,9 +41,13 @@ _READ = 101
 class RootFactors:
     """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load, across the root [Pa]."""
 
-    face: float
-    transverse: float
-    largest: float
+    face: float = shown(
+        "", "largest root tension over that of each pair's share spread evenly along its line", name="K_Fbeta"
+    )
+    transverse: float = shown(
+        "", "largest root tension of shares spread evenly over that of perfect flanks", name="K_Falpha"
+    )
+    largest: float = shown("MPa", "largest root tension across the root")
 
 
 def transverse_load_factor(found: LoadedFlanks, perfect: LoadedFlanks) -> Array:

@@ -1,19 +1,32 @@
-"""Figures of a sheet: curves, bars and stems of declared quantities over one of them, a panel each."""
+"""Figures of a sheet: curves, bars, stems and maps of declared quantities over one of them, a panel each."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
 
+from fegear.base.shown import declared
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import MOST_CURVES, Bars, Curve, Item, Mark, Points, Stems, Zone, few, ramp
+from fegear.engine.figure.items import (
+    MOST_CURVES,
+    Bars,
+    Curve,
+    HeatMap,
+    Item,
+    Mark,
+    Points,
+    Stems,
+    Zone,
+    few,
+    ramp,
+)
 from fegear.engine.figure.panel import Panel
-from fegear.engine.sheet.seen import Seen, Text, Where
+from fegear.engine.sheet.seen import Seen, Text, Where, reach
 
 
 @dataclass(frozen=True)
@@ -44,11 +57,12 @@ LOADS: Literal["loads"] = "loads"
 
 @dataclass(frozen=True)
 class Line:
-    """A declared quantity drawn over another.
+    """A declared quantity drawn over another, each named by its attribute or by the path to it (``path.load``).
 
     Parameters
     ----------
     y : str
+        None there: no line. A single number is drawn level.
     label, role : text
         Of the legend and of the look; a family has its own.
     error : where, optional
@@ -66,6 +80,8 @@ class Line:
         Whether it is drawn.
     first : int, optional
         How many points are drawn at most, from the first.
+    ends : bool
+        Whether the first and the last point are joined only, as those of level lines.
     """
 
     y: str
@@ -79,11 +95,55 @@ class Line:
     look: dict[str, Any] = field(default_factory=dict)
     when: Where | None = None
     first: int | None = None
+    ends: bool = False
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Several lines for each member of a family, in the member's colour, with labels of their own."""
+
+    family: Family
+    lines: tuple[Line, ...]
+    when: Where | None = None
+
+
+@dataclass(frozen=True)
+class Map:
+    """A declared quantity over a grid of two others, as colours.
+
+    Parameters
+    ----------
+    z : str
+        Of shape (N, M) for N numbers of y and M of x; None there: no map.
+    y : str
+    x : str
+        Where it is not the panel's.
+    label : text
+        Of the colours; the declared one if empty.
+    of, when : where, optional
+        As those of a line.
+    limits : where, optional
+        Ends of the colours in SI, where they are not those of the numbers.
+    centre : where, optional
+        Neutral number and half the width of a scale of two colours, in SI.
+    numbers : bool
+        Whether every tile bears its number.
+    """
+
+    z: str
+    y: str
+    x: str = ""
+    label: Text = ""
+    of: Where | None = None
+    when: Where | None = None
+    limits: Where | None = None
+    centre: Where | None = None
+    numbers: bool = False
 
 
 @dataclass(frozen=True)
 class Over:
-    """One panel.
+    """One panel, or one for each of some objects.
 
     Parameters
     ----------
@@ -91,7 +151,7 @@ class Over:
         Abscissa: a quantity, or an axis of its own, whose numbers are those of the lines' `x`.
     y : str or Axis or function
         Ordinate: a quantity, that of the first line if empty.
-    lines : tuple of Line or str
+    lines : tuple of Line, Bundle, Map or str
     marks : where, optional
         Marks and zones across the panel.
     options : mapping
@@ -101,17 +161,22 @@ class Over:
     title : text
     panel : mapping
         Further options of the panel: ``height``, ``stacked``.
+    each, of : where, optional
+        Objects for each of which there is such a panel, and what declares the quantities where the chart's `of` does
+        not: by default the object itself.
     when : where, optional
     """
 
     x: str | Axis | Callable[[Seen], Axis]
-    lines: tuple[Line | str, ...]
+    lines: tuple[Line | Bundle | Map | str, ...]
     y: str | Axis | Callable[[Seen], Axis] = ""
     marks: Where | None = None
     options: dict[str, Any] = field(default_factory=dict)
     x_options: dict[str, Any] = field(default_factory=dict)
     title: Text = ""
     panel: dict[str, Any] = field(default_factory=dict)
+    each: Where | None = None
+    of: Where | None = None
     when: Where | None = None
 
 
@@ -149,7 +214,7 @@ class Chart:
             if not one.holds(self.when) or (owner := one.find(self.of)) is None:
                 continue
             under = _only_load(one) if self.under == LOADS else one.said(self.under)
-            panels = tuple(_panel(one, owner, over) for over in self.panels if one.holds(over.when))
+            panels = tuple(panel for over in self.panels if one.holds(over.when) for panel in _panels(one, owner, over))
             yield Figure(
                 one.said(self.name), one.said(self.title), one.said(self.caption), panels, columns=self.columns,
                 under=under,
@@ -161,13 +226,22 @@ def _only_load(seen: Seen) -> str:
     return f"{seen.loads[0]:.5g} N" if len(seen.loads) == 1 else ""
 
 
+def _panels(seen: Seen, owner: Any, over: Over) -> Iterator[Panel]:
+    for member in seen.each(over.each):
+        if over.of is not None:
+            yield _panel(member, member.find(over.of), over)
+        else:
+            yield _panel(member, owner if over.each is None else member.one, over)
+
+
 def _panel(seen: Seen, owner: Any, over: Over) -> Panel:
     lines = [Line(one) if isinstance(one, str) else one for one in over.lines]
     lines = [line for line in lines if seen.holds(line.when)]
     x = _axis(seen, owner, over.x, over.x_options)
-    y = _axis(seen, _owner(seen, owner, lines[0]), over.y or lines[0].y, over.options)
+    first = replace(lines[0].lines[0], each=lines[0].family) if isinstance(lines[0], Bundle) else lines[0]
+    y = _axis(seen, _owner(seen, owner, first), over.y or first.y, over.options)
     base = over.x if isinstance(over.x, str) else "x"
-    items = tuple(item for line in lines for item in _items(seen, owner, line, line.x or base))
+    items = tuple(item for line in lines for item in _items(seen, owner, line, base))
     marks: tuple[Mark | Zone, ...] = () if over.marks is None else tuple(seen.find(over.marks))
     return Panel(x, y, items, marks, seen.said(over.title), **over.panel)
 
@@ -175,32 +249,43 @@ def _panel(seen: Seen, owner: Any, over: Over) -> Panel:
 def _axis(seen: Seen, owner: Any, what: str | Axis | Callable[[Seen], Axis], options: dict[str, Any]) -> Axis:
     if isinstance(what, Axis):
         return what
-    return axis_of(owner, what, **options) if isinstance(what, str) else what(seen)
+    return axis_of(*reach(owner, what), **options) if isinstance(what, str) else what(seen)
 
 
-def _owner(seen: Seen, owner: Any, line: Line) -> Any:
+def _owner(seen: Seen, owner: Any, line: Line | Map) -> Any:
     """What declares a line's quantities: the first member of a family."""
-    if isinstance(line.each, Family):
+    if isinstance(line, Line) and isinstance(line.each, Family):
         first = next(iter(seen.each(line.each.of)))
         return first.one if line.of is None else first.find(line.of)
     return owner if line.of is None else seen.find(line.of)
 
 
-def _items(seen: Seen, owner: Any, line: Line, x: str) -> Iterator[Item]:
-    if line.each is None:
-        if (found := _owner(seen, owner, line)) is not None:
-            yield _item(seen, found, line, x, seen.said(line.label), seen.said(line.role), seen.nominal)
+def _items(seen: Seen, owner: Any, line: Line | Bundle | Map, base: str) -> Iterator[Item]:
+    if isinstance(line, Map):
+        if (found := _owner(seen, owner, line)) is not None and getattr(*reach(found, line.z)) is not None:
+            yield _map(seen, found, line, line.x or base)
+    elif isinstance(line, Bundle):
+        yield from _bundle(seen, line, base)
     elif isinstance(line.each, Family):
-        members = list(seen.each(line.each.of))
-        chosen = few(len(members), (0, len(members) - 1), line.each.most)
-        for k, role in zip(chosen, _roles(line.each.role, chosen), strict=True):
-            member = members[k]
-            found = member.one if line.of is None else member.find(line.of)
-            yield _item(member, found, line, x, member.said(line.label or line.each.label), role, seen.nominal)
+        yield from _bundle(seen, Bundle(line.each, (replace(line, label=line.label or line.each.label),)), base)
+    elif line.each is None:
+        if (found := _owner(seen, owner, line)) is not None and getattr(*reach(found, line.y)) is not None:
+            yield _item(seen, found, line, base, seen.said(line.label), seen.said(line.role), seen.nominal)
     else:
         found = _owner(seen, owner, line)
         for load, label, role in drawn_loads(seen):
-            yield _item(seen, found, line, x, label, role, load, banded=load == seen.nominal)
+            yield _item(seen, found, line, base, label, role, load, banded=load == seen.nominal)
+
+
+def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
+    """Lines of every member that is drawn."""
+    family, members = bundle.family, list(seen.each(bundle.family.of))
+    chosen = few(len(members), (0, len(members) - 1), family.most)
+    for k, role in zip(chosen, _roles(family.role, chosen), strict=True):
+        member = members[k]
+        for line in bundle.lines:
+            found = member.one if line.of is None else member.find(line.of)
+            yield _item(member, found, line, base, member.said(line.label), role, seen.nominal)
 
 
 def _roles(role: str, chosen: list[int]) -> list[str]:
@@ -218,14 +303,17 @@ def drawn_loads(seen: Seen) -> list[tuple[int, str, str]]:
 
 
 def _item(
-    seen: Seen, owner: Any, line: Line, x: str, label: str, role: str, load: int | None, *, banded: bool = True
+    seen: Seen, owner: Any, line: Line, base: str, label: str, role: str, load: int | None, *, banded: bool = True
 ) -> Item:  # fmt: skip
     """One curve, row of bars or of stems, in the units in which its quantities are read."""
-    upto = slice(line.first)
-    along, y = drawn(owner, x, load=load)[upto], drawn(owner, line.y, load=load)[upto]
+    upto, (of, quantity) = slice(line.first), reach(owner, line.y)
+    along, y = drawn(*reach(owner, line.x or base), load=load)[upto], drawn(of, quantity, load=load)
+    y = y[upto] if y.ndim else np.full(along.shape, y)
+    if line.ends:
+        along, y = along[[0, -1]], y[[0, -1]]
     error = None if line.error is None or not banded else seen.find(line.error)
     if error is not None:
-        error = drawn(owner, line.y, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
+        error = drawn(of, quantity, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
     if line.kind == "bars":
         return Bars(along, y, label, role, error)
     if line.kind == "stems":
@@ -233,3 +321,21 @@ def _item(
     if line.kind == "points":
         return Points(along, y, label, role, error=error, **line.look)
     return Curve(along, y, label, role, error, **line.look)
+
+
+def _map(seen: Seen, owner: Any, spec: Map, x: str) -> HeatMap:
+    """Colours over a grid, in the units in which its quantities are read."""
+    of, quantity = reach(owner, spec.z)
+    how = declared(of if isinstance(of, type) else type(of), quantity)
+
+    def pair(where: Where | None) -> tuple[float, float] | None:
+        if where is None:
+            return None
+        one, other = drawn(of, quantity, seen.find(where)).tolist()
+        return one, other
+
+    return HeatMap(
+        drawn(*reach(owner, x)), drawn(*reach(owner, spec.y)), drawn(of, quantity),
+        seen.said(spec.label) or how.label, how.unit, pair(spec.centre), spec.numbers,
+        pair(spec.limits),
+    )  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.shown import columns_declared
 from fegear.engine.declared import column_of, columns_on_grid, error_column, stacked
-from fegear.engine.sheet.seen import Seen, Text, Where
+from fegear.engine.sheet.seen import Seen, Text, Where, reach
 from fegear.engine.table import Column, Table
 
 
@@ -83,7 +83,7 @@ Columns = tuple[Every | Cell | Off | str, ...]
 
 @dataclass(frozen=True)
 class Rows:
-    """A table; a declared quantity is named by its attribute only.
+    """A table; a declared quantity is named by its attribute only, or by the path to it (``path.load``).
 
     Parameters
     ----------
@@ -186,32 +186,37 @@ def _cell(seen: Seen, owner: Any, spec: Cell, load: int | None) -> list[Column]:
     words: dict[str, Any] = {key: seen.said(getattr(spec, key)) for key in ("name", "meaning", "further")}
     if spec.si is not None:
         si = _under(seen.find(spec.si), load)
-        return [] if si is None else [column_of(_class(declares), spec.quantity, si, **words)]
+        return [] if si is None else [column_of(*_declares(declares, spec.quantity), si, **words)]
     return [_plain(declares, spec.quantity, load, **words)] if _has(declares, spec.quantity) else []
 
 
 def _off(seen: Seen, owner: Any, spec: Off, load: int | None) -> list[Column]:
     declares = owner if spec.of is None else seen.find(spec.of)
     if isinstance(owner, Sequence) and isinstance(spec.error, str):
-        errors: Any = [getattr(one, spec.error) for one in owner]
+        errors: Any = [getattr(*reach(one, spec.error)) for one in owner]
     else:
         errors = _under(seen.find(spec.error), load)
     if errors is None:
         return []
-    column = column_of(_class(declares), spec.quantity, errors, name=seen.said(spec.name))
+    column = column_of(*_declares(declares, spec.quantity), errors, name=seen.said(spec.name))
     return [error_column(column, errors, seen.said(spec.meaning))]
 
 
-def _plain(owner: Any, attribute: str, load: int | None, **words: Any) -> Column:
+def _plain(owner: Any, quantity: str, load: int | None, **words: Any) -> Column:
     if isinstance(owner, Sequence):
-        return column_of(type(owner[0]), attribute, [getattr(one, attribute) for one in owner], **words)
-    return column_of(owner, attribute, load=load, **words)
+        return column_of(*_declares(owner, quantity), [getattr(*reach(one, quantity)) for one in owner], **words)
+    return column_of(*reach(owner, quantity), load=load, **words)
 
 
-def _has(owner: Any, attribute: str) -> bool:
+def _has(owner: Any, quantity: str) -> bool:
     """Whether a result has a quantity: it is None where it lacks it."""
-    first = owner[0] if isinstance(owner, Sequence) else owner
-    return getattr(first, attribute) is not None
+    return getattr(*reach(owner[0] if isinstance(owner, Sequence) else owner, quantity)) is not None
+
+
+def _declares(owner: Any, quantity: str) -> tuple[type, str]:
+    """Class that declares a quantity of an object, of the first of several or of a class, and its attribute there."""
+    found, attribute = reach(owner[0] if isinstance(owner, Sequence) else owner, quantity)
+    return _class(found), attribute
 
 
 def _class(owner: Any) -> type:

@@ -62,7 +62,8 @@ class Seen:
 
         Fields are ``{name}``, ``{key}``, ``{load}`` (nominal, in N), ``{d.…}`` for the data, ``{one.…}`` for the
         object of this repetition and ``{asked.…}``. A declared quantity stands in its unit, which follows it:
-        ``{d.te_peak_to_peak:.3g}`` gives ``4.69 µm``; of several loads that of the nominal one is meant.
+        ``{d.te_peak_to_peak:.3g}`` gives ``4.69 µm``, ``{d.te_peak_to_peak:.3g!}`` the number only; of several loads
+        that of the nominal one is meant.
         """
         if not isinstance(text, str):
             return text(self)
@@ -93,6 +94,18 @@ class Seen:
             return True
         found = self.find(when)
         return bool(np.size(found)) if isinstance(found, np.ndarray) else bool(found)
+
+
+def reach(owner: Any, quantity: str) -> tuple[Any, str]:
+    """What declares a quantity, and its attribute there: ``path.load`` is ``load`` of ``owner.path``."""
+    *path, attribute = quantity.split(".")
+    for one in path:
+        owner = getattr(owner, one)
+    return owner, attribute
+
+
+#: Ends the format of a number without its unit.
+_ONLY = "!"
 
 
 class _Read:
@@ -127,4 +140,6 @@ class _Number:
 
     def __format__(self, spec: str) -> str:
         number = float(self._si) * (from_si(self._unit) if self._unit else 1.0)
+        if spec.endswith(_ONLY):
+            return format(number, spec.removesuffix(_ONLY))
         return f"{number:{spec}} {self._unit.replace('um', 'µm').replace('.', ' ')}".rstrip()

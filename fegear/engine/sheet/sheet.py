@@ -9,6 +9,7 @@ from typing import Any
 from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.outcome import Outcome
 from fegear.engine.sheet.chart import Chart
+from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import EveryLoad, Rows
 from fegear.engine.sheet.seen import Seen, Text, Where
@@ -36,8 +37,8 @@ class Sheet:
     Parameters
     ----------
     tables, values, figures : tuple
-        Elements (`Rows`, `EveryLoad`, `Number`, `Chart`), and for what no element can say functions of all that is
-        seen, which give tables, values or figures.
+        Elements (`Rows`, `EveryLoad`, `Number`, `Chart`, `Each` of them), and for what no element can say functions of
+        all that is seen, which give tables, values or figures.
     remarks : tuple of Remark or callable
         A function gives sentences.
     settings : mapping of str to where, or callable
@@ -52,10 +53,10 @@ class Sheet:
         As that of `Outcome`.
     """
 
-    tables: tuple[Rows | EveryLoad | Callable[[Seen], Iterable[Table]], ...] = ()
-    values: tuple[Number | str | Callable[[Seen], Iterable[Value]], ...] = ()
-    figures: tuple[Chart | Callable[[Seen], Iterable[Figure | DeferredFigure]], ...] = ()
-    remarks: tuple[Remark | Callable[[Seen], Iterable[str]], ...] = ()
+    tables: tuple[Rows | EveryLoad | Each | Callable[[Seen], Iterable[Table]], ...] = ()
+    values: tuple[Number | Each | str | Callable[[Seen], Iterable[Value]], ...] = ()
+    figures: tuple[Chart | Each | Callable[[Seen], Iterable[Figure | DeferredFigure]], ...] = ()
+    remarks: tuple[Remark | Each | Callable[[Seen], Iterable[str]], ...] = ()
     settings: Mapping[str, Where] | Callable[[Seen], Mapping[str, object]] = field(default_factory=dict)
     of: Callable[[Any, Any], Any] | None = None
     loads: Where | None = None
@@ -81,7 +82,7 @@ class Sheet:
         )
 
 
-def _values(one: Number | str | Callable[[Seen], Iterable[Value]], seen: Seen) -> Iterable[Value]:
+def _values(one: Number | Each | str | Callable[[Seen], Iterable[Value]], seen: Seen) -> Iterable[Value]:
     if isinstance(one, str):
         one = Number(one)
-    return one.values(seen) if isinstance(one, Number) else one(seen)
+    return one(seen) if callable(one) else one.values(seen)

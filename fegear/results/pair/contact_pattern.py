@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.error_over_pitch import ErrorOverPitch
+from fegear.base.arrays import Array
+from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import HeatMap, few
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import few
+from fegear.engine.sheet.chart import Chart, Map, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.load_distribution import flank_stage
 from fegear.results.pair.loaded_flanks import loaded_flanks
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.contact.wide.pair_history import ContactPattern
@@ -38,8 +36,8 @@ _LIGHT = 0.01
 class ContactPatternInputs:
     """What is read of the case besides the loaded flanks: the thickness of the coat [m]."""
 
-    coat: float = field(compare=False)
     name: str = field(compare=False)
+    coat: float = shown("um", "thickness of the coat", compare=False)
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ class ContactPatternData:
 
 
 def _inputs(scene: Scene, name: str) -> ContactPatternInputs:
-    return ContactPatternInputs(scene.case.load_distribution.coat, name)
+    return ContactPatternInputs(name, scene.case.load_distribution.coat)
 
 
 def _compute(inputs: ContactPatternInputs, upstream: Upstream, _work: Work) -> ContactPatternData:
@@ -73,57 +71,116 @@ def _compute(inputs: ContactPatternInputs, upstream: Upstream, _work: Work) -> C
     return ContactPatternData(loaded, loads, contact_pattern(found, loaded.gaps.at(found.pair, found.lines, loads)))
 
 
+@dataclass(frozen=True)
+class PrintedLoads:
+    """What the coat prints under every load: arrays of shape (L,), NaN where nothing is printed."""
+
+    load: Array = shown("N", "along the line of action")
+    printed_share: Array = shown("", "of the flank")
+    z_first: Array = shown("mm", "where the pattern begins along the face")
+    z_last: Array = shown("mm", "where it ends")
+    x_first: Array = shown("mm", "where it begins along the line of action")
+    x_last: Array = shown("mm", "where it ends")
+
+
+@dataclass(frozen=True)
+class PrintedFlank:
+    """The driver's flank under one load, over radius and face."""
+
+    load: float = shown("N", "along the line of action")
+    share: float = shown("", "of the flank that is printed")
+    z: Array = shown("mm", "face position z")
+    radius: Array = shown("mm", "radius on the driver")
+    separation: Array = shown("um", "separation")
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What a coat of marking compound shows of the loaded flanks."""
+
+    found: ContactPatternData
+    coat: float
+
+    @cached_property
+    def over_loads(self) -> PrintedLoads:
+        """Extent of the pattern under every load."""
+        pattern = self.found.pattern
+        printed = pattern.printed(self.coat)
+        z = np.array([_ends(pattern.z, one.any(axis=1)) for one in printed])
+        x = np.array([_ends(pattern.x, one.any(axis=0)) for one in printed])
+        return PrintedLoads(np.array(self.found.loads), pattern.printed_share(self.coat), *z.T, *x.T)
+
+    @property
+    def nominal_share(self) -> float:
+        """Of the flank, under the nominal load."""
+        return float(self.over_loads.printed_share[1 + self.found.loaded.at])
+
+    @property
+    def light(self) -> PrintedFlank:
+        """Under the light load."""
+        return self.drawn[0]
+
+    @cached_property
+    def drawn(self) -> list[PrintedFlank]:
+        """The flank under some loads, the light and the nominal one among them."""
+        pattern, loads = self.found.pattern, self.over_loads
+        radius = self.found.loaded.found.pair.radius(pattern.x, "driver")
+        return [
+            PrintedFlank(
+                loads.load[i], loads.printed_share[i], pattern.z, radius,
+                np.where(pattern.separation[i] < self.coat, pattern.separation[i], np.nan).T,
+            )
+            for i in few(loads.load.size, (0, 1 + self.found.loaded.at), _DRAWN)
+        ]  # fmt: skip
+
+
 def _ends(places: Array, printed: Array) -> tuple[float, float]:
     """First and last of the places at which anything is printed; NaN where nothing is."""
     on = places[printed]
     return (float(on[0]), float(on[-1])) if on.size else (np.nan, np.nan)
 
 
-def _present(data: ContactPatternData, inputs: ContactPatternInputs) -> Outcome:
-    name, pattern = inputs.name, data.pattern
-    printed, share = pattern.printed(inputs.coat), pattern.printed_share(inputs.coat)
-    z = np.array([_ends(pattern.z, one.any(axis=1)) for one in printed])
-    x = np.array([_ends(pattern.x, one.any(axis=0)) for one in printed])
-    columns = (
-        column_of(ErrorOverPitch, "total_load", data.loads, name="load"),
-        Column("printed_share", share, "", f"of the flank, by a coat of {inputs.coat * 1e6:.4g} um"),
-        Column("z_first", z[:, 0], "mm", "where the pattern begins along the face"),
-        Column("z_last", z[:, 1], "mm", "where it ends"),
-        Column("x_first", x[:, 0], "mm", "where it begins along the line of action"),
-        Column("x_last", x[:, 1], "mm", "where it ends"),
-    )
-    title = f"Contact pattern of pair {name} under every load"
-    meaning = f"of the flank that a coat of {inputs.coat * 1e6:.4g} um prints"
-    value = Value(f"{name}.printed_share", float(share[1 + data.loaded.at]), "", None, meaning)
-    table = Table(f"contact_pattern_{name}", columns, title)
-    return Outcome(data, (table,), (value,), {"coat": inputs.coat}, (), (_figure(inputs, data),))
-
-
-def _figure(inputs: ContactPatternInputs, data: ContactPatternData) -> Figure:
-    pattern, found, coat = data.pattern, data.loaded.found, inputs.coat
-    radius = found.pair.radius(pattern.x, "driver")
-    panels = []
-    for i in few(len(data.loads), (0, 1 + data.loaded.at), _DRAWN):
-        seen = np.where(pattern.separation[i] < coat, pattern.separation[i], np.nan).T * 1e6
-        share = float(pattern.printed_share(coat)[i])
-        heat = HeatMap(pattern.z * 1e3, radius * 1e3, seen, "separation", "um", limits=(0.0, coat * 1e6))
-        title = f"{data.loads[i]:.5g} N: {share:.0%} printed"
-        panels.append(Panel(Axis("face position z", "mm"), Axis("radius on the driver", "mm"), (heat,), title=title))
-    return Figure(
-        f"contact_pattern_{inputs.name}",
-        f"Contact pattern of pair {inputs.name}",
-        f"Pair {inputs.name}: the driver's flank where a coat of marking compound, {coat * 1e6:.4g} um thick, is "
-        "printed as the contact lines pass over it; blank where the flanks stay further apart. "
-        f"{data.loads[0]:.4g} N is about what a pair turned by hand bears.",
-        tuple(panels),
-        columns=2 if len(panels) > 1 else 1,
-    )
+_SHEET = Sheet(
+    of=lambda data, asked: Printed(data, asked.coat),
+    tables=(
+        Rows(
+            "contact_pattern_{name}", "Contact pattern of pair {name} under every load",
+            (
+                "load", Cell("printed_share", further=", by a coat of {asked.coat:.4g!} um"),
+                "z_first", "z_last", "x_first", "x_last",
+            ),
+            of="over_loads",
+        ),
+    ),
+    values=(
+        Number(
+            "printed_share", of="over_loads", si="nominal_share",
+            further=" that a coat of {asked.coat:.4g!} um prints",
+        ),
+    ),
+    figures=(
+        Chart(
+            "contact_pattern_{name}", "Contact pattern of pair {name}",
+            "Pair {name}: the driver's flank where a coat of marking compound, {asked.coat:.4g!} um thick, is printed "
+            "as the contact lines pass over it; blank where the flanks stay further apart. {d.light.load:.4g} is about "
+            "what a pair turned by hand bears.",
+            (
+                Over(
+                    "z", (Map("separation", "radius", limits=lambda seen: (0.0, seen.asked.coat)),), each="drawn",
+                    title="{one.load:.5g}: {one.share:.0%} printed",
+                ),
+            ),
+            columns=2,
+        ),
+    ),
+    settings={"coat": lambda seen: seen.asked.coat},
+)  # fmt: skip
 
 
 CONTACT_PATTERN = flank_stage(
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     cites=citing(Citation("iso-21771", "contact lines in the plane of action", "5.4")),
     forecast=lambda _scene, _name: forecasts.constant(0.1),
 )

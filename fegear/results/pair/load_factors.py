@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.base.shown import shown
+from fegear.base.shown import shown, shows
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, error_column, value_of
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
 from fegear.results.pair.load_distribution import flank_stage
@@ -54,8 +54,8 @@ class FlankLoadFactorsData:
         K_Halpha and its estimated error.
     root, coarse : mapping of Member to RootFactors
         At the nominal load, and by the coarser solution; None where there is none.
-    by_iso : ndarray, shape (L,)
-        K_Hbeta of ISO 6336-1; empty where the standard does not hold.
+    by_iso : ndarray, shape (L,), or None
+        K_Hbeta of ISO 6336-1; None where the standard does not hold.
     why_not : str
         Why it does not; empty where it does.
     gap, exponent : float
@@ -66,11 +66,34 @@ class FlankLoadFactorsData:
     transverse_error: Array
     root: Mapping[Member, RootFactors]
     coarse: Mapping[Member, RootFactors | None]
-    by_iso: Array
     why_not: str
-    gap: float
     exponent: float
+    gap: float = shown("um", "straight part of the gap over the face")
+    by_iso: Array | None = shown("", "closed formula of ISO 6336-1", name="K_Hbeta_iso")
     transverse: Array = shown("", "largest load on a tooth pair over that of perfect flanks", name="K_Halpha")
+
+    @property
+    @shows("", "K_Hbeta to the power N_F", name="K_Fbeta_iso")
+    def root_by_iso(self) -> Array:
+        """K_Fbeta of ISO 6336-1 from the computed K_Hbeta, shape (L,)."""
+        return np.asarray(self.loaded.stated.face_load_factor**self.exponent)
+
+    @property
+    def members(self) -> dict[Member, ComparedRoot]:
+        """Root factors of both gears at the nominal load."""
+        return {member: ComparedRoot(root, self.coarse[member]) for member, root in self.root.items()}
+
+
+@dataclass(frozen=True)
+class ComparedRoot:
+    """Root factors of one gear at the nominal load, and those of the coarser solution, where there is one."""
+
+    fine: RootFactors
+    coarse: RootFactors | None
+
+    def off(self, factor: str) -> float | None:
+        """How far a factor of both is apart."""
+        return None if self.coarse is None else abs(getattr(self.coarse, factor) - getattr(self.fine, factor))
 
 
 def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFactorsData:
@@ -100,14 +123,14 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
             root_coarse[member] = root_factors(coarse, perfect_coarse, again, z, i)
     transverse = transverse_load_factor(found, perfect)
     off = _apart(transverse, transverse_load_factor(coarse, perfect_coarse) if loaded.estimated else np.nan)
-    by_iso, why_not = np.empty(0), ""
+    by_iso, why_not = None, ""
     try:
         by_iso = np.array([iso_face_load_factor(pair, loaded.gaps, load) for load in found.load.tolist()])
     except RangeError as error:
         why_not = str(error)
     return FlankLoadFactorsData(
-        loaded, off, root, root_coarse,
-        by_iso, why_not, straight_gap(pair, loaded.gaps.under(loaded.nominal)), iso_root_exponent(pair), transverse,
+        loaded, off, root, root_coarse, why_not, iso_root_exponent(pair),
+        straight_gap(pair, loaded.gaps.under(loaded.nominal)), by_iso, transverse,
     )  # fmt: skip
 
 
@@ -116,49 +139,33 @@ def _apart(factor: Array, other: Array | float) -> Array:
     return np.asarray(np.maximum(np.abs(other - factor), np.spacing(factor)))
 
 
-def _table(name: str, data: FlankLoadFactorsData) -> Table:
-    found, error, k = data.loaded.found, data.loaded.error, data.loaded.stated.face_load_factor
-    columns = [
-        column_of(ErrorOverPitch, "total_load", found.load, name="load"),
-        both := column_of(error, "face_load_factor", k),
-        error_column(both, error.face_load_factor, "estimated error"),
-        along := column_of(data, "transverse"),
-        error_column(along, data.transverse_error, "estimated error"),
-        Column("K_Fbeta_iso", k**data.exponent, "", "K_Hbeta to the power N_F of ISO 6336-1"),
-    ]
-    if data.by_iso.size:
-        columns.append(Column("K_Hbeta_iso", data.by_iso, "", "closed formula of ISO 6336-1, not run in"))
-    return Table(f"load_factors_{name}", tuple(columns), f"Load factors of pair {name} under every load")
-
-
-def _present(data: FlankLoadFactorsData, inputs: FlankGears) -> Outcome:
-    name, i = inputs.name, data.loaded.at
-    k = float(data.loaded.stated.face_load_factor[i])
-    values = [
-        value_of(data, "transverse", name, float(data.transverse_error[i]), si=data.transverse[i]),
-        Value(f"{name}.K_Fbeta_iso", k**data.exponent, "", None,
-              f"K_Hbeta to the power N_F = {data.exponent:.4g} of ISO 6336-1"),
-    ]  # fmt: skip
-    if data.by_iso.size:
-        values.insert(
-            1, Value(f"{name}.K_Hbeta_iso", float(data.by_iso[i]), "", None,
-                     f"closed formula of ISO 6336-1, F_betay = {abs(data.gap) * 1e6:.4g} um, not run in"),
-        )  # fmt: skip
-    for member, root in data.root.items():
-        again = data.coarse[member]
-        for key, attribute, meaning in (
-            ("K_Fbeta", "face", "largest root tension over that of each pair's share spread evenly along its line"),
+_SHEET = Sheet(
+    loads="loaded.found.load",
+    nominal="loaded.at",
+    tables=(
+        Rows(
+            "load_factors_{name}", "Load factors of pair {name} under every load",
             (
-                "K_Falpha",
-                "transverse",
-                "largest root tension of shares spread evenly over that of perfect flanks",
+                Cell("total_load", si="loaded.found.load", of=lambda _: ErrorOverPitch, name="load"),
+                Cell("face_load_factor", si="loaded.stated.face_load_factor", of="loaded.error"),
+                Off("face_load_factor", "loaded.error.face_load_factor", "estimated error", of="loaded.error"),
+                "transverse", Off("transverse", "transverse_error", "estimated error"),
+                Cell("root_by_iso", further=" of ISO 6336-1"), Cell("by_iso", further=", not run in"),
             ),
-        ):
-            value = getattr(root, attribute)
-            error = None if again is None else abs(getattr(again, attribute) - value)
-            values.append(Value(f"{name}.{member}.{key}", value, "", error, meaning))
-    remarks = [f"Pair {name}: no K_Hbeta of ISO 6336-1, for {data.why_not}"] if data.why_not else []
-    return Outcome(data, (_table(name, data),), tuple(values), remarks=tuple(remarks))
+        ),
+    ),
+    values=(
+        Number("transverse", lambda seen: seen.data.transverse_error[seen.nominal]),
+        Number("by_iso", further=lambda seen: f", F_betay = {abs(seen.data.gap) * 1e6:.4g} um, not run in"),
+        Number("root_by_iso", further=" = {d.exponent:.4g} of ISO 6336-1"),
+        Each(
+            "members",
+            Number("face", lambda seen: seen.one.off("face"), "fine", owner="{name}.{key}"),
+            Number("transverse", lambda seen: seen.one.off("transverse"), "fine", owner="{name}.{key}"),
+        ),
+    ),
+    remarks=(Remark("Pair {name}: no K_Hbeta of ISO 6336-1, for {d.why_not}", when="why_not"),),
+)  # fmt: skip
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -174,7 +181,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 FLANK_LOAD_FACTORS = flank_stage(
     inputs=lambda scene, name: FlankGears(name, gears_of(scene, name)),
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     needs=_needs,
     cites=citing(*RING, Citation("iso-6336-1", "face and transverse load factors", "clauses 7 to 9")),
     forecast=_forecast,

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 from fegear.case.built.train import friction_coefficient
-from fegear.contact.plane.pair_history import PairHistory
 from fegear.engine.citation import Citation
-from fegear.engine.declared import axis_of, column_of, column_over, columns_of, stacked, value_of
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, few, ramp
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.train.gear_train import (
-    RPM,
     carries_nothing,
     gear_train,
     meshes,
@@ -33,14 +31,13 @@ from fegear.results.train.motion import check_friction
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.base.arrays import Array
     from fegear.case.dynamics import FrictionPart
     from fegear.case.reading import Scene
     from fegear.dynamics.train.friction import FrictionOverPath
     from fegear.dynamics.train.gear_train import TrainMesh
 
 #: Each speed [s].
-_SPEED = 0.01
+_SECONDS_OF_SPEED = 0.01
 
 
 @dataclass(frozen=True)
@@ -67,6 +64,27 @@ class FrictionInputs:
 
 
 @dataclass(frozen=True)
+class FrictionAtSpeed:
+    """Friction of a mesh at one speed [rad/s] of the body that speeds refer to."""
+
+    mesh: TrainMesh
+    over_path: FrictionOverPath
+    speed: float = shown("rpm", "")
+
+    @property
+    @shows("rpm", "", name="speed")
+    def speed_of_rows(self) -> Array:
+        """The speed, once for each place on the path [rad/s]."""
+        return np.full(self.over_path.x.size, self.speed)
+
+    @cached_property
+    @shows("deg", "of the contact point on the driver", name="roll_angle", label="roll angle of the driver")
+    def driver_roll_angle(self) -> Array:
+        """At each place on the path [rad]."""
+        return np.asarray(self.mesh.pair.roll_angle(self.over_path.x, "driver"))
+
+
+@dataclass(frozen=True)
 class FrictionData:
     """Friction of one mesh at every speed.
 
@@ -79,12 +97,37 @@ class FrictionData:
         Body that they refer to.
     found : tuple of FrictionOverPath
         None where the mesh carries no mean force.
+    stated : float
+        The speed that values are stated at [rad/s].
     """
 
     mesh: TrainMesh
-    speeds: Array
     speed_of: str
     found: tuple[FrictionOverPath, ...]
+    speeds: Array = shown("rpm", "", name="speed")
+    stated: float = shown("rpm", "")
+
+    @cached_property
+    def at_speeds(self) -> tuple[FrictionAtSpeed, ...]:
+        """Friction at every speed."""
+        return tuple(FrictionAtSpeed(self.mesh, *one) for one in zip(self.found, self.speeds.tolist(), strict=False))
+
+    @property
+    def at_stated(self) -> FrictionOverPath | None:
+        """Friction at the stated speed."""
+        return self.found[int(np.flatnonzero(self.speeds == self.stated)[0])] if self.found else None
+
+    @property
+    def mean_coefficient_error(self) -> float:
+        """Of the stated mean coefficient, which is off by as much of itself as the loss is."""
+        top = self.found[int(np.flatnonzero(self.speeds == self.stated)[0])]
+        return (top.loss_error / top.loss if top.loss else 0.0) * top.mean_coefficient
+
+    @property
+    def efficiency_error(self) -> float:
+        """Of the stated efficiency."""
+        top = self.found[int(np.flatnonzero(self.speeds == self.stated)[0])]
+        return top.loss_error / top.power
 
 
 def _check(scene: Scene, subject: str) -> None:
@@ -107,95 +150,84 @@ def _compute(asked: FrictionInputs, upstream: Upstream, work: Work) -> FrictionD
     i = data.train.mesh_index(asked.mesh)
     law = friction_coefficient(asked.law, data.meshes[i].pair)
     if carries_nothing(data, i):
-        return FrictionData(data.meshes[i], asked.speeds, data.speed_of, ())
+        return FrictionData(data.meshes[i], data.speed_of, (), asked.speeds, asked.stated)
     for speed in asked.speeds:
         frequency = float(data.train.mesh_frequencies(float(speed) / data.speed_ratio)[i])
         found.append(friction_over_path(data.meshes[i], frequency, law, asked.positions))
         work.progress(len(found) / asked.speeds.size)
-    return FrictionData(data.meshes[i], asked.speeds, data.speed_of, tuple(found))
+    return FrictionData(data.meshes[i], data.speed_of, tuple(found), asked.speeds, asked.stated)
 
 
-def _present(data: FrictionData, asked: FrictionInputs) -> Outcome:
-    name, found, of = asked.mesh, data.found, f"of {data.speed_of}"
-    if not found:
-        return Outcome(data, remarks=(f"Mesh {name} carries no mean force, so it has no friction.",))
+_SPEEDS = Family("at_speeds", role="ramp")
+_ROLL = "driver_roll_angle"
 
-    def over_path(one: FrictionOverPath) -> tuple[Column, ...]:
-        return (
-            column_of(one, "x"),
-            column_of(PairHistory, "driver_roll_angle", data.mesh.pair.roll_angle(one.x, "driver")),
-            *columns_of(one, "load", "sliding", "rolling"),
-            column_of(one, "coefficient", meaning=f"law {asked.law.law}"),
-            *columns_of(one, "torque_driver", "torque_driven", "total_driver", "total_driven"),
-        )
 
-    along = Table(
-        f"tooth_friction_{name}",
-        (
-            Column("speed", np.repeat(data.speeds, [one.x.size for one in found]), "rpm", of),
-            *stacked([over_path(one) for one in found]),
+def _over_roll(quantity: str, all_pairs: str = "", **options: bool) -> Over:
+    """A quantity of one tooth pair at every speed, dotted that of all pairs in contact."""
+    one = Line(f"over_path.{quantity}", "{one.speed:.6g}", look={"dash": "solid", "markers": False})
+    all_of_them = Line(f"over_path.{all_pairs}", look={"dash": "dot", "width": 1.0, "markers": False})
+    return Over(
+        _ROLL, (Bundle(_SPEEDS, (all_of_them, one) if all_pairs else (one,)),), f"over_path.{quantity}",
+        marks=lambda seen: roll_marks(seen.data.mesh.pair, "driver"), options=options,
+    )  # fmt: skip
+
+
+_SPEED = "of {d.speed_of}"
+_AT = "at {d.stated:.6g} of {d.speed_of}"
+_SHEET = Sheet(
+    name=lambda asked: asked.mesh,
+    tables=(
+        Rows(
+            "tooth_friction_{name}", "Tooth friction of mesh {name} over the path of contact",
+            (
+                Cell("speed_of_rows", meaning=_SPEED), "over_path.x", _ROLL, "over_path.load", "over_path.sliding",
+                "over_path.rolling", Cell("over_path.coefficient", meaning="law {asked.law.law}"),
+                *(f"over_path.{k}" for k in ("torque_driver", "torque_driven", "total_driver", "total_driven")),
+            ),
+            stacked="at_speeds", when="found",
         ),
-        f"Tooth friction of mesh {name} over the path of contact",
-    )
-    losses = Table(
-        f"friction_loss_{name}",
-        (
-            Column("speed", data.speeds, "rpm", of),
-            *(column_over(found, key) for key in ("power", "loss", "mean_coefficient", "efficiency", "loss_error")),
+        Rows(
+            "friction_loss_{name}", "Friction loss of mesh {name} over speed",
+            (
+                Cell("speed", meaning=_SPEED),
+                *(f"over_path.{k}" for k in ("power", "loss", "mean_coefficient", "efficiency", "loss_error")),
+            ),
+            of="at_speeds", when="found",
         ),
-        f"Friction loss of mesh {name} over speed",
-    )
-    top = found[int(np.flatnonzero(data.speeds == asked.stated)[0])]
-    at = f"at {asked.stated * RPM:.6g} rpm {of}"
-    relative = top.loss_error / top.loss if top.loss else 0.0
-    values = (
-        value_of(top, "loss", name, top.loss_error, meaning=at),
-        value_of(
-            top, "mean_coefficient", name, relative * top.mean_coefficient, name="mean_friction_coefficient", meaning=at
+    ),
+    values=(
+        Number("loss", "at_stated.loss_error", "at_stated", meaning=_AT),
+        Number(
+            "mean_coefficient", "mean_coefficient_error", "at_stated", name="mean_friction_coefficient", meaning=_AT
         ),
-        value_of(top, "efficiency", name, top.loss_error / top.power, name="friction_efficiency", meaning=at),
-    )
-    return Outcome(data, (along, losses), values, {"law": asked.law.law}, (), (_figure(name, data, asked),))
-
-
-def _figure(name: str, data: FrictionData, asked: FrictionInputs) -> Figure:
-    """Coefficient and torques over the roll angle, one curve for each speed."""
-    pair = data.mesh.pair
-    chosen = few(len(data.found), (0, len(data.found) - 1))
-    looks = list(zip(chosen, ramp(len(chosen)), strict=True))
-    roll, marks = Axis("roll angle of the driver", "deg"), roll_marks(pair, "driver")
-
-    def panel(one_pair: str, all_pairs: str = "", *, zero: bool = False) -> Panel:
-        curves = []
-        for k, role in looks:
-            one = data.found[k]
-            angle = np.degrees(pair.roll_angle(one.x, "driver"))
-            text = f"{data.speeds[k] * RPM:.6g} rpm"
-            if all_pairs:
-                curves.append(Curve(angle, getattr(one, all_pairs), "", role, dash="dot", width=1.0, markers=False))
-            curves.append(Curve(angle, getattr(one, one_pair), text, role, dash="solid", markers=False))
-        return Panel(roll, axis_of(data.found[0], one_pair, zero=zero), tuple(curves), marks)
-
-    return Figure(
-        f"tooth_friction_{name}",
-        f"Tooth friction of mesh {name}",
-        f"Mesh {name}: friction coefficient by the law {asked.law.law}, and friction torque of one tooth pair on both "
-        "gears over the path of contact under the static load (dotted: of all pairs in contact then). Sliding turns "
-        "at the pitch point C, where Benedict and Kelley's law is cut at 0.2; a positive torque turns a "
-        "gear on.",
-        (
-            panel("coefficient", zero=True),
-            panel("torque_driver", "total_driver"),
-            panel("torque_driven", "total_driven"),
+        Number("efficiency", "efficiency_error", "at_stated", name="friction_efficiency", meaning=_AT),
+    ),
+    figures=(
+        Chart(
+            "tooth_friction_{name}", "Tooth friction of mesh {name}",
+            "Mesh {name}: friction coefficient by the law {asked.law.law}, and friction torque of one tooth pair on "
+            "both gears over the path of contact under the static load (dotted: of all pairs in contact then). Sliding "
+            "turns at the pitch point C, where Benedict and Kelley's law is cut at 0.2; a positive torque turns a "
+            "gear on.",
+            (
+                _over_roll("coefficient", zero=True),
+                _over_roll("torque_driver", "total_driver"),
+                _over_roll("torque_driven", "total_driven"),
+            ),
+            of=lambda seen: seen.data.at_speeds[0], when="found", under="{d.mesh.force:.5g} N",
         ),
-        under=f"{data.mesh.force:.5g} N",
-    )
+    ),
+    remarks=(
+        Remark("Mesh {name} carries no mean force, so it has no friction.", when=lambda seen: not seen.data.found),
+    ),
+    settings={"law": lambda seen: seen.asked.law.law if seen.data.found else None},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
     """Every speed alike."""
     speeds = int(scene.case.dynamics.speed_values.size)
-    return Forecast({"speeds": speeds, "positions": scene.case.dynamics.positions}, _SPEED * speeds)
+    return Forecast({"speeds": speeds, "positions": scene.case.dynamics.positions}, _SECONDS_OF_SPEED * speeds)
 
 
 def _cites(scene: Scene, _name: str) -> Iterator[Citation]:
@@ -212,7 +244,7 @@ TOOTH_FRICTION = Stage(
     needs=needs_train,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     requires=(Need("friction", "it is what this result shows"),),
     cites=_cites,
