@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 _Count = Annotated[int, Field(ge=2, le=10_000)]
 _MOST = at_most(24, "responses")
+NotNegative = Annotated[Number, Field(ge=0.0)]
 
 
 class _Range(Part):
@@ -255,10 +256,10 @@ class UnityRatioPart(Part):
     """The unity-ratio pair by its dimensionless numbers."""
 
     mass: PositiveMass = Field(description="Mass of either gear.")
-    aspect_ratio: Number = Field(description="Half face width over base radius.")
-    alpha_y: Number = Field(description="Bearing stiffness ratio along the transverse line of action.")
-    alpha_z: Number = Field(description="Bearing stiffness ratio along the axis.")
-    alpha_theta: Number = Field(description="Bearing stiffness ratio against tilting.")
+    aspect_ratio: Annotated[Number, Field(gt=0.0)] = Field(description="Half face width over base radius.")
+    alpha_y: NotNegative = Field(description="Bearing stiffness ratio along the transverse line of action.")
+    alpha_z: NotNegative = Field(description="Bearing stiffness ratio along the axis.")
+    alpha_theta: NotNegative = Field(description="Bearing stiffness ratio against tilting.")
     base_radius: PositiveLength | None = Field(
         default=None, description="Base radius, for moments in `pair-forced-response`."
     )

@@ -72,15 +72,13 @@ def refuse_unplanned(text: str, name: str) -> None:
     InputError
         With what the plan says.
     """
-    import tomllib
-
     from fegear.base.errors import FegearError, InputError, shown
-    from fegear.case.reading import build_scene
+    from fegear.case.reading import build_scene, parse_document
     from fegear.engine.plan import make_plan
     from fegear.results.catalogue import STAGES
 
     try:
-        make_plan(build_scene(tomllib.loads(text), "case", Path()), STAGES)
+        make_plan(build_scene(parse_document(text, "(its text)"), "case", Path()), STAGES)
     except FegearError as error:
         rule = f"makes a case that cannot be computed: {str(error).rstrip('.')}"
         remedy = "correct the model, or import with --unchecked and correct the case"

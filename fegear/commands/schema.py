@@ -105,6 +105,8 @@ def results(as_json: AsJson = False) -> None:
         once = {name: _meaning(stage, name) for stage in reversed(stages) for name in reversed(stage.results)}
         for line in two_columns(list(reversed(once.items())), column):
             voice.say(line)
+    for error in STAGES.with_added.broken.values():
+        voice.note(str(error))
     voice.say('Ask for them by results = ["geometry", ...] in a case, or by --results geometry,stiffness.')
     found = [
         (subject, stage, name) for subject, stages in subjects.items() for stage in stages for name in stage.results

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
+from types import MappingProxyType
 from typing import NamedTuple, overload
 
+from fegear.base.errors import InputError
 from fegear.base.extensions import Group, added
 from fegear.engine.stage import Stage
 
@@ -68,6 +70,8 @@ class Catalogue(Sequence[Stage]):
         self.entries = tuple(entries)
         self._package, self._group = package, group
         self._by_name = {entry.name: entry for entry in self.entries}
+        #: What other distributions add and cannot be used, by the names of their results.
+        self.broken: Mapping[str, InputError] = MappingProxyType({})
         self._loaded: dict[str, Stage] = {}
 
     @classmethod
@@ -81,20 +85,20 @@ class Catalogue(Sequence[Stage]):
 
     @cached_property
     def with_added(self) -> Catalogue:
-        """The same with the stages that other distributions add, the results of each called as its entry point.
-
-        Raises
-        ------
-        InputError
-            See `fegear.base.extensions.added`.
-        """
+        """The same with the stages that other distributions add, the results of each called as its entry point."""
         if self._group is None:
             return self
-        known = {**self._by_name, **self.by_result(), **self.former()}
-        stages = [
-            replace(stage, name=name, results=(name,)) for name, stage in added(self._group, Stage, known).items()
-        ]
+        from fegear.engine.added_stage import guarded
+
+        others = added(self._group, Stage, {**self._by_name, **self.by_result(), **self.former()})
+        names, broken, stages = {*self._by_name, *others.found}, dict(others.broken), []
+        for name, stage in others.found.items():
+            try:
+                stages.append(guarded(stage, name, others.whose[name], names))
+            except InputError as error:
+                broken[name] = error
         made = Catalogue((*self.entries, *map(_entry, stages)), self._package)
+        made.broken = broken
         made._loaded = {**self._loaded, **{stage.name: stage for stage in stages}}
         return made
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ from fegear.case.nearest import nearest
 from fegear.case.reading import Scene
 from fegear.case.trade_words import of_result
 from fegear.engine.catalogue import Catalogue, Entry
+from fegear.engine.joined_names import refuse_joined
 from fegear.engine.stage import Stage, Task
 
 #: Why a task runs that no result of the case asks for.
@@ -88,6 +89,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     def require(task: Task, reason: str, result: str = "") -> None:
         if task in reasons:
+            _refuse_circle(task, reason, result, finished=under)
             if reason not in reasons[task]:
                 reasons[task].append(reason)
             return
@@ -104,9 +106,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         under[task] = dict.fromkeys((*(below for need in needs for below in under[need]), *needs))
 
     for result in wanted:
-        if result not in by_result:
-            rule, remedy = "is no result that fegear knows", nearest(result, by_result, '"fegear results"', of_result)
-            raise InputError("results", f'"{result}"', rule, remedy)
+        _refuse_unknown(known, result, by_result)
         asked = [known.called(name) for name in by_result[result]]
         described = [(stage, subject) for stage in asked for subject in stage.subjects(scene)]
         if not described:
@@ -122,6 +122,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     for task in more:
         require(task, ON_REQUEST)
 
+    refuse_joined(task.subject for task in order)
     on = scene.case.effects.on()
     stages_of = {task: known.called(task.stage) for task in order}
     steps = tuple(
@@ -147,6 +148,21 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     named = idle if scene.case.effects.start == "none" else scene.case.effects.named
     said += [_idle(effect, known.entries) for effect in idle if effect in named]
     return Plan(steps, skipped, idle, (*scene.renamed, *said))
+
+
+def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -> None:
+    if result in known.broken:
+        raise known.broken[result]
+    if result not in by_result:
+        rule, remedy = "is no result that fegear knows", nearest(result, by_result, '"fegear results"', of_result)
+        raise InputError("results", f'"{result}"', rule, remedy)
+
+
+def _refuse_circle(task: Task, reason: str, result: str, finished: Collection[Task]) -> None:
+    """Refuse a task that is needed before all that it needs is known: a slip of another distribution."""
+    if task not in finished:
+        rule = f"waits for itself: it is {reason}"
+        raise InputError("results", f'"{result or task.stage}"', rule, "correct the needs of its stages")
 
 
 def _idle(effect: str, stages: Sequence[Entry]) -> str:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from fegear.base.errors import InputError, shown
-from fegear.base.extensions import added
+from fegear.base.extensions import Guarded, added
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,13 @@ class Importer:
     read: Callable[..., str] | str
     options: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Refuse suffixes that no file has: a text in place of a tuple of them fits any part of itself."""
+        given: object = self.suffixes
+        wrong = isinstance(given, str) or [one for one in self.suffixes if one != one.lower() or one[:1] != "."]
+        if wrong:
+            raise ValueError(f"suffixes must be a tuple such as ('.teeth',), in small letters, and is {self.suffixes}")
+
     def case_of(self, path: Path, given: Mapping[str, Any]) -> str:
         """The text of the case that a model makes.
 
@@ -54,13 +61,20 @@ class Importer:
         for name in sorted(wanted.keys() - set(self.options)):
             flag, rule = f"--{name.replace('_', '-')}", f"is not known to models of this kind ({self.about})"
             raise InputError(flag, shown(wanted[name]), rule, f"remove {flag}")
+        return self.called(path, **wanted)
+
+    def called(self, path: Path, **options: Any) -> str:
+        """What `read` answers, wherever it stands."""
         read = self.read
         if isinstance(read, str):
             module, _, function = read.partition(":")
             read = getattr(import_module(module), function)
-        return str(read(path, **wanted))
+        text: str = read(path, **options)
+        return text
 
 
+#: What models of the first kind end in.
+_SUFFIXES = (".rexs", ".rexsj", ".rexsz", ".zip", ".xml", ".json")
 #: Kinds of fegear itself; the first reads what no other kind claims by its suffix.
 IMPORTERS: Mapping[str, Importer] = MappingProxyType({
     "rexs": Importer(
@@ -69,35 +83,38 @@ IMPORTERS: Mapping[str, Importer] = MappingProxyType({
 })  # fmt: skip
 
 
-def importers() -> Mapping[str, Importer]:
-    """Those of fegear, and those that other distributions add by entry points of ``fegear.importers``.
-
-    Raises
-    ------
-    InputError
-        See `fegear.base.extensions.added`.
-    """
-    return MappingProxyType({**IMPORTERS, **added("importers", Importer, IMPORTERS)})
+def _text(found: object) -> None:
+    if not isinstance(found, str):
+        raise TypeError(f"read() must answer the text of a case, and answered a {type(found).__name__}")
+    found.encode()
 
 
 def importer_for(path: Path, name: str | None) -> Importer:
     """What reads a model: the kind that is named, else the one of its suffix, else the first.
 
+    Other distributions add theirs by entry points of ``fegear.importers``.
+
     Raises
     ------
     InputError
-        If there is none of that name, or two read files of that suffix.
+        If there is none of that name, it cannot be used, or two read files of that suffix.
     """
     if name is not None and name in IMPORTERS:
         return IMPORTERS[name]
-    known = importers()
+    others = added("importers", Importer, IMPORTERS)
     if name is not None:
-        if name not in known:
-            remedy = f"choose from {', '.join(known)}"
+        others.refuse_broken(name)
+        if name not in others.found:
+            remedy = f"choose from {', '.join((*IMPORTERS, *others.found))}"
             raise InputError("--as", shown(name), "is no kind of model that fegear reads", remedy)
-        return known[name]
-    fitting = [kind for kind, importer in known.items() if path.suffix.lower() in importer.suffixes]
+    suffix = path.suffix.lower()
+    fitting = [one for one, kind in others.found.items() if (suffix in kind.suffixes if name is None else one == name)]
     if len(fitting) > 1:
         rule = f"may be read as {' or '.join(fitting)}"
         raise InputError("MODEL", shown(path.name), rule, f"say which: --as {fitting[0]}")
-    return known[fitting[0] if fitting else next(iter(known))]
+    if not fitting:
+        if others.broken and suffix not in _SUFFIXES:  # one of them may be meant
+            raise next(iter(others.broken.values()))
+        return next(iter(IMPORTERS.values()))
+    kind = others.found[fitting[0]]
+    return replace(kind, read=Guarded(kind.called, "importers", others.whose[fitting[0]], _text))

@@ -211,7 +211,7 @@ def tip_relief(
     InputError
         If the start is given twice or not at all, or lies off the flank.
     """
-    end = float(roll_of_radius(gear, gear.involute_tip_radius if at_radius is None else at_radius))
+    end = _roll(gear, gear.involute_tip_radius if at_radius is None else at_radius, "tip.at_radius")
     start = _start(gear, end, -1.0, start_roll, start_radius, length, "tip")
     if not start < end:
         raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must lie below the tip's {end:.6g} rad")
@@ -229,7 +229,7 @@ def root_relief(
     shape: Shape = "linear",
 ) -> EndRelief:
     """Root relief of a gear, as `tip_relief`; `end_radius` [m] is the inner end where the amount is measured."""
-    end = float(roll_of_radius(gear, end_radius))
+    end = _roll(gear, end_radius, "root.end_radius")
     start = _start(gear, end, 1.0, start_roll, start_radius, length, "root")
     if not start > end:
         raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must lie above its end at {end:.6g} rad")
@@ -259,15 +259,21 @@ def _start(
     if start_roll is not None:
         return start_roll
     if start_radius is not None:
-        if start_radius < gear.base_radius:
-            raise InputError("relief.start_radius", f"{start_radius * 1e3:.6g} mm", "lies inside the base circle")
-        return float(roll_of_radius(gear, start_radius))
+        return _roll(gear, start_radius, f"{where}.start_radius")
     return end + sign * given[0] / gear.base_radius
+
+
+def _roll(gear: Gear, radius: float, key: str) -> float:
+    """Roll angle of a radius that was given [rad]."""
+    if radius < gear.base_radius:
+        rule = f"lies inside the base circle of {gear.base_radius * 1e3:.6g} mm, where there is no involute"
+        raise InputError(f"relief.{key}", f"{radius * 1e3:.6g} mm", rule)
+    return float(roll_of_radius(gear, radius))
 
 
 def crowning(gear: Gear, amount: float, start_radius: float, end_radius: float) -> Crowning:
     """Profile crowning between two radii [m], that toward the root first."""
-    a, b = (float(roll_of_radius(gear, r)) for r in (start_radius, end_radius))
+    a, b = _roll(gear, start_radius, "crowning.start_radius"), _roll(gear, end_radius, "crowning.end_radius")
     if not b > a:
         raise InputError("relief.crowning", f"{start_radius:.6g} to {end_radius:.6g} m", "must have a length")
     return Crowning(amount, a, b)

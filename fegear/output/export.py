@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.base.extensions import Added
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.nearest import nearest
-from fegear.output.formats import FORMATS, Format, Request, formats
+from fegear.output.formats import FORMATS, Format, Request, added_formats
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -48,8 +49,10 @@ def wanted_formats(text: str) -> Mapping[str, Format]:
         If one is unknown, or none is named.
     """
     wanted = {part.strip() for part in text.split(",") if part.strip()}
-    known = FORMATS if wanted <= FORMATS.keys() else formats()
+    others = Added[Format]({}, {}, {}) if wanted <= FORMATS.keys() else added_formats()
+    known = {**FORMATS, **others.found}
     for name in sorted(wanted.difference(known)):
+        others.refuse_broken(name)
         raise InputError("--format", f'"{name}"', "is no format that fegear writes", nearest(name, known))
     if not wanted:
         raise InputError("--format", f'"{text}"', "names no format", f"choose from {', '.join(FORMATS)}")
@@ -121,6 +124,9 @@ def export_gears(
         remarks += _left_out(scene, gear, wanted, fitting)
     for name in _of(wanted, "case"):
         write(name, chosen, SolutionCache())
+    if not written and "relief" not in wanted:
+        rule = f"wrote nothing: {remarks[0].rstrip('.')}" if remarks else "wrote nothing and said nothing"
+        raise InputError("--format", f'"{formats}"', rule, "ask for another format")
     if not written:
         raise InputError(
             f"gear.{chosen[0]}.relief", "(not given)", "leaves no relief to write: no gear has one of known amount",

@@ -7,16 +7,15 @@ functions of fegear's own rows are named as entry points are, and imported when 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
-from fegear.base.extensions import added
+from fegear.base.extensions import Added, Guarded, added
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from fegear.base.solution_cache import SolutionCache
     from fegear.case.reading import Scene
     from fegear.geometry.gear import Gear
@@ -61,7 +60,7 @@ class Request:
 
 
 #: What a format wrote: paths below the folder, and sentences for the user.
-Written = tuple[Sequence["Path"], Sequence[str]]
+Written = tuple[Sequence[Path], Sequence[str]]
 
 
 @dataclass(frozen=True)
@@ -176,11 +175,27 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
 
 
 def formats() -> Mapping[str, Format]:
-    """Those of fegear, and those that other distributions add.
+    """Those of fegear, and those that other distributions add and that can be used."""
+    return MappingProxyType({**FORMATS, **added_formats().found})
 
-    Raises
-    ------
-    InputError
-        See `fegear.base.extensions.added`.
-    """
-    return MappingProxyType({**FORMATS, **added("formats", Format, FORMATS)})
+
+def added_formats() -> Added[Format]:
+    """Those that other distributions add by entry points of ``fegear.formats``; what fails in them is a sentence."""
+    others = added("formats", Format, FORMATS)
+
+    def guarded(name: str, row: Format) -> Format:
+        def of(function: Callable[..., Any], right: Callable[[Any], object] | None = None) -> Guarded:
+            return Guarded(function, "formats", others.whose[name], right)
+
+        return replace(
+            row, write=of(row.written, _paths_and_sentences), needs=of(row.require), seconds=of(row.predicted)
+        )
+
+    return replace(others, found={name: guarded(name, row) for name, row in others.found.items()})
+
+
+def _paths_and_sentences(answer: Any) -> None:
+    files, said = answer
+    for many, kind in ((files, Path), (said, str)):
+        if isinstance(many, str) or not all(isinstance(one, kind) for one in many):
+            raise TypeError(f"write() must answer a list of paths and one of sentences, and answered {answer!r}")

@@ -5,6 +5,7 @@ nothing, or a motion without damping at its resonance: sizes that are known when
 """
 
 import random
+import re
 import tomllib
 from pathlib import Path
 
@@ -185,6 +186,37 @@ def test_what_a_run_refused_is_refused_by_the_plan(change, key):
         make_plan(build_scene(document, "case", Path()), STAGES)
     assert str(refusal.value).startswith(key)
     assert "corner_contact = true" not in str(refusal.value)
+
+
+FOLLOWED = """
+results = ["mode-tracking"]
+[transmissibility.I]
+mesh = { stiffness = "285 N/um", base_helix_angle = "30 deg", kappa = 0.4, mu = 0.2 }
+[transmissibility.I.unity_ratio]
+mass = "2.882 kg"
+aspect_ratio = 0.3
+alpha_y = 0.2
+alpha_z = 0.5
+alpha_theta = 0.4
+[transmissibility.I.follow]
+"""
+
+
+@pytest.mark.parametrize(
+    ("follow", "rule"),
+    [
+        ("alpha_y = { start = -0.4, stop = 0.1 }", "follow.alpha_y = -0.4: must not be negative"),
+        ("aspect_ratio = { start = 0.0, stop = 1.0 }", "follow.aspect_ratio = 0.0: must be greater than zero"),
+        ("alpha_z = { start = 0.1, stop = 1.0, responses = [-1.0] }", "follow.alpha_z = -1.0: must not be negative"),
+        ("mu = { start = 0.1, stop = 0.3 }", "follow.mu = 0.1: must be finite and at least kappa^2"),
+        ("kappa = { start = -0.5, stop = 0.3 }", "follow.kappa = -0.5: must be finite and at least kappa^2"),
+        ('base_helix_angle = { start = "0 deg", stop = "95 deg" }', "follow.base_helix_angle = 95 deg: must lie inside"),
+    ],
+)  # fmt: skip
+def test_ranges_in_which_no_model_can_be_built_are_refused_by_the_plan(follow, rule):
+    scene = build_scene(tomllib.loads(FOLLOWED + follow), "case", Path())
+    with pytest.raises(InputError, match=re.escape(rule)):
+        make_plan(scene, STAGES)
 
 
 #: Answers that somebody might type; the plan refuses what makes no gears.

@@ -17,7 +17,8 @@ from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
 from fegear.commands.schema import schema_text
 from fegear.engine.plan import make_plan
-from fegear.exchange.importers import IMPORTERS, importer_for
+from fegear.engine.run import run_plan
+from fegear.exchange.importers import IMPORTERS, Importer, importer_for
 from fegear.output.export import export_gears
 from fegear.output.formats import FORMATS, formats
 from fegear.results.catalogue import STAGES
@@ -129,29 +130,135 @@ PROJECT = '[project]\nname = "fegear-odd"\nversion = "2"\n[project.entry-points.
     ("point", "source", "rule"),
     [
         ('odd = "fegear_odd:STAGE"', "raise OSError('no licence')", "cannot be imported: OSError: no licence"),
+        ('odd = "fegear_odd:STAGE"', "raise SystemExit(3)", "cannot be imported: SystemExit: 3"),
         ('odd = "fegear_odd:NOTHING"', "STAGE = 1", "cannot be imported: AttributeError"),
         ('odd = "fegear_odd:STAGE"', "STAGE = 1", "is a int, and must be a fegear.engine.stage.Stage"),
         ('geometry = "fegear_odd:STAGE"', "STAGE = 1", "has a name that is taken"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_with_a_distribution_is_said_with_its_name(folder, point, source, rule):
-    installed(folder, PROJECT.format(point), source, "fegear_odd")
-    scene = build_scene({**CASE, "results": ["of-others"]}, "case", Path())
-    with pytest.raises(InputError, match=re.escape(rule)) as refused:
-        make_plan(scene, STAGES)
-    assert "fegear-odd 2" in str(refused.value)
-    make_plan(build_scene({**CASE, "results": ["geometry"]}, "case", Path()), STAGES)  # others are not held up
+def test_what_is_wrong_with_a_distribution_is_said_with_its_name(weights, point, source, rule):
+    installed(weights, PROJECT.format(point), source, "fegear_odd")
+    said = command("results", cwd=weights).stdout  # which lists all others
+    assert rule in said
+    assert "fegear-odd 2" in said
+    assert "what the gears of a pair weigh" in said
+    if point.startswith("odd"):
+        with pytest.raises(InputError, match=re.escape(rule)):
+            planned("odd")
+    planned("geometry")  # others are not held up
+    planned("weights")
 
 
-def test_files_outside_of_the_folder_of_an_export_are_refused(folder):
+def planned(*results):
+    scene = build_scene({**CASE, "results": list(results)}, "case", Path())
+    return scene, make_plan(scene, STAGES)
+
+
+def test_of_two_distributions_with_one_name_neither_is_taken(weights):
+    installed(weights, PROJECT.format('weights = "fegear_odd:STAGE"'), "STAGE = 1", "fegear_odd")
+    with pytest.raises(InputError, match="has the name of another one"):
+        planned("weights")
+
+
+ODD_STAGES = """
+from dataclasses import dataclass, replace
+from fegear.base.errors import InputError
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Stage, Task
+from fegear.engine.value import Value
+@dataclass(frozen=True)
+class Asked:
+    name: str
+GOOD = Stage(subjects=lambda scene: tuple(scene.pairs), inputs=lambda scene, name: Asked(name),
+             compute=lambda asked, upstream, work: 1.0, present=lambda data, asked: Outcome())
+def fails(*args):
+    return 1 / 0
+def refuses(*args):
+    raise InputError("pair.I", "1", "must be two")
+"""
+
+
+@pytest.mark.parametrize(
+    ("change", "rule"),
+    [
+        ("", ""),
+        *((f"{key}=fails", "ZeroDivisionError: division by zero (fegear_odd.py, line 13)") for key in (
+            "subjects", "needs", "check", "inputs", "compute", "present")),
+        ("compute=refuses", "pair.I = 1: must be two"),
+        ("present=lambda data, asked: None", "present() must be of type Outcome, and is None"),
+        ("present=lambda data, asked: Outcome(remarks=(3,))", "each of remarks must be of type str, and is 3"),
+        ("present=lambda data, asked: Outcome(values=(Value('a', 1.0, 'no_unit'),))", "no_unit"),
+        ("present=lambda data, asked: Outcome(values=2 * (Value('a', 1.0),))", 'two values are called "a"'),
+        ("inputs=lambda scene, name: object()", "object has no content key"),
+        ("subjects=lambda scene: [1]", "subjects must be of type tuple"),
+        ("needs=lambda scene, name: (Task('nowhere', name),)", 'asks for "nowhere", which is no stage'),
+        ("needs=lambda scene, name: (Task('odd', name),)", "waits for itself"),
+        ("requires=('relief',)", "each of requires must be of type Need"),
+        ("title=None", "title must be of type str"),
+    ],
+)  # fmt: skip
+def test_what_goes_wrong_in_a_result_of_another_distribution_is_a_sentence(folder, change, rule):
+    installed(
+        folder, PROJECT.format('odd = "fegear_odd:STAGE"'), f"{ODD_STAGES}STAGE = replace(GOOD, {change})", "fegear_odd"
+    )
+    if not rule:
+        run_plan(*planned("odd"))
+        return
+    with pytest.raises(InputError, match=re.escape(rule)):
+        run_plan(*planned("odd"))
+
+
+WRONG_FORMATS = {
+    "out": "is no file in the folder of the export",
+    "fails": "division by zero", "answerless": "cannot unpack", "idle": "wrote nothing and said nothing",
+    "words": "must answer a list of paths and one of sentences",
+}  # fmt: skip
+
+
+def test_files_outside_of_the_folder_of_an_export_and_formats_that_fail_are_refused(folder):
     source = (
         "from pathlib import Path\nfrom fegear.output.formats import Format\n"
         "OUT = Format('case', 'a file elsewhere', lambda request: ([Path(__file__)], []))\n"
+        "FAILS = Format('case', 'fails', lambda request: 1 / 0)\n"
+        "ANSWERLESS = Format('case', 'answers None', lambda request: None)\n"
+        "IDLE = Format('case', 'writes nothing', lambda request: ([], []))\n"
+        "WORDS = Format('case', 'a sentence that is none', lambda request: ([], [3]))\n"
     )
     project = '[project]\nname = "fegear-odd"\nversion = "2"\n[project.entry-points."fegear.formats"]\n'
-    installed(folder, project + 'out = "fegear_odd:OUT"\n', source, "fegear_odd")
+    points = "".join(f'{one} = "fegear_odd:{one.upper()}"\n' for one in WRONG_FORMATS)
+    installed(folder, project + points, source, "fegear_odd")
     scene = build_scene({**CASE, "results": ["geometry"]}, "case", Path())
     target = folder / "written"
     target.mkdir()
-    with pytest.raises(InputError, match="is no file in the folder of the export"):
-        export_gears(scene, target, ["w"], "out")
+    for name, rule in WRONG_FORMATS.items():
+        with pytest.raises(InputError, match=rule):
+            export_gears(scene, target, ["w"], name)
+
+
+READERS = {
+    "fails": ("lambda path: 1 / 0", "division by zero"),
+    "none": ("lambda path: None", "must answer the text of a case, and answered a NoneType"),
+    "bytes": ("lambda path: b''", "answered a bytes"),
+    "surrogate": ("lambda path: chr(0xd800)", "surrogates not allowed"),
+    "no_toml": ("lambda path: 'a = = 1'", "is no valid TOML"),
+}
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_importers_that_fail_are_refused_in_a_sentence(folder, kind):
+    read, rule = READERS[kind]
+    source = f"from fegear.exchange.importers import Importer\nONE = Importer(('.odd',), 'odd', {read})\n"
+    project = '[project]\nname = "fegear-odd"\nversion = "2"\n[project.entry-points."fegear.importers"]\n'
+    installed(folder, f'{project}{kind} = "fegear_odd:ONE"\n', source, "fegear_odd")
+    (folder / "model.odd").write_text("1")
+    done = command("import", folder / "model.odd", "--out", "made.toml", cwd=folder)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert rule in done.stderr
+    assert not (folder / "made.toml").exists()
+
+
+def test_suffixes_that_are_a_text_are_refused():
+    """A model.s was read by an importer of ".suf", for the one is a part of the other."""
+    for suffixes in (".suf", ("suf",), (".SUF",)):
+        with pytest.raises(ValueError, match="suffixes must be a tuple"):
+            Importer(suffixes, "odd", str)

@@ -122,3 +122,20 @@ def test_modified_flank_lies_inside_the_involute_by_the_removal():
 def test_nonsense_is_refused(wrong):
     with pytest.raises(InputError, match=r"relief"):
         wrong()
+
+
+@pytest.mark.parametrize(
+    ("make", "key"),
+    [
+        (lambda: tip_relief(GEAR, 1e-5, length=1e-3, at_radius=0.02), "relief.tip.at_radius"),
+        (lambda: tip_relief(GEAR, 1e-5, start_radius=0.02), "relief.tip.start_radius"),
+        (lambda: root_relief(GEAR, 1e-5, length=1e-3, end_radius=0.02), "relief.root.end_radius"),
+        (lambda: crowning(GEAR, 1e-5, 0.02, 0.045), "relief.crowning.start_radius"),
+    ],
+    ids=["measured", "tip", "root", "crowning"],
+)
+def test_a_radius_inside_the_base_circle_is_refused_by_its_own_key(make, key):
+    """Roll angles of nan went on, with a warning of numpy, to "must lie below the tip's nan rad"."""
+    with pytest.raises(InputError, match="lies inside the base circle of 41") as refused:
+        make()
+    assert refused.value.key == key

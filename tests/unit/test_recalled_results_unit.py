@@ -1,13 +1,17 @@
 """Equal inputs are computed once where a cache is shared: what is recalled, what is not, and that both are said."""
 
+import ast
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import fegear
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache, arrays_of
 from fegear.case.reading import build_scene
+from fegear.engine.joined_names import WORDS
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
@@ -109,14 +113,37 @@ def test_the_order_of_the_gears_in_the_case_is_kept(first):
         assert tuple(table["gear"]) == order
 
 
-def test_names_that_join_to_one_table_are_refused():
+def test_names_that_join_to_one_table_are_refused_by_the_plan(monkeypatch):
     """The table of harmonics of pair I and the transmission error of pair harmonics_I overwrote each other."""
     gears = {name: {"teeth": 24, "module": "2 mm", "face_width": "10 mm"} for name in ("p", "w")}
     pair = {"driver": "p", "driven": "w", "load": "1000 N", "compliance": {"source": "cornell"}}
     document = {"results": ["transmission-error"], "gear": gears, "pair": {"I": pair, "harmonics_I": pair}}
     scene = build_scene(document, "case", Path())
+    with pytest.raises(InputError, match='"harmonics_I": joins to names of tables that "I" has'):
+        make_plan(scene, STAGES)
+    monkeypatch.setattr("fegear.engine.joined_names.WORDS", frozenset())  # a word that is not listed
     with pytest.raises(InputError, match="both have a table transmission_error_harmonics_I"):
         run_plan(scene, make_plan(scene, STAGES))
+
+
+def joined_words():
+    """What names that results make go on with, where shorter ones end: of all texts with a name behind them."""
+    stems = set()
+    for path in sorted((Path(fegear.__file__).parent / "results").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.JoinedStr) and isinstance(node.values[0], ast.Constant):
+                stem = node.values[0].value
+                stems |= {stem[:-1]} if re.fullmatch(r"[a-z0-9_]+_", stem) else set()
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) in {"Table", "Figure", "DeferredFigure"}:
+                name = node.args[0].value if node.args and isinstance(node.args[0], ast.Constant) else None
+                stems |= {name} if isinstance(name, str) else set()
+    return {long[len(stem) + 1 :] for stem in stems for long in stems if long.startswith(f"{stem}_")}
+
+
+def test_every_word_that_a_name_of_a_table_goes_on_with_is_known():
+    found = joined_words()
+    assert len(found) > 40
+    assert found <= WORDS
 
 
 def test_what_is_given_up_while_it_is_computed_is_not_kept():

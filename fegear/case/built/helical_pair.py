@@ -23,6 +23,8 @@ from fegear.geometry.pair import MEMBERS, GearPair, Member
 #: Columns of a load distribution file.
 _DISTRIBUTION = {"z": "length", "load": "line_load", "deflection": "length"}
 _HEADS = ("z [mm]", "load [N/mm]", "deflection [um]")
+#: A mesh that fits any range, in place of one that is not known yet.
+_ANY_MESH = MeshParameters(1.0, 0.0, 1e300)
 #: Parameters of the mesh as a case calls them, and the names of its fields.
 _OF_MESH = {"base_helix_angle": "base_helix_angle", "kappa": "kappa", "mu": "mu", "mesh_stiffness": "stiffness"}
 
@@ -52,6 +54,17 @@ class HelicalPairInputs:
         """Of its keys."""
         return f"transmissibility.{self.name}"
 
+    def refuse_unbuilt(self) -> None:
+        """Refuse a model, or the model at the ends and responses of a followed range, that cannot be built.
+
+        What limits a range limits its ends; where the mesh comes from loaded flanks, only they can say the rest.
+        """
+        mesh = self.mesh or _ANY_MESH
+        self.part.build(mesh, self.prefix)
+        for parameter, asked in (self.part.follow.ranges if self.part.follow else {}).items():
+            for value in (*asked.ends, *asked.responses):
+                model_at(self.part, mesh, self.name, parameter, value)
+
 
 def helical_pair_inputs(scene: Scene, name: str) -> HelicalPairInputs:
     """Collect what a case says of ``[transmissibility.NAME]``.
@@ -59,11 +72,13 @@ def helical_pair_inputs(scene: Scene, name: str) -> HelicalPairInputs:
     Raises
     ------
     InputError
-        If a half face width is not that which kappa and mu of the pair count in.
+        If a half face width is not that which kappa and mu of the pair count in, or the model cannot be built.
     """
     part = scene.case.transmissibility[name]
     if part.mesh.pair is None:
-        return HelicalPairInputs(part, mesh_of(scene, name), None, name)
+        found = HelicalPairInputs(part, mesh_of(scene, name), None, name)
+        found.refuse_unbuilt()
+        return found
     pair = scene.pairs[part.mesh.pair]
     half = 0.5 * pair.face_width
     for role in MEMBERS:
@@ -73,7 +88,9 @@ def helical_pair_inputs(scene: Scene, name: str) -> HelicalPairInputs:
                 f"transmissibility.{name}.{role}.half_face_width", f"{given.half_face_width * 1e3:.6g} mm",
                 f"is not half the common face width of pair {part.mesh.pair}, {half * 1e3:.6g} mm", "leave it out",
             )  # fmt: skip
-    return HelicalPairInputs(part.with_gears(*(_body(pair, m) for m in MEMBERS)), None, pair, name)
+    found = HelicalPairInputs(part.with_gears(*(_body(pair, m) for m in MEMBERS)), None, pair, name)
+    found.refuse_unbuilt()
+    return found
 
 
 def _body(pair: GearPair, member: Member) -> dict[str, float]:

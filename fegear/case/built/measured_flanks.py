@@ -132,9 +132,9 @@ def _profile_ends(scene: Scene, name: str) -> tuple[float, float]:
     gear, part = scene.gears[name], scene.case.gear[name].measured
     given = None if part is None else part.profile_range
     if given is not None:
-        ends = gear.base_radius * roll_of_radius(gear, np.array(given))
-        if not np.isfinite(ends).all():
+        if min(given) < gear.base_radius:
             raise InputError(f"gear.{name}.measured.profile_range", "(a list)", "reaches inside the base circle")
+        ends = gear.base_radius * roll_of_radius(gear, np.array(given))
         return float(ends.min()), float(ends.max())
     involute = gear.tooth.involute
     contact = [

@@ -169,10 +169,7 @@ class TransmissibilityInputs:
 def _inputs(scene: Scene, name: str) -> TransmissibilityInputs:
     part = scene.case.transmissibility[name]
     ratios = np.linspace(part.lambda_from, part.lambda_to, part.frequencies)
-    asked = helical_pair_inputs(scene, name)
-    if asked.mesh is not None:
-        asked.part.build(asked.mesh, asked.prefix)  # refuses what cannot be built before anything runs
-    return TransmissibilityInputs(asked, ratios, name)
+    return TransmissibilityInputs(helical_pair_inputs(scene, name), ratios, name)
 
 
 def mesh_needs(scene: Scene, name: str) -> tuple[Task, ...]:

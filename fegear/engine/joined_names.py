@@ -1,0 +1,51 @@
+"""Names of a case that would join to one name of two tables: pairs "I" and "harmonics_I".
+
+Tables and figures are called by what they hold and whose it is, ``transmission_error_I`` and
+``transmission_error_harmonics_I``, and files are called after them. A pair "harmonics_I" would write its transmission
+error over the harmonics of pair "I", after all of it has been computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from fegear.base.errors import InputError, shown
+
+#: What names of tables and figures go on with where shorter ones end: a test looks for them in all results.
+WORDS = frozenset({
+    "agma", "asymptotes", "candidates", "chart", "charts", "contact", "contact_kinds", "contact_pieces",
+    "contact_single", "convergence", "critical_speeds", "curves", "curves_summary", "design", "design_roll",
+    "designs", "determinants", "deviations", "distribution", "distribution_loads", "distribution_roll",
+    "distributions", "draws", "factors", "force", "forces", "foretold", "fracture", "friction", "geometry_check",
+    "harmonic", "harmonics", "histogram", "history", "in_ring", "influences", "iso_6336", "kinds", "load_sharing",
+    "loads", "loss", "loss_loads", "map", "members", "modes", "motion", "of", "on_teeth", "optimum", "over_face",
+    "over_face_loads", "passing", "peaks", "percentiles", "phases", "phasing", "pieces", "points", "pressure",
+    "ratios", "reliefs", "response", "ripple", "ripple_critical_speeds", "ripple_spectrum", "ripple_waterfall",
+    "roll", "root_stress", "rotational", "rotational_series", "safety", "series", "set", "shares", "sharing",
+    "sharing_loads", "sidebands", "single", "sn", "spectrum", "stress", "stress_histogram", "stress_history",
+    "stress_over_face", "stress_ratios", "stress_study", "study", "summary", "surface", "surface_over_face", "tooth",
+    "topography", "unequal", "vibration", "waterfall",
+})  # fmt: skip
+
+
+def refuse_joined(subjects: Iterable[str]) -> None:
+    """Refuse gears, pairs and meshes of which one is called like another with a word of a table before it.
+
+    Parameters
+    ----------
+    subjects : iterable of str
+        Names that tables of a run are made for.
+
+    Raises
+    ------
+    InputError
+    """
+    names = sorted({name for name in subjects if name})
+    for name in names:
+        for other in names:
+            word = name.removesuffix(f"_{other}")
+            if word != name and word in WORDS:
+                rule = (
+                    f"joins to names of tables that {shown(other)} has, such as those of its {word.replace('_', ' ')}"
+                )
+                raise InputError("gear, pair", shown(name), rule, "give one of them another name")
