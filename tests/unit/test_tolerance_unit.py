@@ -66,14 +66,30 @@ def test_a_missed_tolerance_is_refined_and_its_error_estimated_on_the_same_mesh(
     assert cache.shapes.computed == len(known.rounds)
     assert [one.error <= 2e-4 for one in known.rounds] == [False] * (len(known.rounds) - 1) + [True]
     assert known.rounds[-1].errors == pytest.approx(known.largest_errors(), rel=1e-6)
-    level = -3 + len(known.rounds) - 1
+    # Levels fall the error by three times on average: one round more, where whole levels one by one took two.
+    assert len(known.rounds) == 2
+    level = -3 + solution.levels_finer(known.rounds[0].error / 2e-4)
     assert known.settings == settings_at(level)
+    assert -2 < level <= -1
     assert known.coarse.mesh is known.fine.mesh
     assert known.coarse.flank.order == known.fine.flank.order - 1
     assert known.coarse.corner_distance > known.fine.corner_distance
     sizes = [one.unknowns for one in known.rounds]
     assert sizes == sorted(sizes)
     assert known.seconds["total"] == pytest.approx(sum(one.seconds for one in known.rounds))
+
+
+@pytest.mark.parametrize(
+    ("excess", "levels"), [(1.0 + 1e-9, 0.5), (1.5, 0.5), (1.6, 1.0), (3.0, 1.5), (6.0, 2.0), (1e9, 2.0)]
+)
+def test_a_tolerance_that_is_missed_by_little_is_refined_by_little(excess, levels):
+    """Every miss took a whole level: of an excess of a tenth a third more of the time than need be."""
+    assert solution.levels_finer(excess) == levels
+
+
+@pytest.mark.parametrize("excess", [np.inf, np.nan])
+def test_an_error_that_is_not_known_refines_as_far_as_any(excess):
+    assert solution.levels_finer(excess) == 2.0
 
 
 def test_errors_are_looked_for_once_for_tolerance_and_table(monkeypatch):

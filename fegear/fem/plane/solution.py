@@ -6,6 +6,7 @@ Solved tooth shapes are kept in memory and on disk: where a cache is handed down
 from __future__ import annotations
 
 import dataclasses
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,6 +32,8 @@ Progress = Callable[[str], None]
 
 #: How many solutions are tried at most.
 _MOST_ROUNDS = 4
+#: By what factor errors fall at least from one level to the next, and the farthest step.
+_FALLS, _FARTHEST = 2.5, 2.0
 
 
 def influence_of_shape(
@@ -160,7 +163,8 @@ def solve_to_tolerance(
     """Solve a gear as cheaply as a relative tolerance allows.
 
     The first settings are those that usually meet the tolerance (`level_for`). While the error estimate misses it,
-    edges are shortened by the square root of two.
+    edges are shortened by as much as its excess asks for: by a sixth for errors up to half again as large, by half at
+    most.
 
     Parameters
     ----------
@@ -190,7 +194,13 @@ def solve_to_tolerance(
         if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
             seconds = {**known.seconds, "total": sum(one.seconds for one in rounds)}
             return replace(known, rounds=tuple(rounds), seconds=seconds)
-        level += 1.0
+        level = min(level + levels_finer(rounds[-1].error / tolerance), FINEST_LEVEL)
+
+
+def levels_finer(excess: float) -> float:
+    """By how many levels, whole ones and halves, a solution that errs so many times too much is made finer."""
+    most = _FALLS**_FARTHEST
+    return 0.5 * math.ceil(2.0 * math.log(excess, _FALLS)) if excess < most else _FARTHEST
 
 
 def _estimate(fine: Influence, corner_distance: float, patch: float, coarse_patch: float) -> Estimate:

@@ -30,11 +30,17 @@ _GAUSS = np.polynomial.legendre.leggauss(6)
 def lagrange(order: int, xi: Array) -> Array:
     """Lagrange polynomials on equally spaced nodes of [0, 1], shape (order + 1, *xi.shape)."""
     nodes = np.linspace(0.0, 1.0, order + 1)
-    values = np.ones((order + 1, *np.shape(xi)))
+    off = np.stack([xi - node for node in nodes])
+    values = np.empty_like(off)
+    # All factors before each, then all behind it.
+    below = np.full(np.shape(xi), order**order / math.factorial(order))
     for i in range(order + 1):
-        for j in range(order + 1):
-            if i != j:
-                values[i] *= (xi - nodes[j]) / (nodes[i] - nodes[j])
+        values[i] = below
+        below = below * off[i]
+    above = np.ones(np.shape(xi))
+    for i in reversed(range(order + 1)):
+        values[i] *= (-1.0) ** (order - i) * math.comb(order, i) * above
+        above = above * off[i]
     return values
 
 
@@ -193,7 +199,7 @@ class LoadedFlank:
         along = xi[on_flank]
         low, high = (self.roll_squared[i].reshape(-1, *[1] * (along.ndim - 1)) for i in (e, e + 1))
         phi = self.base_half_angle - self.side * np.sqrt(np.maximum(low + (high - low) * along, 0.0))
-        normal[:, on_flank] = np.stack([-np.cos(phi), np.sin(phi)])
+        normal[0, on_flank], normal[1, on_flank] = -np.cos(phi), np.sin(phi)
         if not on_flank.all():
             off = ~on_flank
             beside = xi[off]
@@ -243,12 +249,12 @@ class LoadedFlank:
         node = edge[:, None] * self.order + np.arange(self.order + 1)
         column = np.stack([node, node + self.nodes])
         row = np.broadcast_to(position[:, None], column.shape)
-        values = np.moveaxis(along.sum(axis=3), 1, 2)
+        values = np.moveaxis(along, 1, 2)
         shape = (np.size(arc), 2 * self.nodes)
         return csr_array((values.ravel(), (row.ravel(), column.ravel())), shape=shape)
 
     def _pushed(self, arc: Array, half_width: Array) -> tuple[Index, Index, Array]:
-        """Edges and contacts as of `_pressed`, and what Gauss points give their nodes, shape (2, order + 1, n, q)."""
+        """Edges and contacts as of `_pressed`, and what they give the nodes, shape (2, order + 1, n)."""
         edge, position, xi, weight = self._pressed(arc, half_width)
         inward = self._normal(edge, xi)
         # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
@@ -256,7 +262,7 @@ class LoadedFlank:
         if beyond.any():
             inward[:, beyond] = self._normal_at_end[:, :, None]
         shape = lagrange(self.order, xi) * weight
-        return edge, position, shape * inward[:, None]
+        return edge, position, np.matmul(shape.transpose(1, 0, 2), inward.transpose(1, 2, 0)).transpose(2, 1, 0)
 
     def normal_patches(self, arc: Array, half_width: Array) -> Array:
         """Shares of the run's nodes in unit contacts, shape (nodes, P): loads on unknowns against the flank's normal.
@@ -267,7 +273,7 @@ class LoadedFlank:
             As for `patches`.
         """
         edge, position, xi, weight = self._pressed(arc, half_width)
-        return self._summed(edge, position, lagrange(self.order, xi) * weight, np.size(arc))
+        return self._summed(edge, position, (lagrange(self.order, xi) * weight).sum(axis=2), np.size(arc))
 
     def _pressed(self, arc: Array, half_width: Array) -> tuple[Index, Index, Array, Array]:
         """Gauss points of contacts' pressures on the edges under them.
@@ -288,16 +294,14 @@ class LoadedFlank:
         weight = h * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
         length = np.diff(self.arc)[edge][:, None]
         xi = (s[position][:, None] + a[position][:, None] * np.sin(theta) - self.arc[edge][:, None]) / length
-        total = np.zeros(s.size)
-        np.add.at(total, position, weight.sum(axis=1))
+        total = np.bincount(position, weight.sum(axis=1), s.size)
         return edge, position, xi, weight / total[position][:, None]
 
     def _summed(self, edge: Index, position: Index, values: Array, count: int) -> Array:
-        """Sum what Gauss points give the nodes of their edge, (order + 1, n, q), over contacts: shape (nodes, P)."""
-        loads = np.zeros((self.nodes, count))
-        node = edge[:, None] * self.order + np.arange(self.order + 1)
-        np.add.at(loads, (node, position[:, None]), values.sum(axis=2).T)
-        return loads
+        """Sum what the edges under contacts give their nodes, (order + 1, n), over contacts: shape (nodes, P)."""
+        place = (edge * self.order + np.arange(self.order + 1)[:, None]) * count + position
+        loads = np.bincount(place.ravel(), np.ascontiguousarray(values).ravel(), self.nodes * count)
+        return loads.reshape(self.nodes, count)
 
 
 class BoundaryUnknowns(Protocol):
