@@ -20,13 +20,17 @@ ON_REQUEST = "shown on request"
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One task of the plan, the reasons for it, effects that change it, and the stages that read it."""
+    """One task of the plan, the reasons for it, effects that change it, and the stages that read it.
+
+    `wanted`: whether a result of the case asks for it, and not only another task.
+    """
 
     task: Task
     stage: Stage
     reasons: tuple[str, ...]
     effects: tuple[str, ...]
     readers: tuple[Stage, ...] = ()
+    wanted: bool = False
 
     def inputs(self, scene: Scene) -> Any:
         """All that its result reads of the case."""
@@ -85,6 +89,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     reasons: dict[Task, list[str]] = {}
     order: list[Task] = []
+    asked_for: set[Task] = set()
     under: dict[Task, dict[Task, None]] = {}
 
     def require(task: Task, reason: str, result: str = "") -> None:
@@ -117,7 +122,9 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
                 "add the gear, pair or train that it is about" + _straight(scene),
             )
         for stage, subject in described:
-            require(Task(stage.name, subject), f'requested by results = ["{result}"]', result)
+            task = Task(stage.name, subject)
+            require(task, f'requested by results = ["{result}"]', result)
+            asked_for.add(task)
 
     for task in more:
         require(task, ON_REQUEST)
@@ -128,7 +135,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     steps = tuple(
         Step(
             task, stage, tuple(reasons[task]), tuple(e for e in on if e in stage.effects_on(scene, task.subject)),
-            tuple(reader for other, reader in stages_of.items() if task in under[other]),
+            tuple(reader for other, reader in stages_of.items() if task in under[other]), task in asked_for,
         )
         for task, stage in stages_of.items()
     )  # fmt: skip

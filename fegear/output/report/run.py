@@ -50,7 +50,7 @@ def _title(results: Results, task: Task) -> str:
 
 def _values(results: Results) -> tuple[Block, ...]:
     """Results of every task: wanted before those that only serve others, estimated before exact ones."""
-    wanted = {step.task for step in results.plan.steps if any(r.startswith("results asks") for r in step.reasons)}
+    wanted = {step.task for step in results.plan.steps if step.wanted}
     found = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
     found.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
     open_: list[Block] = []

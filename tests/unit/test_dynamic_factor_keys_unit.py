@@ -1,0 +1,32 @@
+"""Keys of dynamic factors that have a meaning only with some effects."""
+
+from pathlib import Path
+
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
+
+CASE = Path(__file__).parents[2] / "cases" / "lin_dynamic_factor.toml"
+
+
+def planned(*changes):
+    return make_plan(read_scene(CASE, ['results=["dynamic-factor"]', *changes]), STAGES)
+
+
+def test_averaging_is_of_motions_in_time_and_other_methods_of_all():
+    still = ("effects.contact_loss=false", "effects.parametric=false")
+    assert planned('dynamics.method="averaging"').steps
+    assert planned(*still).steps  # of the linear train no method is asked for
+    with pytest.raises(InputError, match="has a meaning only for motions in time"):
+        planned('dynamics.method="averaging"', *still)
+
+
+def test_a_backlash_that_is_not_the_gears_needs_the_effect():
+    assert planned("effects.contact_loss=false").steps
+    for backlash in ("20 um", "35 um"):
+        assert planned(f'train.mesh.I.backlash="{backlash}"').steps
+        with pytest.raises(InputError, match=r"has a meaning only with effects\.contact_loss = true"):
+            planned(f'train.mesh.I.backlash="{backlash}"', "effects.contact_loss=false")

@@ -1,0 +1,113 @@
+"""What stands where in the report of a run: titles of tasks, wanted values first, the pair in question first."""
+
+import copy
+import math
+from types import SimpleNamespace
+
+import pytest
+
+import fegear
+from fegear.engine.stage import Task
+from fegear.engine.value import Value
+from fegear.output.report import run as reported
+from fegear.output.report.blocks import Folded, Group, Heading, Values
+from fegear.output.report.gear_data import gear_sections
+
+GEARS = {
+    name: {"teeth": z, "module": "3 mm", "face_width": "10 mm", "bore_radius": "10 mm"}
+    for name, z in (("a", 20), ("b", 31), ("c", 41), ("d", 17))
+}
+CASE = {
+    "results": ["geometry", "load-sharing"],
+    "gear": GEARS,
+    "pair": {
+        name: {"driver": one, "driven": other, "load": "900 N", "compliance": {"source": "cornell"}}
+        for name, one, other in (("I", "a", "b"), ("II", "b", "c"))
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def ran():
+    return fegear.run(CASE, progress=False)
+
+
+def test_a_task_is_called_as_its_stage_with_what_it_is_about(ran):
+    assert reported._title(ran, Task("load-sharing", "I")) == "Load sharing: I"
+    assert reported._title(ran, Task("load-sharing", "II")) == "Load sharing: II"
+    assert reported._title(ran, Task("geometry", "")) != reported._title(ran, Task("load-sharing", "I"))
+    assert reported._title(ran, Task("some-other", "x")) == "Some other: x"
+    assert reported._title(ran, Task("some-other", "")) == "Some other"
+
+
+def test_the_pair_that_is_asked_about_comes_first(ran):
+    def pairs(results):
+        return [section.title for section in gear_sections(results)]
+
+    assert pairs(ran) == ["Gear data: pair I", "Gear data: pair II", "Gear data"]
+    document = copy.deepcopy(CASE) | {"stiffness": {"pair": "II"}}
+    other = fegear.run(document | {"results": ["geometry"]}, progress=False)
+    assert pairs(other) == ["Gear data: pair II", "Gear data: pair I", "Gear data"]
+
+
+def values_of(*counts):
+    """Results of tasks with so many values each: wanted or not, with errors or not."""
+    steps, outcomes = [], {}
+    for name, count, wanted, error in counts:
+        task = Task(name, "")
+        steps.append(SimpleNamespace(task=task, stage=SimpleNamespace(title=name.upper()), wanted=wanted))
+        outcomes[task] = SimpleNamespace(values=tuple(Value(f"{name}{k}", 1.0, "", error) for k in range(count)))
+    case = SimpleNamespace(accuracy=SimpleNamespace(tolerance=1e-2))
+    return SimpleNamespace(plan=SimpleNamespace(steps=steps), outcomes=outcomes, scene=SimpleNamespace(case=case))
+
+
+def told(results):
+    found = []
+    for block in reported._values(results):
+        if isinstance(block, Folded):
+            found.append(block.title)
+        else:
+            assert isinstance(block, Group)
+            head, *rest = block.blocks
+            assert isinstance(head, Heading)
+            found.append((head.words, *(len(one.values) if isinstance(one, Values) else one.title for one in rest)))
+    return found
+
+
+def test_sixteen_values_are_open_and_the_others_folded():
+    found = told(values_of(("a", 9, True, 0.1), ("b", 7, True, 0.1), ("c", 1, True, 0.1)))
+    assert found == [("A", 9), ("B", 7), "C (1 values)"]
+    found = told(values_of(("a", 20, True, 0.1), ("b", 1, True, 0.1)))
+    assert found == [("A", 16, "4 more of them"), "B (1 values)"]
+    assert told(values_of(("a", 17, True, 0.1))) == [("A", 16, "1 more of them")]
+    assert told(values_of(("a", 16, True, 0.1))) == [("A", 16)]
+
+
+def test_wanted_values_come_before_those_that_serve_and_estimated_before_exact_ones():
+    found = told(
+        values_of(("serving", 1, False, 0.1), ("exact", 1, True, None), ("known", 1, True, 0.1), ("none", 0, True, 0.1))
+    )
+    assert found == [("KNOWN", 1), ("EXACT", 1), ("SERVING", 1)]
+    # Where nothing says why, all are alike.
+    found = told(values_of(("a", 1, False, None), ("b", 1, False, 0.1)))
+    assert found == [("B", 1), ("A", 1)]
+
+
+def test_values_of_tasks_that_only_serve_others_stand_last_in_a_report(ran):
+    """The order was lost with a word: reasons were looked through for how they began."""
+    document = copy.deepcopy(CASE)
+    document["train"] = {
+        "body": {"motor": {"gears": ["a"]}, "brake": {"gears": ["b"]}},
+        "torque": {"motor": f"{900.0 * 0.03 * math.cos(math.radians(20.0))} N*m"}, "balance": "brake",
+        "mesh": {"I": {"driver": "motor", "driven": "brake", "damping_ratio": 0.05}},
+    }  # fmt: skip
+    document |= {"results": ["tooth-force"], "dynamics": {"speed": "2000 rpm"}}
+    results = fegear.run(document, progress=False)
+    wanted = {step.task.stage: step.wanted for step in results.plan.steps}
+    assert wanted["tooth-force"]
+    assert not any(asked for stage, asked in wanted.items() if stage != "tooth-force")
+    heads = [one.blocks[0].words for one in reported._values(results) if isinstance(one, Group)]
+    served = [task for task, outcome in results.outcomes.items() if outcome.values and not wanted[task.stage]]
+    assert served  # the train and its modes have values, too, and are found before
+    assert heads[0] == reported._title(results, Task("tooth-force", "I"))
+    assert not any(step.wanted for step in ran.plan.steps if step.task.stage not in ("geometry", "load-sharing"))
