@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.dynamics.train.periodic import Periodic
-from fegear.dynamics.train.single_tooth import positions
+from fegear.dynamics.train.single_tooth import positions, summed_harmonics
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -35,3 +35,13 @@ def test_round_off_of_a_corner_adds_no_place(steps):
     sides = added.reshape(-1, 2)
     assert np.ptp(sides, axis=1) == pytest.approx(4e-7, rel=1e-3)
     assert np.abs(np.abs(np.mod(sides.mean(axis=1), 1.0) - 0.5) - 0.2).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("pitches", "asked", "summed"),
+    [((1,), 4, 256), ((1,), 300, 300), ((2,), 4, 128), ((3,), 4, 86), ((1, 28), 4, 10), ((28, 1), 40, 40)],
+)
+def test_lines_of_a_tooth_force_are_256_over_the_longest_cycle_at_least(pitches, asked, summed):
+    """Mesh harmonics: where errors repeat after several pitches there are so many rotational lines to each."""
+    data = SimpleNamespace(errors=[SimpleNamespace(pitches=count) for count in pitches])
+    assert summed_harmonics(data, asked) == summed
