@@ -11,6 +11,7 @@ from matplotlib.path import Path
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.reading import build_scene
 from fegear.geometry.gear import Gear
+from fegear.geometry.gear_data import measured
 from fegear.geometry.inspection import span
 from fegear.geometry.outline import gear_outline
 from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
@@ -18,7 +19,7 @@ from fegear.geometry.pair import GearPair, active_profile, path_points, specific
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.results.gear.drawing import in_mesh
-from fegear.results.gear.geometry import drawing_of, measured, pair_table, unmeasured_remarks
+from fegear.results.gear.geometry import drawing_of, pair_table, unmeasured_remarks
 
 
 def gear(z, shift=0.0, module=1e-3, **more):
@@ -85,7 +86,7 @@ def test_a_gear_without_balls_is_named(tmp_path, monkeypatch):
     def never(*_given):
         raise GeometryError("ball_diameter", 1.0, "fits no space")
 
-    monkeypatch.setattr("fegear.results.gear.geometry.over_balls", never)
+    monkeypatch.setattr("fegear.geometry.gear_data.over_balls", never)
     assert measured(drawing.gears["a"]) is None
     assert "Gear a" in unmeasured_remarks(drawing)[0]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.table import Column, Table
+from fegear.geometry.gear_data import MODIFICATIONS
 from fegear.geometry.pair import MEMBERS
 from fegear.output.report.blocks import (
     Block,
@@ -21,7 +22,6 @@ from fegear.output.report.page import Section
 from fegear.output.tables import table_file
 from fegear.results.gear.body_section import body_figures
 from fegear.results.gear.drawing import pair_figure
-from fegear.results.gear.geometry import MEANINGS as MODIFICATIONS
 from fegear.results.gear.geometry import drawing_of, lone_table, pair_table, pair_values
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ _GROUPS = (
         "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
     )),
     ("Measurement", ("tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls")),
-    ("Modifications", tuple(MODIFICATIONS)),
+    ("Modifications", MODIFICATIONS),
     ("In mesh", ("tip_clearance", "specific_sliding_start", "specific_sliding_end")),
 )  # fmt: skip
 
@@ -58,8 +58,8 @@ def gear_sections(results: Results) -> tuple[Section, ...]:
     names = sorted(drawing.pairs, key=lambda name: name != first)
     sections = []
     for name in names:
-        table, pair = pair_table(name, drawing), drawing.pairs[name]
-        blocks = _blocks(table, pair_values(name, pair), written, _loaded(results, name))
+        table = pair_table(name, drawing)
+        blocks = _blocks(table, pair_values(name, drawing), written, _loaded(results, name))
         sections.append(Section(f"Gear data: pair {name}", (*blocks, Plot(pair_figure(name, drawing)))))
     lone = lone_table(drawing)
     if lone is not None:

@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.engine.declared import column_of
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points, outline
 from fegear.engine.figure.panel import Panel
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
+from fegear.geometry.gear_data import GearData
 from fegear.geometry.outline import tooth_outline
 
 if TYPE_CHECKING:
@@ -104,7 +106,7 @@ def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tup
     form, fe = (np.array([getattr(gear, key) for gear in found.gears]) for key in ("form_stress", "fe"))
     stress = column("sigma_f0", "MPa", "nominal root stress with every factor", "stress")
     columns = (
-        Column("gear", np.array(asked.names), "", "name of the gear"),
+        column_of(GearData, "name", np.array(asked.names)),
         column("z_n", "", "number of teeth of the virtual spur gear", "teeth"),
         column("Y_F", "", "form factor without f_epsilon", "form", "Y_F"),
         column("f_epsilon", "", "load distribution, edition 2019", "load_distribution"),
