@@ -13,7 +13,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Bars, Curve, HeatMap, Stems
 from fegear.engine.sheet.chart import LOADS, Bundle, Chart, Family, Line, Map, Over
 from fegear.engine.sheet.each import Each
-from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
@@ -146,6 +146,9 @@ def test_values_are_of_the_nominal_load_with_their_errors() -> None:
     assert list(Number("largest", of="nothing").values(SEEN)) == []
     assert list(Number("largest", of="swing", si="nothing").values(SEEN)) == []
     assert list(Number("largest", of="swing", when="nothing").values(SEEN)) == []
+    over_loads = Number("largest", error=lambda _: np.array([1e-7, 2e-7]), of="swing")
+    assert next(iter(over_loads.values(SEEN))).error == pytest.approx(0.2)
+    assert next(iter(Number("largest", exact, "swing").values(SEEN))).error == 0.0
     each = list(Number("largest", each="parts", owner="{key}").values(SEEN))
     assert [one.name for one in each] == ["a.largest", "b.largest"]
 
@@ -199,6 +202,13 @@ def test_a_path_leads_to_a_quantity() -> None:
     assert next(iter(several.tables(SEEN)))["word"].tolist() == ["stiff", "stiff"]
 
 
+def test_columns_are_repeated_together() -> None:
+    both = Each("parts", Cell("deflection", name="sag_{key}"), Off("deflection", "off", name="sag_{key}"))
+    (table,) = Rows("t", "T", ("x", both), of="swing").tables(SEEN)
+    assert table.keys() == ("x", "sag_a", "sag_a_error", "sag_b", "sag_b_error")
+    np.testing.assert_allclose(table["sag_b_error"], [2e-3, 4e-3])
+
+
 def test_maps_level_lines_and_panels_for_each() -> None:
     seen = Seen({"a": FIELD, "b": replace(FIELD, heat=None)}, name="I")
     over = Over(
@@ -223,6 +233,8 @@ def test_maps_level_lines_and_panels_for_each() -> None:
     np.testing.assert_allclose(level.y, [2.5, 2.5, 2.5])
     np.testing.assert_allclose((ends.x, ends.y), ([0.0, 2.0], [2.5, 2.5]))
     assert (first.y.label, len(second.items)) == ("across", 2)  # what is None is not drawn
+    named = Over("x", (Line("deflection", each=Family(lambda seen: [SWING])),), "mean")  # the panel's, not the line's
+    assert next(Chart("f", "F", "C", (named,), of=lambda _: FIELD).figures(seen)).panels[0].y.label == "mean"
     of = Over("x", ("mean",), each=lambda seen: [seen], of=lambda seen: seen.one.data["b"])
     assert next(Chart("f", "F", "C", (of,)).figures(seen)).panels[0].y.label == "mean"
 

@@ -150,7 +150,7 @@ class Over:
     x : str or Axis or function
         Abscissa: a quantity, or an axis of its own, whose numbers are those of the lines' `x`.
     y : str or Axis or function
-        Ordinate: a quantity, that of the first line if empty.
+        Ordinate: a quantity of what the panel is of; that of the first line if empty.
     lines : tuple of Line, Bundle, Map or str
     marks : where, optional
         Marks and zones across the panel.
@@ -238,8 +238,11 @@ def _panel(seen: Seen, owner: Any, over: Over) -> Panel:
     lines = [Line(one) if isinstance(one, str) else one for one in over.lines]
     lines = [line for line in lines if seen.holds(line.when)]
     x = _axis(seen, owner, over.x, over.x_options)
-    first = replace(lines[0].lines[0], each=lines[0].family) if isinstance(lines[0], Bundle) else lines[0]
-    y = _axis(seen, _owner(seen, owner, first), over.y or first.y, over.options)
+    if over.y:
+        y = _axis(seen, owner, over.y, over.options)
+    else:
+        first = replace(lines[0].lines[0], each=lines[0].family) if isinstance(lines[0], Bundle) else lines[0]
+        y = _axis(seen, _owner(seen, owner, first), first.y, over.options)
     base = over.x if isinstance(over.x, str) else "x"
     items = tuple(item for line in lines for item in _items(seen, owner, line, base))
     marks: tuple[Mark | Zone, ...] = () if over.marks is None else tuple(seen.find(over.marks))

@@ -5,9 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from fegear.engine.declared import value_of
 from fegear.engine.sheet.seen import Seen, Text, Where
 from fegear.engine.value import Value
+
+
+def exact(_seen: Seen) -> float:
+    """Error of a number in which nothing is estimated."""
+    return 0.0
 
 
 @dataclass(frozen=True)
@@ -18,7 +25,7 @@ class Number:
     ----------
     quantity : str
     error : where, optional
-        Its estimated error; unknown where it is None.
+        Its estimated error, one number or one for each load; unknown where it is None.
     of : where
         What declares it. None there: no value.
     si : where, optional
@@ -49,8 +56,10 @@ class Number:
             if (number := getattr(found, self.quantity) if self.si is None else one.find(self.si)) is None:
                 continue
             error = None if self.error is None else one.find(self.error)
+            if error is not None:
+                error = float(error if np.ndim(error) == 0 or one.nominal is None else error[one.nominal])
             yield value_of(
-                found, self.quantity, one.said(self.owner), None if error is None else float(error), si=number,
+                found, self.quantity, one.said(self.owner), error, si=number,
                 load=one.nominal, name=one.said(self.name), meaning=one.said(self.meaning),
                 further=one.said(self.further),
             )  # fmt: skip

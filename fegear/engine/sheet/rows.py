@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.shown import columns_declared
 from fegear.engine.declared import column_of, columns_on_grid, error_column, stacked
+from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.seen import Seen, Text, Where, reach
 from fegear.engine.table import Column, Table
 
@@ -78,7 +79,7 @@ class Off:
     name: Text = ""
 
 
-Columns = tuple[Every | Cell | Off | str, ...]
+Columns = tuple[Every | Cell | Off | Each | str, ...]
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class Rows:
     Parameters
     ----------
     name, title : text
-    columns : tuple of Every, Cell, Off or str
+    columns : tuple of Every, Cell, Off, Each of these, or str
     of : where, optional
         What declares the quantities: one object with arrays, or a sequence of objects, a row each. None there: no
         table.
@@ -175,6 +176,10 @@ def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Co
             made += [_plain(owner, spec, load)] if _has(owner, spec) else []
         elif isinstance(spec, Off):
             made += _off(seen, owner, spec, load)
+        elif isinstance(spec, Each):
+            for one in seen.each(spec.where):
+                if one.holds(spec.when):
+                    made += _flat(one, one.one, spec.elements, load)
         else:
             for one in seen.each(spec.each):
                 made += _cell(one, owner if spec.each is None else one.one, spec, load)

@@ -24,7 +24,8 @@ from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.results.helical.drawn_forced_response import COMPONENTS, forces_figure, spectrum_figure
 from fegear.results.helical.transmissibility import mesh_needs, own_mesh
-from fegear.results.pair.mesh_stiffness_matrix import loaded_harmonics, mesh_stiffness_of
+from fegear.results.pair.mesh_stiffness_data import loaded_harmonics
+from fegear.results.pair.mesh_stiffness_matrix import mesh_stiffness_of
 
 #: Harmonics of a pair or a table that are taken by default.
 _HARMONICS = 8

@@ -32,7 +32,8 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.results.helical.mode_shapes import mode_shape_figures
-from fegear.results.pair.mesh_stiffness_matrix import MeshStiffnessData, mesh_stiffness_of, needs_mesh_stiffness
+from fegear.results.pair.mesh_stiffness_data import MeshStiffnessData
+from fegear.results.pair.mesh_stiffness_matrix import mesh_stiffness_of, needs_mesh_stiffness
 
 Response = Transmissibility | ReducedTransmissibility
 Entry = tuple[str, Array]

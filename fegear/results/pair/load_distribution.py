@@ -1,7 +1,4 @@
-"""Stage ``load-distribution``: line load and pressure over the flanks of gears with a width, and what they sum to.
-
-Figures of loaded flanks: line load over the plane of action with contact lines, and load over the face.
-"""
+"""Stage ``load-distribution``: line load and pressure over the flanks of gears with a width, and what they sum to."""
 
 from __future__ import annotations
 
@@ -16,29 +13,30 @@ from fegear.case.built.solid_influence import check_ends
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.loaded_teeth import LoadHistory
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, error_column, value_of
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import DeferredFigure, Figure
-from fegear.engine.figure.items import Curve, HeatMap, few, ramp
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.figure import DeferredFigure
+from fegear.engine.sheet.chart import LOADS, Chart, Family, Line, Map, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.pair.flank_surface_tables import flank_pressure_figure
+from fegear.results.pair.load_over_flanks import LoadOverFlanks
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.pair.loaded_teeth import drawn_loads, gears_of
+from fegear.results.pair.loaded_teeth import gears_of
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 
 #: Begins the names of what a pair's plane teeth have, too.
 _WIDE = "wide_"
+#: Contact lines that are drawn: all there are.
+_ALL = 1000
 #: K_Hbeta above this part of the largest that its averaging allows is remarked on.
 _OF_MOST = 0.5
 
@@ -63,100 +61,152 @@ def _inputs(scene: Scene, name: str) -> LoadDistributionInputs:
     return LoadDistributionInputs(name, "" if name in scene.wide_pairs else _WIDE)
 
 
-def _stations(name: str, found: LoadedFlanks, i: int) -> Table:
-    """Every station of every contact line."""
-    lines = found.lines
-    on = lines.present
-    position = np.broadcast_to(np.arange(1, lines.roll.size + 1)[:, None], on.shape)
-    roll = np.broadcast_to(lines.roll[:, None], on.shape)
-    load, pressure = found.line_load[:, :, i], found.pressure[:, :, i]
-    width = found.known.half_width(found.line_load)[:, :, i]
-    columns = (
-        Column("position", position[on], "", "number of the roll position"),
-        column_of(lines, "roll", roll[on]),
-        *(column_of(lines, key, getattr(lines, key)[on]) for key in ("pair", "x", "z")),
-        column_of(found, "line_load", load[on]),
-        column_of(found, "pressure", pressure[on]),
-        Column("half_width", width[on], "um", "of the contact that goes with it"),
-        Column("active", (load > 0.0)[on].astype(float), "", "1 where the flanks touch"),
-        column_of(lines, "at_edge", lines.at_edge[on].astype(float)),
-    )
-    return Table(f"load_distribution_{name}", columns, f"Line load and pressure on the flanks of pair {name}")
+def _station(key: str) -> Cell:
+    """What the contact lines know of every station."""
+    return Cell(f"found.lines.{key}", lambda seen: seen.data.stations.of_lines(key))
 
 
-def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
-    ends, whole = found.cells, found.over_face[:, :, i]
-    mean = float(found.load[i] / (ends[-1] - ends[0]))
-    columns = (
-        column_of(found.lines, "z", 0.5 * (ends[1:] + ends[:-1])),
-        column_of(found, "mean_over_face", load=i),
-        column_of(found, "over_face", whole.min(axis=0), name="least_line_load"),
-        column_of(found, "over_face", whole.max(axis=0), name="largest_line_load"),
-        Column("factor", found.mean_over_face[:, i] / mean, "", "mean_line_load over load per face width"),
-    )
-    return Table(f"load_over_face_{name}", columns, f"Load over the face of pair {name}")
-
-
-def _positions(name: str, data: LoadedWidePair) -> Table:
-    found, i = data.found, data.at
-    columns = [
-        column_of(found.lines, "roll"),
-        te := column_of(found, "transmission_error", load=i),
-        error_column(te, data.error.transmission_error[:, i]),
-        Column("te_unloaded", data.unloaded, "um", "of rigid flanks: what is left of te as the load goes to zero"),
-        Column("mesh_stiffness", found.contact.stiffness[:, i], "N/um", "of the stations that touch: tangent"),
-    ]
-    for j, share, error in zip(found.pair_numbers.tolist(), found.share[:, :, i], data.error.share[:, :, i],
-                               strict=True):  # fmt: skip
-        columns += [
-            Column(f"share_{j}", share, "", f"of the load on pair {j}"),
-            Column(f"share_{j}_error", error, "", "estimated error"),
-        ]
-    columns.append(column_of(found, "equilibrium", load=i))
-    return Table(f"load_distribution_roll_{name}", tuple(columns), f"Shares and transmission error of pair {name}")
-
-
-def _loads(name: str, data: LoadedWidePair) -> Table:
-    columns = [column_of(ErrorOverPitch, "total_load", data.found.load, name="load")]
-    for key, further in (("mean", " over a base pitch"), ("peak_to_peak", ""), ("face_load_factor", "")):
-        stated = column_of(data.error, key, getattr(data.stated, key), further=further)
-        columns += [stated, error_column(stated, getattr(data.error, key), "estimated error")]
-    return Table(f"load_distribution_loads_{name}", tuple(columns), f"Pair {name} under every load")
-
-
-def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
-    name, found, i = inputs.name, data.found, data.at
-    stated, largest, cells = data.stated, data.largest, found.cells.size - 1
-    averaged = (
-        f"largest load per face width over the mean one, averaged over a base pitch and over 1/{cells} of the "
-        f"face: at most {cells}"
+def _over_loads(key: str, further: str = "") -> tuple[Cell, Off]:
+    """A number of the whole base pitch under every load, with its error."""
+    return (
+        Cell(key, f"pair.stated.{key}", "pair.error", further=further),
+        Off(key, f"pair.error.{key}", "estimated error", "pair.error"),
     )
 
-    def of_pitch(key: str, meaning: str = "") -> Value:
-        number, off = float(getattr(stated, key)[i]), float(getattr(data.error, key)[i])
-        return value_of(data.error, key, name, off, si=number, meaning=meaning)
 
-    def also(of: type, key: str, si: float, off: float, further: str = "") -> Value:
-        return value_of(of, key, name, off, si=si, name=f"{inputs.also}{key}", further=further)
-
-    error = data.error
-    values: tuple[Value, ...] = (
-        also(ErrorOverPitch, "te_mean", float(stated.mean[i]), float(error.mean[i])),
-        also(ErrorOverPitch, "te_peak_to_peak", float(stated.peak_to_peak[i]), float(error.peak_to_peak[i])),
-        of_pitch("face_load_factor", meaning=averaged),
-        of_pitch("largest_line_load"),
-        also(LoadHistory, "largest_hertz_pressure", largest.pressure, largest.pressure_error, f", {largest.place}"),
-        also(LoadHistory, "largest_share", largest.share, largest.share_error),
-    )
-    whole = data.over.found
-    tables = (_stations(name, found, i), _over_face(name, whole, i), _positions(name, data), _loads(name, data))
-    figures = load_distribution_figures(name, whole, i)
-    settings = {"equilibrium": float(found.equilibrium.max())}
-    return Outcome(data, tables, values, settings, tuple(_remarks(name, data)), figures)
+def _stated(key: str, meaning: str = "") -> Number:
+    """The same at the nominal load."""
+    return Number(key, f"pair.error.{key}", "pair.error", f"pair.stated.{key}", meaning=meaning)
 
 
-def _remarks(name: str, data: LoadedWidePair) -> list[str]:
-    found, i = data.found, data.at
+def _also(of: type, key: str, si: str, error: str, further: str = "") -> Number:
+    """A number that a pair has by its other results, too."""
+    return Number(key, error, lambda _: of, si, name=f"{{asked.also}}{key}", further=further)
+
+
+_DRAWN_LINE = {"dash": "solid", "markers": False}
+_FACE_TITLE = "Load over the face of pair {name}"
+_TABLES = (
+    Rows(
+        "load_distribution_{name}", "Line load and pressure on the flanks of pair {name}",
+        (
+            "position", *(_station(key) for key in ("roll", "pair", "x", "z")),
+            Cell("found.line_load", "stations.line_load"), Cell("found.pressure", "stations.pressure"), "half_width",
+            "active", Cell("found.lines.at_edge", lambda seen: seen.data.stations.of_lines("at_edge").astype(float)),
+        ),
+        of="stations",
+    ),
+    Rows(
+        "load_over_face_{name}", _FACE_TITLE,
+        (
+            "z", "found.mean_over_face", Cell("found.over_face", "over_face.least", name="least_line_load"),
+            Cell("found.over_face", "over_face.largest", name="largest_line_load"), "factor",
+        ),
+        of="over_face",
+    ),
+    Rows(
+        "load_distribution_roll_{name}", "Shares and transmission error of pair {name}",
+        (
+            "pair.found.lines.roll", "pair.found.transmission_error",
+            Off("pair.found.transmission_error", "over_roll.te_error"), "unloaded", "mesh_stiffness",
+            Each(
+                "over_roll.shares", Cell("share", name="share_{one.number}", further=" {one.number}"),
+                Off("share", "error", "estimated error", name="share_{one.number}"),
+            ),
+            "pair.found.equilibrium",
+        ),
+        of="over_roll",
+    ),
+    Rows(
+        "load_distribution_loads_{name}", "Pair {name} under every load",
+        (
+            Cell("total_load", "pair.found.load", lambda _: ErrorOverPitch, name="load"),
+            *_over_loads("mean", " over a base pitch"), *_over_loads("peak_to_peak"), *_over_loads("face_load_factor"),
+        ),
+    ),
+)  # fmt: skip
+_VALUES = (
+    _also(ErrorOverPitch, "te_mean", "pair.stated.mean", "pair.error.mean"),
+    _also(ErrorOverPitch, "te_peak_to_peak", "pair.stated.peak_to_peak", "pair.error.peak_to_peak"),
+    _stated(
+        "face_load_factor",
+        "largest load per face width over the mean one, averaged over a base pitch and over 1/{d.cells} of the face: "
+        "at most {d.cells}",
+    ),
+    _stated("largest_line_load"),
+    _also(
+        LoadHistory, "largest_hertz_pressure", "pair.largest.pressure", "pair.largest.pressure_error",
+        ", {d.pair.largest.place}",
+    ),
+    _also(LoadHistory, "largest_share", "pair.largest.share", "pair.largest.share_error"),
+)  # fmt: skip
+_FIGURES = (
+    Chart(
+        "load_distribution_{name}", "Line load over the plane of action of pair {name}",
+        "Pair {name}: line load as the contact line moves from the driver's root (left) to its tip (right), and "
+        "contact lines at {d.plane.count} roll positions. The scale of colours ends at {d.plane.top:.4g}; tips and "
+        "ends of the face may bear more.",
+        (
+            Over(
+                "lines.x",
+                (
+                    Map("load", "z", "x", limits=lambda seen: (0.0, seen.data.plane.top)),
+                    Line(
+                        "z", x="x", look={**_DRAWN_LINE, "width": 0.8},
+                        each=Family("plane.drawn", "", "ink", most=_ALL),
+                    ),
+                ),
+                "lines.z", panel={"height": 1.4},
+            ),
+        ),
+        of="plane", under="{load:.5g} N",
+    ),
+    Chart(
+        "load_over_face_{name}", _FACE_TITLE,
+        "Pair {name}: load of all contact lines together per face width; K_Hβ = {d.over_face.face_load_factor:.4g}.",
+        (
+            Over(
+                "z",
+                (
+                    Line(
+                        "load", look={**_DRAWN_LINE, "width": 1.2},
+                        each=Family("over_face.at_rolls", "roll {one.roll:.3g}", "ramp"),
+                    ),
+                    Line("found.mean_over_face", "mean over a base pitch", "ink", look={**_DRAWN_LINE, "width": 2.4}),
+                    Line("even", "load / face width", "grey", look={"dash": "dash", "markers": False}, ends=True),
+                ),
+                "found.over_face", options={"zero": True},
+            ),
+        ),
+        of="over_face", under="{load:.5g} N",
+    ),
+    Chart(
+        "load_over_face_loads_{name}", "Load over the face of pair {name} under every load",
+        "Pair {name}: load per face width, averaged over a base pitch, over its mean; the largest of it is K_Hβ.",
+        (
+            Over(
+                "z",
+                (
+                    Line("relative", each=LOADS, look=_DRAWN_LINE),
+                    Line("one", "even", "grey", look={"dash": "dash", "markers": False}, ends=True),
+                ),
+                options={"zero": True},
+            ),
+        ),
+        of="over_face", when=lambda seen: len(seen.loads) > 1,
+    ),
+)  # fmt: skip
+
+
+def _in_space(seen: Seen) -> tuple[DeferredFigure, ...]:
+    """Pressure on a tooth of either gear."""
+    made = partial(flank_pressure_figure, seen.name, seen.data.pair.over.found, seen.data.pair.at)
+    return (DeferredFigure(f"flank_pressure_{seen.name}", f"Pressure on the flanks of pair {seen.name}", made),)
+
+
+def _remarks(seen: Seen) -> list[str]:
+    """What edges and ends carry, and where the averaging over the face bounds K_Hbeta."""
+    name, found, i = seen.name, seen.data.pair.found, seen.data.pair.at
     lines, load = found.lines, found.line_load[:, :, i]
     remarks = []
     if (edge := float(np.where(lines.at_edge, load, 0.0).max())) > 0.0:
@@ -229,100 +279,22 @@ def _forecast(_scene: Scene, _name: str) -> Forecast:
     return forecasts.constant(0.05)
 
 
-#: Points of the maps along the line of action and along the face.
-_ACROSS, _ALONG = 121, 81
-
-
-#: Roll positions that are drawn, and where the scale of colours ends: this share of the places bears less.
-_DRAWN, _TOP = 4, 99.7
-
-
-def load_distribution_figures(name: str, found: LoadedFlanks, case: int) -> tuple[Figure | DeferredFigure, ...]:
-    """Describe all figures of one pair under one of its loads."""
-    pressure = DeferredFigure(
-        f"flank_pressure_{name}", f"Pressure on the flanks of pair {name}",
-        partial(flank_pressure_figure, name, found, case),
-    )  # fmt: skip
-    several = (_over_face_loads(name, found, case),) if found.load.size > 1 else ()
-    return _over_plane(name, found, case), _drawn_over_face(name, found, case), *several, pressure
-
-
-def _over_plane(name: str, found: LoadedFlanks, case: int) -> Figure:
-    pair, lines = found.pair, found.lines
-    x = np.linspace(pair.x_start, pair.x_end, _ACROSS)
-    z = np.linspace(lines.low, lines.high, _ALONG)
-    load = found.over_plane(x, z, case) * 1e-3
-    top = float(np.nanpercentile(load, _TOP))
-    items: list[HeatMap | Curve] = [HeatMap(x * 1e3, z * 1e3, load, "line load", "N/mm", limits=(0.0, top))]
-    start, pitch = float(lines.roll[0]), pair.base_pitch
-    drawn = [int(np.abs(lines.roll - start - (k + 0.5) * pitch / _DRAWN).argmin()) for k in range(_DRAWN)]
-    items += [
-        Curve(lines.x[p, s] * 1e3, lines.z[p, s] * 1e3, "", "ink", dash="solid", width=0.8, markers=False)
-        for p in sorted(set(drawn))
-        for s in lines.at(p)
-    ]
-    return Figure(
-        f"load_distribution_{name}",
-        f"Line load over the plane of action of pair {name}",
-        f"Pair {name}: line load as the contact line moves from the driver's root (left) to its tip (right), and "
-        f"contact lines at {len(set(drawn))} roll positions. The scale of colours ends at {top:.4g} N/mm; tips and "
-        "ends of the face may bear more.",
-        (Panel(axis_of(lines, "x"), axis_of(lines, "z"), tuple(items), height=1.4),),
-        under=f"{found.load[case]:.5g} N",
-    )
-
-
-def _drawn_over_face(name: str, found: LoadedFlanks, case: int) -> Figure:
-    ends, whole = found.cells * 1e3, found.over_face[:, :, case] * 1e-3
-    z = 0.5 * (ends[1:] + ends[:-1])
-    mean = float(found.load[case] / (found.lines.high - found.lines.low)) * 1e-3
-    chosen = few(len(whole), (), _DRAWN)
-    curves = [
-        Curve(z, whole[p], f"roll {found.lines.roll[p] * 1e3:.3g} mm", role, dash="solid", width=1.2, markers=False)
-        for p, role in zip(chosen, ramp(len(chosen)), strict=True)
-    ]
-    curves.append(
-        Curve(
-            z,
-            found.mean_over_face[:, case] * 1e-3,
-            "mean over a base pitch",
-            "ink",
-            dash="solid",
-            width=2.4,
-            markers=False,
-        )
-    )
-    curves.append(Curve(z[[0, -1]], np.full(2, mean), "load / face width", "grey", dash="dash", markers=False))
-    return Figure(
-        f"load_over_face_{name}",
-        f"Load over the face of pair {name}",
-        f"Pair {name}: load of all contact lines together per face width; K_Hβ = {found.face_load_factor[case]:.4g}.",
-        (Panel(axis_of(found.lines, "z"), axis_of(found, "over_face", zero=True), tuple(curves)),),
-        under=f"{found.load[case]:.5g} N",
-    )
-
-
-def _over_face_loads(name: str, found: LoadedFlanks, case: int) -> Figure:
-    ends, loads = found.cells * 1e3, found.load.tolist()
-    z = 0.5 * (ends[1:] + ends[:-1])
-    relative = found.mean_over_face / (found.load / (found.lines.high - found.lines.low))
-    curves = [
-        Curve(z, relative[:, i], label, role, dash="solid", markers=False)
-        for i, label, role in drawn_loads(loads, loads[case])
-    ]
-    curves.append(Curve(z[[0, -1]], np.ones(2), "even", "grey", dash="dash", markers=False))
-    return Figure(
-        f"load_over_face_loads_{name}",
-        f"Load over the face of pair {name} under every load",
-        f"Pair {name}: load per face width, averaged over a base pitch, over its mean; the largest of it is K_Hβ.",
-        (Panel(axis_of(found.lines, "z"), Axis("load per face width over its mean", zero=True), tuple(curves)),),
-    )
+_SHEET = Sheet(
+    of=lambda data, _asked: LoadOverFlanks(data),
+    loads="pair.loads",
+    nominal="pair.at",
+    tables=_TABLES,
+    values=_VALUES,
+    figures=(*_FIGURES, _in_space),
+    remarks=(_remarks,),
+    settings={"equilibrium": "equilibrium"},
+)
 
 
 LOAD_DISTRIBUTION = flank_stage(
     inputs=_inputs,
     compute=lambda inputs, upstream, _work: loaded_flanks(upstream, inputs.name),
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,

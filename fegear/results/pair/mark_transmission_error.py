@@ -12,7 +12,7 @@ from fegear.base.shown import shown, shows
 from fegear.contact.loaded_teeth import HARMONICS
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Line, Over
-from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark
@@ -174,30 +174,25 @@ MARK_TABLES = (
 )  # fmt: skip
 
 
-def _exact(_seen: Seen) -> float:
-    """Nothing is estimated in it."""
-    return 0.0
-
-
 _RECIPROCAL = "by_mark.series.reciprocal"
 MARK_VALUES = (
     Number(
-        "pointwise_error", _exact, _RECIPROCAL, name="series_error",
+        "pointwise_error", exact, _RECIPROCAL, name="series_error",
         si=lambda seen: seen.data.by_mark and seen.data.by_mark.series.reciprocal.pointwise_error[seen.data.by_mark.at],
         meaning="of 1/K's coefficients after {d.by_mark.series.terms} terms, over the mean",
     ),
     Number(
-        "convolved_error", _exact, _RECIPROCAL, name="series_error_convolved",
+        "convolved_error", exact, _RECIPROCAL, name="series_error_convolved",
         si=lambda seen: seen.data.by_mark and seen.data.by_mark.series.reciprocal.convolved_error[seen.data.by_mark.at],
         meaning="the same with products cut off",
     ),
     Number(
-        "convolved_error", _exact, _RECIPROCAL, name="series_error_convolved_limit",
+        "convolved_error", exact, _RECIPROCAL, name="series_error_convolved_limit",
         si=lambda seen: seen.data.by_mark and seen.data.by_mark.series.reciprocal.convolved_error[-1],
         meaning=lambda seen: f"after {seen.data.by_mark.series.reciprocal.terms[-1]} terms: what cutting off leaves",
     ),
-    Number("smallest", _exact, _RECIPROCAL, name="series_smallest_k"),
-    Number("largest", _exact, _RECIPROCAL, name="series_largest_k"),
+    Number("smallest", exact, _RECIPROCAL, name="series_smallest_k"),
+    Number("largest", exact, _RECIPROCAL, name="series_largest_k"),
     Number("te_first_harmonic_series", "by_mark.first_harmonic_error", "by_mark"),
 )  # fmt: skip
 

@@ -1,77 +1,27 @@
-"""Stage ``mesh-stiffness-matrix``: stiffness of a loaded mesh against all motions of its gears, over the mesh cycle.
-
-Figures of the mesh stiffness matrix: its three numbers over the mesh cycle, and its mean as a map.
-"""
+"""Stage ``mesh-stiffness-matrix``: stiffness of a loaded mesh against all motions of its gears, over the mesh cycle."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-import numpy as np
-
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, HeatMap, Mark
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Chart, Line, Map, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Cell, Every, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Subject, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.pair.loaded_teeth import wide_pairs
+from fegear.results.pair.loaded_teeth import BASE_PITCH, wide_pairs
+from fegear.results.pair.mesh_stiffness_data import MeshStiffnessData
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Complex
     from fegear.case.reading import Scene
-    from fegear.contact.fourier import Panels
-    from fegear.contact.wide.loaded_pair import LoadedWidePair
-    from fegear.contact.wide.mesh_matrix import MeshStiffness
 
 
-@dataclass(frozen=True)
-class MeshStiffnessData:
-    """Stiffness matrix of a mesh under its loads.
-
-    Parameters
-    ----------
-    flanks : LoadedWidePair
-    found, other : MeshStiffness
-        And what the coarser solution gives.
-    even : ndarray, shape (3,)
-        K_M over its own mean, kappa and mu of contact lines that are everywhere equally stiff.
-    """
-
-    flanks: LoadedWidePair
-    found: MeshStiffness
-    other: MeshStiffness
-    even: Array
-
-    @property
-    def mean(self) -> Array:
-        """K_M [N/m], kappa and mu of the mean matrix under the nominal load."""
-        return np.asarray(self.found.mean_parameters[:, self.flanks.at])
-
-    @property
-    def mean_error(self) -> Array:
-        """Their estimated errors: of the coarser solution, and of half as many roll positions."""
-        from fegear.contact.wide.mesh_matrix import mesh_parameters_of
-        from fegear.contact.wide.transmission_error import from_half
-
-        i, found = self.flanks.at, self.found
-        fewer = np.stack([from_half(found.points, moment) for moment in found.moments[:, :, i]], axis=1)
-        half = mesh_parameters_of(found.pair, found.mean(fewer))
-        return np.asarray(np.abs(self.other.mean_parameters[:, i] - self.mean) + np.abs(half - self.mean))
-
-    @property
-    def mean_over_q(self) -> Array:
-        """Mean matrix under the nominal load over q of both gears, shape (10, 10) [N/m]; see `over_q`."""
-        from fegear.contact.wide.mesh_matrix import over_q
-
-        return over_q(self.found.pair, self.found.mean(self.found.matrix[:, self.flanks.at]))
+#: Coordinates of a gear as the map names them: driver 1, driven gear 2.
+_COORDINATES = ("y", "z", "bθx", "rθy", "rθz")
 
 
 def needs_mesh_stiffness(name: str) -> tuple[Task, ...]:
@@ -94,180 +44,23 @@ def _compute(asked: Subject, upstream: Upstream, _work: Work) -> MeshStiffnessDa
     return MeshStiffnessData(flanks, found, other, even)
 
 
-def _over_roll(name: str, data: MeshStiffnessData) -> Table:
-    i, found = data.flanks.at, data.found
-    parameters, doubt = found.parameters[:, :, i], np.abs(data.other.parameters - found.parameters)[:, :, i]
-    c = math.cos(found.pair.driver.base_helix_angle)
-    columns = (
-        column_of(data.flanks.found.lines, "roll"),
-        Column("K_M", parameters[0], "N/um", "tangent stiffness along the tooth normal, over all pairs"),
-        Column("kappa", parameters[1], "", "lever of the stiffness in the plane of action over half the face width"),
-        Column("mu", parameters[2], "", "rotary stiffness over K_M b^2"),
-        Column("K_M_error", doubt[0], "N/um", "estimated error"),
-        Column("kappa_error", doubt[1], "", "estimated error"),
-        Column("mu_error", doubt[2], "", "estimated error"),
-        Column("transverse_stiffness", found.moments[0, :, i], "N/um", "dW/dzeta along the transverse line of action"),
-        Column("force_lever", c * found.lever[:, i], "mm", "lever of the normal force in the plane of action"),
+def _level(quantity: str, label: str, role: str) -> Line:
+    """A number across the panel."""
+    return Line(
+        f"means.{quantity}", label, role, look={"dash": "dash", "markers": False}, ends=True, x="over_roll.roll"
     )
-    return Table(f"mesh_stiffness_matrix_{name}", columns, f"Stiffness of the mesh of pair {name} over a base pitch")
 
 
-def _mean_matrix(name: str, data: MeshStiffnessData) -> Table:
-    """The mean matrix, each gear turning about its own axis."""
-    matrix = data.mean_over_q
-    names = [f"{coordinate}_{gear}" for gear in ("driver", "driven")
-             for coordinate in ("y", "z", "b_theta_x", "r_theta_y", "r_theta_z")]  # fmt: skip
-    meaning = "force on the coordinate of the row per motion of this one; rotations as arcs at b or the base radius"
-    columns = (
-        Column("coordinate", np.array(names, dtype=str), "", "right-handed axes through the gear's own axis"),
-        *(Column(head, column, "N/um", meaning) for head, column in zip(names, matrix.T, strict=True)),
-    )
-    return Table(f"mesh_stiffness_mean_{name}", columns, f"Mean stiffness matrix of the mesh of pair {name}")
+def _over_pitch(quantity: str, *levels: Line) -> Over:
+    """A number of the matrix over the base pitch with its band, and what it is compared with."""
+    drawn = Line(f"over_roll.{quantity}", "these teeth", "series:0", f"over_roll.{quantity}_error", "over_roll.roll")
+    signed = quantity == "kappa"
+    marks = (lambda _: (Mark("y", 0.0),)) if signed else None
+    return Over(BASE_PITCH, (drawn, *levels), marks=marks, options={} if signed else {"zero": True})
 
 
-def _harmonics(name: str, data: MeshStiffnessData) -> Table:
-    i, found = data.flanks.at, data.found
-    c, b = math.cos(found.pair.driver.base_helix_angle), found.half_width
-    from fegear.contact.wide.transmission_error import series_over_pitch
-
-    scale = (1.0 / c**2, 1.0 / (c * b), 1.0 / b**2, c)
-    curves = (*found.moments[:, :, i], found.lever[:, i])
-    series = [series_over_pitch(found.points, k * curve).amplitude for k, curve in zip(scale, curves, strict=True)]
-    columns = (
-        Column("n", np.arange(1, series[0].size + 1), "", "harmonic of the mesh frequency"),
-        Column("K_M", series[0], "N/um", "0-peak"),
-        Column("kappa_K_M", series[1], "N/um", "0-peak, coupling of translation and tilt"),
-        Column("mu_K_M", series[2], "N/um", "0-peak, rotary stiffness over b^2"),
-        Column("force_lever", series[3], "mm", "0-peak: the force wanders over the face under a constant load"),
-    )
-    return Table(f"mesh_stiffness_harmonics_{name}", columns, f"Harmonics of the mesh stiffness of pair {name}")
-
-
-def _loads(name: str, data: MeshStiffnessData) -> Table:
-    mean = data.found.mean_parameters
-    lever = math.cos(data.found.pair.driver.base_helix_angle) * data.found.mean(data.found.lever)
-    columns = (
-        Column("load", data.flanks.found.load, "N", "along the transverse line of action"),
-        Column("K_M", mean[0], "N/um", "of the mean matrix"),
-        Column("kappa", mean[1], "", "of the mean matrix"),
-        Column("mu", mean[2], "", "of the mean matrix"),
-        Column("force_lever", lever, "mm", "mean over the base pitch"),
-    )  # fmt: skip
-    return Table(f"mesh_stiffness_loads_{name}", columns, f"Mean mesh stiffness of pair {name} under every load")
-
-
-def own_axis_parameters(data: MeshStiffnessData) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Kappa and mu of driver and driven gear that tilt about their own axes: the axial force has a lever there."""
-    pair, (_, kappa, mu) = data.found.pair, data.mean
-    from fegear.contact.wide.lines import base_twist
-
-    s = math.sin(math.atan(base_twist(pair))) * math.tan(pair.working_pressure_angle) / data.found.half_width
-    moves = (-s * pair.driver.base_radius, s * pair.driven.base_radius)
-    first, second = ((float(kappa + d), float(mu + 2.0 * kappa * d + d * d)) for d in moves)
-    return first, second
-
-
-def loaded_harmonics(data: MeshStiffnessData, count: int, shuttling: bool) -> tuple[Complex, Array]:
-    """Harmonics of the static transmission error of loaded flanks over q = (y, z, b theta_x, ...), and their errors.
-
-    Along y it is the transmission error. With `shuttling` the moment of the force about x varies as well: the motion
-    that would hold both force and moment level is (y, b theta_x), for the mean stiffness matrix.
-
-    Parameters
-    ----------
-    data : MeshStiffnessData
-    count : int
-        At most half as many as roll positions.
-    shuttling : bool
-
-    Returns
-    -------
-    ndarray of complex, shape (N, 5)
-        0-peak [m].
-    ndarray, shape (N, 5)
-        Changes by the coarser solution and by half as many roll positions.
-    """
-    from fegear.contact.wide.transmission_error import from_half
-
-    flanks = data.flanks
-    found, other = (_over_q(one, te, flanks.at, shuttling) for one, te in (
-        (data.found, flanks.found.transmission_error), (data.other, flanks.error.coarse.transmission_error)
-    ))  # fmt: skip
-    points = data.found.points
-    fewer = np.stack([from_half(points, curve) for curve in found.T], axis=1)
-    series, half, coarse = (_series(points, curves, count) for curves in (found, fewer, other))
-    return series, np.abs(series - coarse) + np.abs(series - half)
-
-
-def _series(points: Panels, curves: Array, count: int) -> Complex:
-    """Complex 0-peak amplitudes of curves (P, k) over the base pitch, shape (N, k)."""
-    from fegear.contact.wide.transmission_error import series_over_pitch
-
-    found = [2.0 * series_over_pitch(points, curve).coefficients[1 : count + 1] for curve in curves.T]
-    return np.stack(found, axis=1)
-
-
-def _over_q(one: MeshStiffness, te: Array, case: int, shuttling: bool) -> Array:
-    """Static transmission error over q at every roll position, shape (P, 5) [m]."""
-    error = np.zeros((te.shape[0], 5))
-    error[:, 0] = te[:, case]
-    if shuttling:
-        k, k1, k2 = one.mean_moments[:, case]
-        load = (one.lever[:, case] - one.mean(one.lever[:, case])) * one.load[case]
-        tilt = -load / (k2 - k1**2 / k)
-        error[:, 0] -= k1 / k * tilt
-        error[:, 2] = one.half_width * tilt
-    return error
-
-
-def _present(data: MeshStiffnessData, asked: Subject) -> Outcome:
-    name, i, found = asked.name, data.flanks.at, data.found
-    (stiffness, kappa, mu), doubt = data.mean, data.mean_error
-    (kappa_i, mu_i), (kappa_j, mu_j) = own_axis_parameters(data)
-    b, c = found.half_width, math.cos(found.pair.driver.base_helix_angle)
-    lever = c * found.lever[:, i]
-    lever_doubt = c * float(np.abs(data.other.lever[:, i] - found.lever[:, i]).max())
-    tilt, tilt_doubt = stiffness * mu * b**2, b**2 * (mu * doubt[0] + stiffness * doubt[2])
-    values = (
-        Value(f"{name}.K_M", float(stiffness), "N/um", float(doubt[0]), "mean mesh stiffness along the tooth normal"),
-        Value(f"{name}.mesh_kappa", float(kappa), "", float(doubt[1]),
-              "mean lever of the mesh stiffness about the pitch axis over half the face width"),
-        Value(f"{name}.mesh_mu", float(mu), "", float(doubt[2]), "mean rotary stiffness over K_M b^2"),
-        Value(f"{name}.mesh_mu_even", float(data.even[2]), "", 0.0,
-              "mu of contact lines that are everywhere equally stiff"),
-        Value(f"{name}.mesh_kappa_even", float(data.even[1]), "", 0.0, "kappa of the same"),
-        Value(f"{name}.mesh_tilt_stiffness", float(tilt), "N.m", float(tilt_doubt), "moment per radian: K_M mu b^2"),
-        Value(f"{name}.mesh_kappa_driver", kappa_i, "", float(doubt[1]), "kappa about the driver's own axis"),
-        Value(f"{name}.mesh_kappa_driven", kappa_j, "", float(doubt[1]), "kappa about the driven gear's own axis"),
-        Value(f"{name}.mesh_mu_driver", mu_i, "", None, "mu about the driver's own axis"),
-        Value(f"{name}.mesh_mu_driven", mu_j, "", None, "mu about the driven gear's own axis"),
-        Value(f"{name}.force_lever", float(found.mean(lever)), "mm", lever_doubt, "mean lever of the normal force"),
-        Value(f"{name}.force_lever_peak_to_peak", float(np.ptp(lever)), "mm", 2.0 * lever_doubt,
-              "the normal force wanders so far over the face"),
-    )  # fmt: skip
-    tables = [_over_roll(name, data), _mean_matrix(name, data), _harmonics(name, data)]
-    if found.moments.shape[2] > 1:
-        tables.append(_loads(name, data))
-    settings = {"positions": data.flanks.flanks.positions, "load": data.flanks.nominal}
-    figures = mesh_stiffness_figures(name, data)
-    return Outcome(data, tuple(tables), values, settings, _remarks(name, data), figures)
-
-
-def _remarks(name: str, data: MeshStiffnessData) -> tuple[str, ...]:
-    _, kappa, mu = data.mean
-    even = (
-        f"Pair {name}: contact lines that are everywhere equally stiff, as the two-parameter form is often taken, have "
-        f"mu = {data.even[2]:.4g} and kappa = {data.even[1]:.4g}; these teeth have {mu:.4g} and {kappa:.4g}."
-    )
-    remarks = [even]
-    (kappa_i, _), (kappa_j, _) = own_axis_parameters(data)
-    if abs(kappa_i - kappa_j) > 1e-3:
-        remarks.append(
-            f"Pair {name}: one kappa holds for tilting about the pitch axis. About their own axes, where the axial "
-            f"force has a lever, the driver has {kappa_i:.4g} and the driven gear {kappa_j:.4g}; the table of the mean "
-            "matrix has these."
-        )
-    return tuple(remarks)
+#: Contact lines of the same stiffness everywhere, in the legend; the load that figures hold for.
+_EVEN, _UNDER = "lines equally stiff", "{d.flanks.nominal:.5g} N"
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -290,69 +83,102 @@ def needs_wide_pair(scene: Scene, name: str, result: str) -> None:
         )  # fmt: skip
 
 
-#: Coordinates of a gear as the map names them: driver 1, driven gear 2.
-_COORDINATES = ("y", "z", "bθx", "rθy", "rθz")
-
-
-def mesh_stiffness_figures(name: str, data: MeshStiffnessData) -> tuple[Figure, ...]:
-    """Describe both figures of one pair under its nominal load."""
-    return _drawn_over_roll(name, data), _as_map(name, data)
-
-
-def _drawn_over_roll(name: str, data: MeshStiffnessData) -> Figure:
-    i, roll = data.flanks.at, data.flanks.found.lines.roll * 1e3
-    found, mean, even = data.found.parameters[:, :, i], data.mean, data.even
-    doubt = np.abs(data.other.parameters[:, :, i] - found)
-    lever = math.cos(data.found.pair.driver.base_helix_angle) * data.found.lever[:, i] / data.found.half_width
-    x = Axis("roll position over one base pitch", "mm")
-
-    def curve(k: int, label: str, scale: float = 1.0) -> Curve:
-        return Curve(roll, found[k] * scale, label, "series:0", doubt[k] * scale)
-
-    def level(value: float, label: str, role: str) -> Curve:
-        return Curve(roll[[0, -1]], np.full(2, value), label, role, dash="dash", markers=False)
-
-    return Figure(
-        f"mesh_stiffness_matrix_{name}",
-        f"Mesh stiffness of pair {name} over a base pitch",
-        f"Pair {name}: stiffness along the tooth normal K_M, its lever kappa and rotary stiffness mu in halves of the "
-        "face width b; bands are estimated errors, grey what contact lines would have that are everywhere equally "
-        "stiff. The lever of the force wanders though the load is constant.",
-        (
-            Panel(x, Axis("K_M", "N/um", zero=True), (curve(0, "these teeth", 1e-6),
-                  level(float(mean[0]) * 1e-6, "mean", "ink"))),
-            Panel(x, Axis("kappa"), (curve(1, "these teeth"), level(float(mean[1]), "mean", "ink"),
-                  level(float(even[1]), "lines equally stiff", "grey"),
-                  Curve(roll, lever, "lever of the force over b", "orange", dash="dot")), (Mark("y", 0.0),)),
-            Panel(x, Axis("mu", zero=True), (curve(2, "these teeth"), level(float(mean[2]), "mean", "ink"),
-                  level(float(even[2]), "lines equally stiff", "grey"))),
+_NAMES = tuple(f"{coordinate} {gear}" for gear in (1, 2) for coordinate in _COORDINATES)
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "mesh_stiffness_matrix_{name}", "Stiffness of the mesh of pair {name} over a base pitch",
+            (
+                Cell("flanks.found.lines.roll", of=""), "stiffness", "kappa", "mu",
+                *(Off(key, f"over_roll.{key}_error", "estimated error") for key in ("stiffness", "kappa", "mu")),
+                "transverse", "lever",
+            ),
+            of="over_roll",
         ),
-        under=f"{data.flanks.nominal:.5g} N",
-    )  # fmt: skip
-
-
-def _as_map(name: str, data: MeshStiffnessData) -> Figure:
-    matrix = data.mean_over_q * 1e-6
-    places = np.arange(10.0)
-    names = tuple(f"{c} {gear}" for gear in (1, 2) for c in _COORDINATES)
-    size = float(np.abs(matrix).max())
-    field = HeatMap(places, places, matrix, "stiffness", "N/um", (0.0, size), numbers=True)
-    return Figure(
-        f"mesh_stiffness_mean_{name}",
-        f"Mean stiffness matrix of the mesh of pair {name}",
-        f"Pair {name}: force on the coordinate of the row by motion along that of the column; 1 is the driver, 2 the "
-        "driven gear, each turning about right-handed axes through its own. Rotations are arcs at half the face width "
-        "b and at the base radius r.",
-        (Panel(Axis("motion", categories=names), Axis("force", categories=names), (field,), height=2.2),),
-        under=f"{data.flanks.nominal:.5g} N",
-    )
+        Rows(
+            "mesh_stiffness_mean_{name}", "Mean stiffness matrix of the mesh of pair {name}",
+            ("coordinate", Cell("force", name="{one.name}", each="mean_matrix.columns")), of="mean_matrix",
+        ),
+        Rows(
+            "mesh_stiffness_harmonics_{name}", "Harmonics of the mesh stiffness of pair {name}",
+            (Every("harmonics"),), of="harmonics",
+        ),
+        Rows(
+            "mesh_stiffness_loads_{name}", "Mean mesh stiffness of pair {name} under every load",
+            (Every("loads"),), of="over_loads", when=lambda seen: seen.data.found.load.size > 1,
+        ),
+    ),
+    values=(
+        Number("stiffness", "means.stiffness_error", "means"),
+        Number("kappa", "means.kappa_error", "means"),
+        Number("mu", "means.mu_error", "means"),
+        Number("mu_even", exact, "means"),
+        Number("kappa_even", exact, "means"),
+        Number("tilt", "means.tilt_error", "means"),
+        Number("kappa_driver", "means.kappa_error", "means"),
+        Number("kappa_driven", "means.kappa_error", "means"),
+        Number("mu_driver", of="means"),
+        Number("mu_driven", of="means"),
+        Number("lever", "means.lever_error", "means"),
+        Number("lever_peak_to_peak", lambda seen: 2.0 * seen.data.means.lever_error, "over_roll"),
+    ),
+    figures=(
+        Chart(
+            "mesh_stiffness_matrix_{name}", "Mesh stiffness of pair {name} over a base pitch",
+            "Pair {name}: stiffness along the tooth normal K_M, its lever kappa and rotary stiffness mu in halves of "
+            "the face width b; bands are estimated errors, grey what contact lines would have that are everywhere "
+            "equally stiff. The lever of the force wanders though the load is constant.",
+            (
+                _over_pitch("stiffness", _level("stiffness", "mean", "ink")),
+                _over_pitch(
+                    "kappa", _level("kappa", "mean", "ink"), _level("kappa_even", _EVEN, "grey"),
+                    Line(
+                        "over_roll.relative_lever", "lever of the force over b", "orange", x="over_roll.roll",
+                        look={"dash": "dot"},
+                    ),
+                ),
+                _over_pitch("mu", _level("mu", "mean", "ink"), _level("mu_even", _EVEN, "grey")),
+            ),
+            under=_UNDER,
+        ),
+        Chart(
+            "mesh_stiffness_mean_{name}", "Mean stiffness matrix of the mesh of pair {name}",
+            "Pair {name}: force on the coordinate of the row by motion along that of the column; 1 is the driver, 2 "
+            "the driven gear, each turning about right-handed axes through its own. Rotations are arcs at half the "
+            "face width b and at the base radius r.",
+            (
+                Over(
+                    Axis("motion", categories=_NAMES),
+                    (Map("matrix", "place", "place", centre=lambda seen: (0.0, seen.data.mean_matrix.size),
+                         numbers=True),),
+                    Axis("force", categories=_NAMES), panel={"height": 2.2},
+                ),
+            ),
+            of="mean_matrix", under=_UNDER,
+        ),
+    ),
+    remarks=(
+        Remark(
+            "Pair {name}: contact lines that are everywhere equally stiff, as the two-parameter form is often taken, "
+            "have mu = {d.means.mu_even:.4g} and kappa = {d.means.kappa_even:.4g}; these teeth have {d.means.mu:.4g} "
+            "and {d.means.kappa:.4g}."
+        ),
+        Remark(
+            "Pair {name}: one kappa holds for tilting about the pitch axis. About their own axes, where the axial "
+            "force has a lever, the driver has {d.means.kappa_driver:.4g} and the driven gear "
+            "{d.means.kappa_driven:.4g}; the table of the mean matrix has these.",
+            when="means.two_kappas",
+        ),
+    ),
+    settings={"positions": "flanks.flanks.positions", "load": "flanks.nominal"},
+)  # fmt: skip
 
 
 MESH_STIFFNESS_MATRIX = Stage(
     subjects=lambda scene: wide_pairs(scene) or tuple(scene.pairs),
     inputs=Subject.of,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     needs=needs_flanks,
     check=_check,
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
