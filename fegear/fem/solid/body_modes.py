@@ -16,7 +16,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
-from fegear.base.shown import shown
+from fegear.base.shown import shown, shows
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.solid.face import FaceFunctions, face_functions, solid_unknowns
@@ -57,6 +57,7 @@ class BodyMode:
     tangential: float = shown("", "share round the axis")
 
     @property
+    @shows("", "along which direction it moves most")
     def kind(self) -> str:
         """What moves most: "axial" (umbrella, tilt), "radial" or "tangential" (torsion)."""
         shares = {"axial": self.axial, "radial": self.radial, "tangential": self.tangential}

@@ -11,22 +11,24 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.solid_influence import check_solid_gear, solid_settings_of
 from fegear.engine.citation import citing
-from fegear.engine.declared import column_of, error_column
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import TriangleField
 from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.geometry.outline import turned
 from fegear.results.forecasts import RING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.fem.solid.body_modes import BodyModes
+    from fegear.engine.sheet.seen import Seen
+    from fegear.fem.solid.body_modes import BodyMode, BodyModes
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.gear import Gear
 
@@ -67,6 +69,16 @@ class SolvedBody:
         pairs = zip(self.found.modes, self.other.modes, strict=True)
         return np.array([_TIMES * abs(a.frequency - b.frequency) + _FLOOR * a.frequency for a, b in pairs])
 
+    @property
+    def frequencies(self) -> Array:
+        """Of one module and unit material, shape (modes,)."""
+        return np.array([mode.frequency for mode in self.found.modes])
+
+    @property
+    def lowest(self) -> BodyMode:
+        """The mode with the lowest frequency."""
+        return self.found.modes[int(np.argmin(self.frequencies))]
+
 
 def _inputs(scene: Scene, name: str) -> BodyToSolve:
     gear, settings = scene.gears[name], solid_settings_of(scene, name)
@@ -99,46 +111,15 @@ def _compute(asked: BodyToSolve, _upstream: Upstream, work: Work) -> SolvedBody:
     return SolvedBody(*found)
 
 
-def _present(known: SolvedBody, asked: BodyToSolve) -> Outcome:
-    modes, gear, name = known.found.modes, asked.gear, asked.name
-    # omega of one module, Young's modulus and density.
-    unit = math.sqrt(gear.material.young_modulus / gear.material.density) / gear.module / (2.0 * math.pi)
-    kinds = np.array([mode.kind for mode in modes])
-    frequency = column_of(modes[0], "frequency", unit * np.array([mode.frequency for mode in modes]))
-    table = Table(
-        f"body_modes_{name}",
-        (
-            column_of(modes[0], "diameters", np.array([mode.diameters for mode in modes])),
-            frequency,
-            error_column(frequency, unit * known.errors),
-            Column("kind", kinds, "", "along which direction it moves most"),
-            *(column_of(modes[0], way, np.array([getattr(mode, way) for mode in modes]))
-              for way in ("axial", "radial", "tangential")),
-        ),
-        f"Natural frequencies of gear {name}, bore held",
-    )  # fmt: skip
-    lowest = int(np.argmin(frequency.values))
-    value = Value(
-        f"{name}.lowest_body_frequency", float(frequency.values[lowest]), "Hz",
-        float(unit * known.errors[lowest]), f"{kinds[lowest]}, {modes[lowest].diameters} nodal diameters",
-    )  # fmt: skip
-    held = "hub" if gear.body is not None else "bore"
-    remark = (
-        f"Gear {name}: natural frequencies of its body alone, the {held} held fast over its width; without the mesh, "
-        "shaft and bearings. Up to "
-        f"{modes[-1].diameters} nodal diameters, {_EACH} modes with each; those with some come in pairs."
-    )
-    passed = tuple(
-        f"Gear {ring}: internal; natural frequencies of bodies are computed for external gears alone."
-        for ring in asked.rings
-    )
-    return Outcome(
-        known, (table,), (value,), {"unknowns": known.found.unknowns}, (remark, *passed), (_figure(known, asked, unit),)
-    )
+def _unit(asked: BodyToSolve) -> float:
+    """Frequency [Hz] of omega = 1 of one module, Young's modulus and density."""
+    gear = asked.gear
+    return math.sqrt(gear.material.young_modulus / gear.material.density) / gear.module / (2.0 * math.pi)
 
 
-def _figure(known: SolvedBody, asked: BodyToSolve, unit: float) -> Figure:
+def _figure(seen: Seen) -> Iterator[Figure]:
     """The lowest mode with each number of nodal diameters, seen along the axis."""
+    known, asked, unit = seen.data, seen.asked, _unit(seen.asked)
     gear, m, mesh = asked.gear, asked.gear.module * 1e3, known.found.mesh
     corners, count = mesh.triangles[:3], mesh.vertex_count
     panels = []
@@ -159,7 +140,7 @@ def _figure(known: SolvedBody, asked: BodyToSolve, unit: float) -> Figure:
             Axis("x", "mm", limits=(-end, end)), Axis("y", "mm", limits=(-end, end)), (field,),
             title=f"{n} nodal diameters: {unit * mode.frequency:.0f} Hz, {mode.kind}", equal=True,
         ))  # fmt: skip
-    return Figure(
+    yield Figure(
         f"body_modes_{asked.name}", f"Mode shapes of gear {asked.name}",
         f"The lowest mode of gear {asked.name} with each number of nodal diameters, seen along the axis: how far the "
         "middle of its web moves, and, in the plane of the picture, where to.",
@@ -167,11 +148,53 @@ def _figure(known: SolvedBody, asked: BodyToSolve, unit: float) -> Figure:
     )  # fmt: skip
 
 
+def _on_the_body(seen: Seen) -> str:
+    held = "bore" if seen.asked.gear.body is None else "hub"
+    return (
+        f"Gear {seen.name}: natural frequencies of its body alone, the {held} held fast over its width; without the "
+        f"mesh, shaft and bearings. Up to {seen.data.found.modes[-1].diameters} nodal diameters, {_EACH} modes with "
+        "each; those with some come in pairs."
+    )
+
+
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "body_modes_{name}", "Natural frequencies of gear {name}, bore held",
+            (
+                "diameters", Cell("frequency", si=lambda seen: _unit(seen.asked) * seen.data.frequencies),
+                Off("frequency", lambda seen: _unit(seen.asked) * seen.data.errors),
+                "kind", "axial", "radial", "tangential",
+            ),
+            of="found.modes",
+        ),
+    ),
+    values=(
+        Number(
+            "frequency", lambda seen: _unit(seen.asked) * seen.data.errors[int(np.argmin(seen.data.frequencies))],
+            "lowest", si=lambda seen: _unit(seen.asked) * seen.data.lowest.frequency, name="lowest_body_frequency",
+            meaning=lambda seen: f"{seen.data.lowest.kind}, {seen.data.lowest.diameters} nodal diameters",
+        ),
+    ),
+    figures=(_figure,),
+    remarks=(
+        Remark(
+            _on_the_body
+        ),
+        lambda seen: [
+            f"Gear {ring}: internal; natural frequencies of bodies are computed for external gears alone."
+            for ring in seen.asked.rings
+        ],
+    ),
+    settings={"unknowns": "found.unknowns"},
+)  # fmt: skip
+
+
 BODY_MODES = Stage(
     subjects=lambda scene: _gears(scene, internal=False) or _gears(scene, internal=True),  # rings alone are refused
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=check_solid_gear,
     cites=citing(*RING),
     forecast=lambda scene, name: Forecast(asdict(solid_settings_of(scene, name)), _SECONDS),

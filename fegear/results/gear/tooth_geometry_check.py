@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 from fegear.case.reading import Scene
 from fegear.engine.citation import citing
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Mark, Points
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Every, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.geometry.checks import Check, gear_checks, pair_checks
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -47,74 +49,158 @@ def _compute(drawing: Drawing, _upstream: Upstream, _work: Work) -> tuple[Check,
     return tuple(found)
 
 
-def _present(checks: tuple[Check, ...], drawing: Drawing) -> Outcome:
-    verdicts = np.array(["holds" if check.holds else "broken" for check in checks])
-    broken = [check for check in checks if not check.holds]
-    # Lengths and ratios share a column, so each is given over its limit as well; a limit of zero has no such ratio.
-    share = np.array([check.value / check.limit if check.limit > 0.0 else np.nan for check in checks])
-    scale = np.array([1e3 if check.unit == "mm" else 1.0 for check in checks])
-    table = Table(
-        "tooth_geometry_check",
-        (
-            Column("of", np.array([check.of for check in checks]), "", "gear or pair"),
-            Column("rule", np.array([check.rule for check in checks]), "", "what is compared with its limit"),
-            Column("value", scale * np.array([check.value for check in checks]), "", "in the unit of the next column"),
-            Column("limit", scale * np.array([check.limit for check in checks]), "", "the least that is usual"),
-            Column("unit", np.array([check.unit for check in checks]), "", "of value and limit; empty for ratios"),
-            Column("verdict", verdicts, "", "holds or broken"),
-            Column("value_over_limit", share, "", "none where the limit is zero"),
+@dataclass(frozen=True)
+class CheckRow:
+    """A rule as the table has it: lengths in mm beside ratios, so each is given over its limit as well."""
+
+    check: Check
+
+    @property
+    @shows("", "gear or pair", table="checks")
+    def of(self) -> str:
+        """Its name."""
+        return self.check.of
+
+    @property
+    @shows("", "what is compared with its limit", table="checks")
+    def rule(self) -> str:
+        """In words."""
+        return self.check.rule
+
+    @property
+    @shows("", "in the unit of the next column", table="checks")
+    def value(self) -> float:
+        """[mm] or a ratio."""
+        return self._scale * self.check.value
+
+    @property
+    @shows("", "the least that is usual", table="checks")
+    def limit(self) -> float:
+        """[mm] or a ratio."""
+        return self._scale * self.check.limit
+
+    @property
+    @shows("", "of value and limit; empty for ratios", table="checks")
+    def unit(self) -> str:
+        """Millimetres or none."""
+        return self.check.unit
+
+    @property
+    @shows("", "holds or broken", table="checks")
+    def verdict(self) -> str:
+        """Whether the rule is kept."""
+        return "holds" if self.check.holds else "broken"
+
+    @property
+    @shows("", "none where the limit is zero", table="checks")
+    def value_over_limit(self) -> float:
+        """A limit of zero has no such ratio."""
+        return self.check.value / self.check.limit if self.check.limit > 0.0 else np.nan
+
+    @property
+    def _scale(self) -> float:
+        return 1e3 if self.check.unit == "mm" else 1.0
+
+    @property
+    def sentence(self) -> str:
+        """What is broken, and the remedy."""
+        check, unit = self.check, f" {self.unit}".rstrip()
+        below = f"{self.value:.4g}{unit}, below {self.limit:.4g}{unit}"
+        return f"{check.of}: {check.rule} is {check.finding or below}; {check.remedy}."
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Rules that hold, or those that are broken, as points: value over limit, and the place of the rule's name."""
+
+    place: Array = shown("")
+    share: Array = shown("", label="value over its limit")
+
+
+@dataclass(frozen=True)
+class Checked:
+    """All rules that apply to a case."""
+
+    rows: tuple[CheckRow, ...]
+
+    @property
+    def broken(self) -> tuple[CheckRow, ...]:
+        """Those that do not hold."""
+        return tuple(row for row in self.rows if not row.check.holds)
+
+    @property
+    @shows("", "rules that apply to this case")
+    def rules_checked(self) -> float:
+        """How many."""
+        return float(len(self.rows))
+
+    @property
+    @shows("", "of them")
+    def rules_broken(self) -> float:
+        """How many."""
+        return float(len(self.broken))
+
+    @property
+    def drawn(self) -> tuple[CheckRow, ...]:
+        """Rules with a ratio."""
+        return tuple(row for row in self.rows if np.isfinite(row.value_over_limit))
+
+    def verdict(self, *, holds: bool) -> Verdict | None:
+        """Points of the rules that hold, or of those that do not; None where there are none."""
+        share = np.array([row.value_over_limit for row in self.drawn])
+        chosen = np.flatnonzero((share >= 1.0) == holds)
+        return Verdict(chosen.astype(float), share[chosen]) if chosen.size else None
+
+
+def _unchecked_rims(seen: Seen) -> Iterator[str]:
+    for name, gear in seen.asked.gears.items():
+        if name in seen.asked.assumed_rims:
+            key = "outer_radius" if gear.tooth.internal else "bore_radius"
+            yield f"Gear {name}: its rim is not checked; specify {key}."
+
+
+def _exact(_seen: Seen) -> float:
+    return 0.0
+
+
+def _names(seen: Seen) -> Axis:
+    return Axis("", categories=tuple(f"{row.of}: {row.rule}" for row in seen.data.drawn))
+
+
+def _points(word: str, role: str, *, holds: bool) -> Line:
+    return Line(
+        "place", word, role, x="share", of=lambda seen: seen.data.verdict(holds=holds), kind="points", look={"size": 8}
+    )
+
+
+_TITLE = "The drawing against rules of thumb"
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    of=lambda checks, _asked: Checked(tuple(map(CheckRow, checks))),
+    tables=(Rows("tooth_geometry_check", _TITLE, (Every("checks"),), of="rows"),),
+    values=(Number("rules_checked", _exact), Number("rules_broken", _exact)),
+    figures=(
+        Chart(
+            "tooth_geometry_check", _TITLE, "Each rule's value over its limit; left of the line a rule is broken.",
+            (
+                Over(
+                    Axis("value over its limit", zero=True),
+                    (_points("holds", "green", holds=True), _points("broken", "red", holds=False)),
+                    _names, marks=lambda _: (Mark("x", 1.0, "limit"),),
+                ),
+            ),
+            when="drawn",
         ),
-        "The drawing against rules of thumb",
-    )
-    values = (
-        Value("rules_checked", float(len(checks)), "", 0.0, "rules that apply to this case"),
-        Value("rules_broken", float(len(broken)), "", 0.0, "of them"),
-    )
-    remarks = tuple(
-        f"{check.of}: {check.rule} is {check.finding or _below(check)}; {check.remedy}." for check in broken
-    )
-    remarks += tuple(
-        f"Gear {name}: its rim is not checked; specify {'outer_radius' if gear.tooth.internal else 'bore_radius'}."
-        for name, gear in drawing.gears.items()
-        if name in drawing.assumed_rims
-    )
-    return Outcome(checks, (table,), values, {}, remarks, _figures(checks, share))
-
-
-def _below(check: Check) -> str:
-    return f"{_amount(check, check.value)}, below {_amount(check, check.limit)}"
-
-
-def _amount(check: Check, value: float) -> str:
-    return f"{value * 1e3:.4g} mm" if check.unit == "mm" else f"{value:.4g}"
-
-
-def _figures(checks: tuple[Check, ...], share: np.ndarray) -> tuple[Figure, ...]:
-    shown = [i for i in range(len(checks)) if np.isfinite(share[i])]
-    if not shown:
-        return ()
-    names = tuple(f"{checks[i].of}: {checks[i].rule}" for i in shown)
-    place = np.arange(len(shown))
-    points = tuple(
-        Points(share[shown][chosen], place[chosen], label, role, size=8)
-        for label, role, chosen in (
-            ("holds", "green", share[shown] >= 1.0),
-            ("broken", "red", share[shown] < 1.0),
-        )
-        if chosen.any()
-    )
-    panel = Panel(
-        Axis("value over its limit", zero=True), Axis("", categories=names), points, (Mark("x", 1.0, "limit"),)
-    )
-    about = "Each rule's value over its limit; left of the line a rule is broken."
-    return (Figure("tooth_geometry_check", "The drawing against rules of thumb", about, (panel,)),)
+    ),
+    remarks=(Remark("{one.sentence}", each="broken"), _unchecked_rims),
+)  # fmt: skip
 
 
 TOOTH_GEOMETRY_CHECK = Stage(
     subjects=lambda scene: ("",) if scene.gears else (),
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     cites=citing(INVOLUTE),
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
     internal=True,
