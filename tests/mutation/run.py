@@ -102,7 +102,7 @@ class Record:
         self.heirs: dict[str, set[str]] = defaultdict(set)
         self.lines: list[tuple[Path, CoverageData]] = []
         for place in sorted(WORK.glob("record-*")):
-            if not (place / "coverage").exists():  # not finished
+            if not ((place / "coverage").exists() and (place / "found.json").exists()):  # not finished
                 continue
             data = CoverageData(str(place / "coverage"))
             data.read()
