@@ -1,4 +1,4 @@
-"""What plans foretell, kept in ``plans.json``: seconds and settings of every task of every case.
+"""What plans predict, kept in ``plans.json``: seconds and settings of every task of every case.
 
     python tests/golden/plans.py [--accept]
 

@@ -1,4 +1,4 @@
-"""Plans foretell what they foretold: seconds and settings of every task of every case."""
+"""Plans predict what they predicted: seconds and settings of every task of every case."""
 
 import copy
 import importlib.util
@@ -10,7 +10,7 @@ plans = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(plans)
 
 
-def test_plans_foretell_what_they_foretold():
+def test_plans_predict_what_they_did():
     kept = json.loads(plans.KEPT.read_text("utf-8"))
     assert plans.differences(kept, plans.planned()) == []
     changed = copy.deepcopy(kept)
