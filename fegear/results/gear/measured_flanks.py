@@ -5,22 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.errors import RangeError
+from fegear.base.shown import shown, shows
 from fegear.case.built.flank_modifications import described_relief, gear_face
-from fegear.case.built.measured_flanks import MeasuredGear, Traces, measured_gear
+from fegear.case.built.measured_flanks import Kind, MeasuredGear, Traces, measured_gear
 from fegear.case.reading import Scene
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.formulas.iso1328 import tolerances_of
 from fegear.formulas.iso1328_traces import TraceDeviations, tightest_class
 from fegear.geometry.gear import Gear
@@ -28,8 +33,6 @@ from fegear.results import forecasts
 
 #: Teeth that are drawn.
 _DRAWN = 8
-#: What a trace is called in the case, and along what it runs.
-_CALLED = {"profile": ("profile", "length of roll"), "helix": ("helix", "height over the middle of the face")}
 
 
 @dataclass(frozen=True)
@@ -89,140 +92,316 @@ def _inputs(scene: Scene, name: str) -> FlanksToEvaluate:
 class MeasuredFlanks:
     """Deviations of every tooth, and of the mean trace as the last, by kind of trace."""
 
-    found: Mapping[str, tuple[TraceDeviations, ...]]
+    found: Mapping[Kind, tuple[TraceDeviations, ...]]
 
 
 def _compute(asked: FlanksToEvaluate, _upstream: Upstream, _work: Work) -> MeasuredFlanks:
     return MeasuredFlanks({one.kind: tuple(one.deviations(asked.design[one.kind])) for one in asked.traces})
 
 
-def _present(data: MeasuredFlanks, asked: FlanksToEvaluate) -> Outcome:
-    tables, values, figures = [_deviations(data, asked)], [], []
-    remarks = list(asked.remarks)
-    for one in asked.traces:
-        found = data.found[one.kind]
-        values += _values(asked, one, found)
-        tables.append(_trace_table(asked, one))
-        figures.append(_figure(asked, one))
-        shown = "unfiltered" if not one.wavelength else f"filtered at {one.wavelength * 1e3:.4g} mm"
-        remarks.append(
-            f"Gear {asked.name}: {one.kind} traces of {len(one.teeth)} {'tooth' if len(one.teeth) == 1 else 'teeth'}, "
-            f"{shown}, evaluated from {one.ends[0] * 1e3:.5g} to {one.ends[1] * 1e3:.5g} mm."
-        )
-        if _beyond_all_classes(asked, one, found):
-            remarks.append(
-                f"Gear {asked.name}: {one.kind} deviations of a tooth exceed class 11, the widest of ISO 1328-1."
-            )
-    return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), tuple(figures))
-
-
-def _values(asked: FlanksToEvaluate, traces: Traces, found: tuple[TraceDeviations, ...]) -> list[Value]:
-    """The mean slope and crown, the worst tooth, the class that it keeps, and the tolerances of the drawn class."""
-    each, mean, kind, of = found[:-1], found[-1], traces.kind, f"{asked.name}.{traces.kind}"
-    worst = max(each, key=lambda one: abs(one.slope))
-    values = [
-        Value(f"{of}_slope_mean", mean.slope, "um", None, f"slope of the mean {kind} trace"),
-        Value(f"{of}_crown", mean.crown, "um", None, "height of its mean parabola"),
-        Value(f"{of}_slope", worst.slope, "um", None, f"{kind} slope deviation, largest of all teeth"),
-        Value(f"{of}_form", max(one.form for one in each), "um", None, f"{kind} form deviation, largest of all teeth"),
-        Value(f"{of}_total", max(one.total for one in each), "um", None, "total deviation, largest of all teeth"),
-    ]
-    if asked.tolerance_class is not None:
-        allowed = tolerances_of(asked.gear, asked.tolerance_class).rounded
-        values += [
-            Value(f"{of}_{key}_tolerance", getattr(allowed, f"{kind}_{key}"), "um", 0.0,
-                  f"of class {asked.tolerance_class}, ISO 1328-1:2013")
-            for key in ("slope", "form", "total")
-        ]  # fmt: skip
-    kept = _kept(asked, traces, each)
-    if kept is not None and not math.isnan(kept):
-        values.append(Value(f"{of}_class", kept, "", 0.0, "tightest class of ISO 1328-1:2013 that every tooth keeps"))
-    return values
-
-
-def _kept(asked: FlanksToEvaluate, traces: Traces, found: tuple[TraceDeviations, ...]) -> float | None:
+def _kept(gear: Gear, kind: Kind, found: tuple[TraceDeviations, ...]) -> float | None:
     """The tightest class that all keep; NaN beyond class 11, None where the standard knows no such gear."""
-    from fegear.base.errors import RangeError
-
     try:
-        classes = [tightest_class(one, asked.gear, traces.kind) for one in found]
+        classes = [tightest_class(one, gear, kind) for one in found]
     except RangeError:
         return None
     return math.nan if None in classes else float(max(one for one in classes if one is not None))
 
 
-def _beyond_all_classes(asked: FlanksToEvaluate, traces: Traces, found: tuple[TraceDeviations, ...]) -> bool:
-    kept = _kept(asked, traces, found[:-1])
-    return kept is not None and math.isnan(kept)
+@dataclass(frozen=True)
+class OneTrace:
+    """Deviations of one tooth's trace, or of the mean one's."""
+
+    deviations: TraceDeviations
+    gear: Gear
+    trace: Kind = shown("", "profile or helix")
+    tooth: str = shown("", "its number in the file, or the mean of all")
+
+    @property
+    @shows("um", "rise of the mean line over the range")
+    def slope_deviation(self) -> float:
+        """f_H [m]."""
+        return self.deviations.slope
+
+    @property
+    @shows("um", "range of the trace about its mean line")
+    def form_deviation(self) -> float:
+        """f_f [m]."""
+        return self.deviations.form
+
+    @property
+    @shows("um", "range of the trace about the design")
+    def total_deviation(self) -> float:
+        """F [m]."""
+        return self.deviations.total
+
+    @property
+    @shows("um", "height of the mean parabola over its ends")
+    def crown(self) -> float:
+        """[m]."""
+        return self.deviations.crown
+
+    @property
+    @shows("", "tightest of ISO 1328-1:2013 that holds it", name="class")
+    def kept(self) -> float | None:
+        """nan beyond class 11, None where the standard knows no such gear."""
+        return _kept(self.gear, self.trace, (self.deviations,))
 
 
-def _deviations(data: MeasuredFlanks, asked: FlanksToEvaluate) -> Table:
-    rows = [
-        (one.kind, str(tooth) if tooth is not None else "mean", found, _kept(asked, one, (found,)))
-        for one in asked.traces
-        for tooth, found in zip((*one.teeth, None), data.found[one.kind], strict=True)
-    ]
-    kinds, teeth, found, classes = zip(*rows, strict=True)
-    columns = [
-        Column("trace", np.array(kinds), "", "profile or helix"),
-        Column("tooth", np.array(teeth), "", "its number in the file, or the mean of all"),
-        Column("slope_deviation", np.array([one.slope for one in found]), "um", "rise of the mean line over the range"),
-        Column("form_deviation", np.array([one.form for one in found]), "um", "range of the trace about its mean line"),
-        Column("total_deviation", np.array([one.total for one in found]), "um", "range of the trace about the design"),
-        Column("crown", np.array([one.crown for one in found]), "um", "height of the mean parabola over its ends"),
-    ]
-    if all(one is not None for one in classes):
-        kept = np.array([math.nan if one is None else one for one in classes])
-        columns.append(Column("class", kept, "", "tightest of ISO 1328-1:2013 that holds it"))
-    return Table(f"measured_deviations_{asked.name}", tuple(columns), f"Deviations of gear {asked.name}", printed=True)
+@dataclass(frozen=True)
+class OneKind:
+    """All traces of one kind with what was found of them.
+
+    Parameters
+    ----------
+    traces : Traces
+    deviations : tuple of TraceDeviations
+        Of every tooth, and of the mean trace as the last.
+    asked : FlanksToEvaluate
+    """
+
+    traces: Traces
+    deviations: tuple[TraceDeviations, ...]
+    asked: FlanksToEvaluate
+
+    @property
+    def kind(self) -> Kind:
+        """Profile or helix."""
+        return self.traces.kind
+
+    @property
+    def rows(self) -> tuple[OneTrace, ...]:
+        """Tooth by tooth, and the mean."""
+        teeth = (*map(str, self.traces.teeth), "mean")
+        return tuple(
+            OneTrace(one, self.asked.gear, self.kind, tooth) for tooth, one in zip(teeth, self.deviations, strict=True)
+        )
+
+    @property
+    @shows("mm", "height over the middle of the face")
+    def z(self) -> Array | None:
+        """Of helix traces, shape (N,) [m]."""
+        return self.traces.x if self.kind == "helix" else None
+
+    @property
+    @shows("mm", "length of roll")
+    def roll_length(self) -> Array | None:
+        """Of profile traces, shape (N,) [m]."""
+        return self.traces.x if self.kind == "profile" else None
+
+    @property
+    @shows("deg", "of the gear")
+    def roll_angle(self) -> Array | None:
+        """Of profile traces, shape (N,) [rad]."""
+        return self.traces.x / self.asked.gear.base_radius if self.kind == "profile" else None
+
+    @property
+    @shows("mm", "of the flank point")
+    def radius(self) -> Array | None:
+        """Of profile traces, shape (N,) [m]."""
+        gear, roll = self.asked.gear, self.roll_angle
+        return None if roll is None else gear.tooth.radius_of_roll(roll) * gear.module
+
+    @property
+    @shows("um", "mean of all teeth, from the involute or helix", label="deviation")
+    def measured(self) -> Array:
+        """Shape (N,) [m]."""
+        return self.traces.mean
+
+    @property
+    @shows("um", "of the drawn flank, from the same")
+    def design(self) -> Array:
+        """Shape (N,) [m]."""
+        return self.asked.design[self.kind]
+
+    @property
+    @shows("um", "that pairs take")
+    def removal(self) -> Array:
+        """Shape (N,) [m]."""
+        return self.traces.removal
+
+    @property
+    @shows("um")
+    def slope_mean(self) -> float:
+        """Of the mean trace [m]."""
+        return self.deviations[-1].slope
+
+    @property
+    @shows("um", "height of its mean parabola")
+    def crown(self) -> float:
+        """Of the mean trace [m]."""
+        return self.deviations[-1].crown
+
+    @property
+    @shows("um")
+    def slope(self) -> float:
+        """Largest of all teeth, with its sign [m]."""
+        return max(self.deviations[:-1], key=lambda one: abs(one.slope)).slope
+
+    @property
+    @shows("um")
+    def form(self) -> float:
+        """Largest of all teeth [m]."""
+        return max(one.form for one in self.deviations[:-1])
+
+    @property
+    @shows("um", "total deviation, largest of all teeth")
+    def total(self) -> float:
+        """[m]."""
+        return max(one.total for one in self.deviations[:-1])
+
+    def allowed(self, what: str) -> float | None:
+        """Tolerance of the drawn class [m]; None without one."""
+        drawn = self.asked.tolerance_class
+        if drawn is None:
+            return None
+        return float(getattr(tolerances_of(self.asked.gear, drawn).rounded, f"{self.kind}_{what}"))
+
+    @property
+    @shows("", "tightest class of ISO 1328-1:2013 that every tooth keeps", name="class")
+    def kept(self) -> float | None:
+        """None where the standard knows no such gear, and where a tooth exceeds all classes."""
+        return None if self._kept is None or math.isnan(self._kept) else self._kept
+
+    @property
+    def beyond_all_classes(self) -> bool:
+        """Whether a tooth exceeds the widest class."""
+        return self._kept is not None and math.isnan(self._kept)
+
+    @cached_property
+    def _kept(self) -> float | None:
+        return _kept(self.asked.gear, self.kind, self.deviations[:-1])
+
+    @property
+    def teeth(self) -> dict[str, ToothTrace]:
+        """Traces that are drawn, where there are several teeth."""
+        found = zip(self.traces.teeth, self.traces.deviation, strict=True)
+        return {
+            str(tooth): ToothTrace(self.traces.x, row)
+            for tooth, row in list(found)[:_DRAWN]
+            if len(self.deviations) > 2
+        }
 
 
-def _trace_table(asked: FlanksToEvaluate, traces: Traces) -> Table:
-    called, along = _CALLED[traces.kind]
-    place = [Column("z" if traces.kind == "helix" else "roll_length", traces.x, "mm", along)]
-    if traces.kind == "profile":
-        roll = traces.x / asked.gear.base_radius
-        radius = asked.gear.tooth.radius_of_roll(roll) * asked.gear.module
-        place += [
-            Column("roll_angle", roll, "deg", "of the gear"),
-            Column("radius", radius, "mm", "of the flank point"),
-        ]
-    return Table(
-        f"measured_{called}_{asked.name}",
-        (
-            *place,
-            Column("measured", traces.mean, "um", "mean of all teeth, from the involute or helix"),
-            Column("design", asked.design[traces.kind], "um", "of the drawn flank, from the same"),
-            Column("removal", traces.removal, "um", "that pairs take"),
-        ),
-        f"Mean {called} of gear {asked.name}",
+@dataclass(frozen=True)
+class ToothTrace:
+    """Trace of one tooth [m]."""
+
+    along: Array = shown("mm")
+    deviation: Array = shown("um")
+
+
+def _kinds(seen: Seen) -> dict[str, OneKind]:
+    return {one.kind: OneKind(one, seen.data.found[one.kind], seen.asked) for one in seen.asked.traces}
+
+
+def _all_rows(seen: Seen) -> list[OneTrace]:
+    return [row for one in _kinds(seen).values() for row in one.rows]
+
+
+def _class_column(seen: Seen) -> Array | None:
+    """None where the standard knows a gear for some traces only."""
+    classes = [row.kept for row in _all_rows(seen)]
+    return None if None in classes else np.array(classes)
+
+
+def _where_from(seen: Seen) -> str:
+    one: Traces = seen.one.traces
+    filtered = "unfiltered" if not one.wavelength else f"filtered at {one.wavelength * 1e3:.4g} mm"
+    return (
+        f"Gear {seen.name}: {one.kind} traces of {len(one.teeth)} {'tooth' if len(one.teeth) == 1 else 'teeth'}, "
+        f"{filtered}, evaluated from {one.ends[0] * 1e3:.5g} to {one.ends[1] * 1e3:.5g} mm."
     )
 
 
-def _figure(asked: FlanksToEvaluate, traces: Traces) -> Figure:
-    called, along = _CALLED[traces.kind]
-    x = traces.x * 1e3
-    curves = [
-        Curve(x, row * 1e6, f"tooth {tooth}", "grey", dash="solid", markers=False, width=1.0)
-        for tooth, row in list(zip(traces.teeth, traces.deviation, strict=True))[:_DRAWN]
-        if len(traces.teeth) > 1
-    ]
-    curves.append(Curve(x, traces.mean * 1e6, "mean", "series:0", markers=False))
-    if asked.design[traces.kind].any():
-        curves.append(Curve(x, asked.design[traces.kind] * 1e6, "design", "series:1", markers=False))
-    marks = tuple(Mark("x", end * 1e3, word) for end, word in zip(traces.ends, ("from", "to"), strict=True))
-    panel = Panel(Axis(along, "mm"), Axis("deviation", "um"), tuple(curves), marks)
-    return Figure(
-        f"measured_{called}_{asked.name}", f"Measured {called} of gear {asked.name}",
-        f"Gear {asked.name}: {called} traces, filtered; marked is the evaluation range.", (panel,),
+def _marks(seen: Seen) -> tuple[Mark, ...]:
+    return tuple(Mark("x", end * 1e3, word) for end, word in zip(seen.one.traces.ends, ("from", "to"), strict=True))
+
+
+def _along(seen: Seen) -> Axis:
+    return axis_of(OneKind, _place(seen))
+
+
+def _place(seen: Seen) -> str:
+    return "z" if seen.key == "helix" else "roll_length"
+
+
+def _curves(place: str) -> tuple[Line, ...]:
+    """Every tooth, their mean and the design, over the place that the kind of trace has."""
+    thin = {"dash": "solid", "markers": False, "width": 1.0}
+    return (
+        Line("deviation", "tooth {key}", x="along", each=Family("teeth", role="grey", most=_DRAWN), look=thin,
+             when=place),
+        Line("measured", "mean", "series:0", x=place, look={"markers": False}, when=place),
+        Line("design", "design", "series:1", x=place, look={"markers": False},
+             when=lambda seen: seen.find(place) is not None and seen.one.design.any()),
     )  # fmt: skip
+
+
+def _exact(_seen: Seen) -> float:
+    return 0.0
+
+
+def _tolerance(what: str) -> Number:
+    return Number(
+        what, _exact, si=lambda seen: seen.one.allowed(what), name=f"{{key}}_{what}_tolerance",
+        meaning="of class {asked.tolerance_class}, ISO 1328-1:2013",
+    )  # fmt: skip
+
+
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "measured_deviations_{name}", "Deviations of gear {name}",
+            (
+                "trace", "tooth", "slope_deviation", "form_deviation", "total_deviation", "crown",
+                Cell("kept", si=_class_column),
+            ),
+            of=_all_rows, printed=True,
+        ),
+        Rows(
+            "measured_{key}_{name}", "Mean {key} of gear {name}",
+            ("z", "roll_length", "roll_angle", "radius", "measured", "design", "removal"), each=_kinds,
+        ),
+    ),
+    values=(
+        Each(
+            _kinds,
+            Number("slope_mean", name="{key}_slope_mean", meaning="slope of the mean {key} trace"),
+            Number("crown", name="{key}_crown"),
+            Number("slope", name="{key}_slope", meaning="{key} slope deviation, largest of all teeth"),
+            Number("form", name="{key}_form", meaning="{key} form deviation, largest of all teeth"),
+            Number("total", name="{key}_total"),
+            *map(_tolerance, ("slope", "form", "total")),
+            Number("kept", _exact, name="{key}_class"),
+        ),
+    ),
+    figures=(
+        Chart(
+            "measured_{key}_{name}", "Measured {key} of gear {name}",
+            "Gear {name}: {key} traces, filtered; marked is the evaluation range.",
+            (Over(_along, (*_curves("z"), *_curves("roll_length")), "measured", marks=_marks),), each=_kinds,
+        ),
+    ),
+    remarks=(
+        lambda seen: seen.asked.remarks,
+        Each(
+            _kinds,
+            Remark(_where_from),
+            Remark(
+                "Gear {name}: {key} deviations of a tooth exceed class 11, the widest of ISO 1328-1.",
+                when="beyond_all_classes",
+            ),
+        ),
+    ),
+)  # fmt: skip
 
 
 MEASURED_FLANKS = Stage(
     subjects=lambda scene: tuple(name for name, part in scene.case.gear.items() if part.measured is not None),
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     cites=citing(Citation("iso-1328-1", "evaluation of profile and helix traces, tolerances")),
     forecast=lambda _scene, _name: forecasts.constant(0.05),
     internal=True,
