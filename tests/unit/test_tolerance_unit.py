@@ -49,7 +49,7 @@ def test_finer_tolerances_start_with_finer_settings_of_one_ladder():
     assert [level_for(t) for t in (0.5, 0.05, 1e-2, 3e-3, 2e-3, 1e-3, 5e-4, 1e-4)] == [
         -6,
         -5.5,
-        -4.5,
+        -4,
         -3,
         -2.5,
         -2,

@@ -146,9 +146,9 @@ class MeshSettings:
 LEVEL_RATIO = math.sqrt(2.0)
 #: Levels that can be asked for: edge lengths 8 to 0.25 times the default.
 COARSEST_LEVEL, FINEST_LEVEL = -6.0, 4.0
-#: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md): one
-#: level coarser a quarter of the gears or more misses it and is solved twice.
-_LEVELS = ((1e-1, -6.0), (1e-2, -4.5), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))
+#: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md); the next half
+#: level is taken. Half a level coarser a fifth of the gears misses 1e-2 or 1e-3 and is solved twice.
+_LEVELS = ((1e-1, -6.0), (1e-2, -4.34), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))
 
 
 def settings_at(level: float) -> MeshSettings:
