@@ -42,6 +42,7 @@ class MinimumExcitationRelief:
         """Refuse design zones that reach beyond the path of contact, and loads that are none."""
         if not (np.isfinite(self.load) and self.load > 0.0):
             raise InputError("design.load", f"{self.load} N", "must be positive and finite")
+        self.compliance.refuse_unequal("a relief by its loading")
         refuse_beyond_path(self.loading, self.compliance.pair)
 
     def _radius(self, x: Array) -> Array:
@@ -56,7 +57,7 @@ class MinimumExcitationRelief:
         curvature = [pair.flank_curvature_radius(inside, m) for m in MEMBERS]
         relative = np.maximum(curvature[0] * curvature[1] / (curvature[0] + curvature[1]), 1e-9)
         load = np.maximum(w / face, 1e-30) * face if c.hertz == "load-dependent" else c.contact_load
-        own = sum(c.own_parts(self.member, self._radius(inside), relative, load))
+        own = sum(c.own_parts(self.member, 0, self._radius(inside), relative, load))
         return np.asarray(own * w / face)
 
     def deflection_by_neighbours(self, x: ArrayLike) -> Array:
@@ -75,7 +76,7 @@ class MinimumExcitationRelief:
                 continue
             there = self._radius(other[loaded])
             w = self.load * self.loading.fraction(other[loaded])
-            total[loaded] += source.neighbour(-sign * ahead, here[loaded], there) * w / face
+            total[loaded] += source.between(-sign * ahead, 0, here[loaded], there) * w / face
         return total
 
     def deflection(self, x: ArrayLike) -> Array:

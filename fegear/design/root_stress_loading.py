@@ -87,6 +87,7 @@ def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStr
     InputError
         If no gear's source knows root stress.
     """
+    compliance.refuse_unequal("loadings by root stress")
     pair = compliance.pair
     x = np.linspace(pair.x_start, pair.x_end, positions)
     kernels: dict[Member, list[tuple[Array, Array]]] = {}
@@ -97,14 +98,14 @@ def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStr
         for ahead in range(-reach, reach + 1):
             there = x + ahead * pair.base_pitch
             radius = pair.radius(np.clip(there, pair.x_start, pair.x_end), member)
-            kernel = source.root_stress(-sign * ahead, radius, "tension")
+            kernel = source.root_stress(-sign * ahead, 0, radius, "tension")
             if kernel is not None:
                 found.append((there, kernel))
         if found:
             kernels[member] = found
     if not kernels:
         raise InputError("design", "root stress", "is unknown to these compliance sources", 'set source = "fe"')
-    curves = {member: compliance.source(member).fillet_curve("tension") for member in kernels}
+    curves = {member: compliance.source(member).fillet_curve(0, "tension") for member in kernels}
     return DesignStress(compliance, x, kernels, curves)
 
 

@@ -54,10 +54,10 @@ def test_table_over_the_flank_is_the_formula(name):
     table = formula_root_stress(gear, name, *ends)
     for radius in (*ends, *rng.uniform(*ends, 5)):
         direct = ROOT_STRESS_SOURCES[name].formula(gear.tooth, radius / gear.module).stress / gear.module
-        assert float(table.root_stress(0, radius, "tension")[0, 0]) == pytest.approx(direct, rel=1e-5)
-    assert not table.root_stress(1, radius, "tension").any()
-    assert table.root_stress(0, radius, "compression") is None
-    assert np.isnan(table.root_stress_error(radius)).all()
+        assert float(table.root_stress(0, 0, radius, "tension")[0, 0]) == pytest.approx(direct, rel=1e-5)
+    assert not table.root_stress(1, 0, radius, "tension").any()
+    assert table.root_stress(0, 0, radius, "compression") is None
+    assert np.isnan(table.root_stress_error(0, 0, radius)).all()
 
 
 def test_a_formula_is_blank_where_it_does_not_hold_and_exact_up_to_there():
@@ -76,7 +76,7 @@ def test_a_formula_is_blank_where_it_does_not_hold_and_exact_up_to_there():
     assert direct(part.x[0]) > 0.0 >= direct(part.x[0] * (1.0 - 1e-6))  # it begins to hold there
     first = math.sqrt(low**2 - gear.base_radius**2)
     radii = np.hypot(gear.base_radius, np.linspace(first * (1.0 + 1e-9), part.x[-1] * (1.0 - 1e-9), 41))
-    table = found.root_stress(0, radii, "tension")[0]
+    table = found.root_stress(0, 0, radii, "tension")[0]
     exact = np.array([direct(math.sqrt(r**2 - gear.base_radius**2)) / gear.module for r in radii])
     assert part.x[0] > first
     assert (np.isnan(table) == (radii < np.hypot(gear.base_radius, part.x[0]))).all()

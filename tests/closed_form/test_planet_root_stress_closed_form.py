@@ -91,8 +91,8 @@ def test_stress_at_the_place_is_that_of_the_influence_functions(ran, found):
         ("tension", found["planet_sun_side"].place, table.stress[0]),
         ("compression", found["planet_ring_side"].place, table.stress[1]),
     ):
-        along = source.root_stress(0, radius, side)[:, 0] * line
-        by_hand = np.interp(place, source.fillet_curve(side).arc, along)
+        along = source.root_stress(0, 0, radius, side)[:, 0] * line
+        by_hand = np.interp(place, source.fillet_curve(0, side).arc, along)
         own = np.array(table.mesh) == "sun"
         there = state.grid.contacts.x[row, 0]
         order = np.argsort(table.x[own])

@@ -35,7 +35,7 @@ def bisected_error(engagement, x, removal, load):
     there = places <= pair.x_end + 1e-12
     at = np.minimum(places, pair.x_end)
     radii = [pair.radius(at, m) for m in ("driver", "driven")]
-    own = sum(c.source(m).own(r) for m, r in zip(("driver", "driven"), radii, strict=True))
+    own = sum(c.source(m).own(0, r) for m, r in zip(("driver", "driven"), radii, strict=True))
     curvature = [pair.flank_curvature_radius(at, m) for m in ("driver", "driven")]
     relative = curvature[0] * curvature[1] / (curvature[0] + curvature[1])
 

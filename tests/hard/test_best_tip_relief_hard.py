@@ -62,7 +62,7 @@ class Reference:
         b = c.half_width(np.asarray(load), rho[0] * rho[1] / (rho[0] + rho[1]))
         for m in ("driver", "driven"):
             source, r = c.source(m), pair.radius(inside, m)
-            own = own + source.own(r)
+            own = own + source.own(0, r)
             if c.hertz == "none":  # as wide as under 100 N/mm
                 own = own + source.power * 1e5**-0.1
             else:

@@ -83,10 +83,10 @@ def moved_contacts(engagement: Engagement, state: Loaded) -> Array:
             per_arc = pair.gear(member).base_radius / abs(rho) / (2.0 * step)
             for j in on:
                 if i == j:
-                    rise = 0.5 * (source.own(high) - source.own(low))
+                    rise = 0.5 * (source.own(0, high) - source.own(0, low))
                 else:
                     k, there = ahead * int(at.number[j] - at.number[i]), pair.radius(at.x[j, 0], member)
-                    rise = source.neighbour(k, high, there) - source.neighbour(k, low, there)
+                    rise = source.between(k, 0, high, there) - source.between(k, 0, low, there)
                 slope[i, j] += float(rise) * per_arc
     curvature, cubic, quartic = gaps[:, on]
     found[on] = moved_less(

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fegear.contact.plane.compliance import AlikeTeeth
 from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True)
-class SmoothTooth:
+class SmoothTooth(AlikeTeeth):
     """A tooth that is softer at its tip, with exponentially fading, reciprocal neighbour coupling."""
 
     gear: Gear
@@ -27,20 +28,20 @@ class SmoothTooth:
     def _s(self, radius):
         return (np.asarray(radius) - self.gear.root_radius) / (self.gear.tip_radius - self.gear.root_radius)
 
-    def own(self, radius):
+    def own(self, i, radius):
         return (6.0 + 8.0 * self._s(radius) ** 2) / self.gear.plane_modulus
 
     def reference_half_width(self, radius):
         return np.full(np.shape(radius), 0.1 * self.gear.module)
 
-    def neighbour(self, k, radius_p, radius_q):
+    def between(self, i, j, radius_p, radius_q):
         shape = (1.0 + 0.5 * self._s(radius_p)) * (1.0 + 0.5 * self._s(radius_q))
-        return 2.0 * self.coupling ** abs(k) * shape / self.gear.plane_modulus
+        return 2.0 * self.coupling ** abs(i - j) * shape / self.gear.plane_modulus
 
-    def root_stress(self, k, radius_q, side):
+    def root_stress(self, i, j, radius_q, side):
         return None
 
-    def fillet_curve(self, side):
+    def fillet_curve(self, i, side):
         return None
 
     def describe(self):

@@ -34,12 +34,13 @@ class Coupled:
             raise AttributeError(name)
         return getattr(self.base, name)
 
-    def neighbour(self, k, p, q):
-        return 1e-13 * np.exp(-abs(k)) * (1.0 + np.sin(300.0 * p) * np.cos(200.0 * q))
+    def between(self, i, j, p, q):
+        p, q = (p, q) if i <= j else (q, p)  # reciprocity
+        return 1e-13 * np.exp(-abs(i - j)) * (1.0 + np.sin(300.0 * p) * np.cos(200.0 * q))
 
-    def root_stress(self, k, radius, side):
+    def root_stress(self, i, j, radius, side):
         sign = 1.0 if side == "tension" else -1.0
-        return sign * np.exp(-abs(k)) * np.sin(np.arange(1, 6)[:, None] * 400.0 * np.asarray(radius)) ** 2
+        return sign * np.exp(-abs(i - j)) * np.sin(np.arange(1, 6)[:, None] * 400.0 * np.asarray(radius)) ** 2
 
 
 def compliance(coupling=True, **more):
@@ -151,7 +152,7 @@ def test_superposed_stress_is_the_sum_over_every_load_on_every_tooth(member, sid
     for tooth in range(-1, n + 1):
         for other in range(n):
             if abs(tooth - other) <= 2:
-                kernel = source.root_stress(towards * (tooth - other), radius[other], side)
+                kernel = source.root_stress(towards * (tooth - other), 0, radius[other], side)
                 wanted[tooth + 1] += np.einsum("ip,pl->pli", kernel, state.loads[other] / 0.01)
     largest = wanted.max(axis=-1) if side == "tension" else wanted.min(axis=-1)
     found = root_stress_history(e, state, member, side, 1)

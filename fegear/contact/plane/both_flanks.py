@@ -61,8 +61,9 @@ def fillet_trace(engagement: Engagement, member: Member, load: float) -> FilletT
     InputError
         If root stress is not known by finite elements.
     """
+    engagement.compliance.refuse_unequal("bending to both sides")
     source = engagement.compliance.source(member)
-    curves = {side: source.fillet_curve(side) for side in _FILLETS}
+    curves = {side: source.fillet_curve(0, side) for side in _FILLETS}
     if any(curve is None for curve in curves.values()):
         raise InputError(
             "compliance.source", "a formula", "knows no stress along the fillet, which bending to both sides needs",

@@ -46,7 +46,7 @@ class ClosedFormCompliance(OneTooth):
     reach = 0
     kinks = ()
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:  # noqa: ARG002  (all alike)
         """Tooth, foundation and the contact's part that is linear in the load [m^2/N]."""
         r, rb = np.asarray(radius, dtype=float), self.gear.base_radius
         length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
@@ -76,7 +76,7 @@ class ConstantCompliance(Rigid):
     compliance: float = 0.0
     source: str = "a constant"
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:  # noqa: ARG002  (all alike)
         """The same everywhere [m^2/N]."""
         return np.full(np.shape(radius), self.compliance)
 

@@ -4,7 +4,11 @@ Every quantity belongs to one gear, per unit face width, in SI. The Hertzian con
 states the compliance under the load at a reference half-width b_ref and the slope kappa of its logarithm, so that with
 the pair's Hertzian half-width b(W)
 
-    c_0(W) = own(radius) + kappa ln(b_ref / b(W)).
+    c_0(W) = own(tooth, radius) + kappa ln(b_ref / b(W)).
+
+Every tooth has a number. Numbers rise toward the side that a load comes from: tooth i + 1 is ahead of tooth i of a
+driving gear, behind it of a driven one; they go on through any number of turns. Where all teeth are alike an answer
+depends on the difference of two numbers only, `period` is 1, and everything that is made of answers is kept once.
 """
 
 from __future__ import annotations
@@ -33,14 +37,21 @@ class RootStressInfluence(Protocol):
     def remarks(self) -> tuple[str, ...]:
         """What the source says of its own values; empty when nothing."""
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
-        """Stress along a fillet of tooth k per unit line load at q of tooth 0, (points, Q) [1/m]; None if unknown."""
+    @property
+    def period(self) -> int:
+        """Teeth after which all answers repeat: 1 where they are alike, else those of the gear."""
 
-    def fillet_curve(self, side: Side) -> FilletCurve | None:
-        """How the largest stress is found between the points of a fillet; None where they are all that is known."""
+    def same_as(self, first: int, count: int) -> int:
+        """First of `count` successive teeth that answer as those from `first` on: the same for all that do."""
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:
-        """Estimated error of the largest stress of a fillet of tooth k, (Q,) [1/m]; NaN if unknown."""
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Stress along a fillet of tooth i per unit line load at q of tooth j, (points, Q) [1/m]; None if unknown."""
+
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:
+        """How the largest stress of tooth i is found between the points of a fillet; None if they are all."""
+
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
+        """Estimated error of the largest stress of a fillet of tooth i, loads on j, (Q,) [1/m]; NaN if unknown."""
 
 
 class GearCompliance(RootStressInfluence, Protocol):
@@ -65,16 +76,16 @@ class GearCompliance(RootStressInfluence, Protocol):
     def kinks(self) -> tuple[float, ...]:
         """Radii [m] at which `own` has a kink (knots of a linear table); empty for smooth sources."""
 
-    def own(self, radius: ArrayLike) -> Array:
-        """Deflection under the load's own centre per unit line load at the reference half-width, shape (P,) [m^2/N]."""
+    def own(self, i: int, radius: ArrayLike) -> Array:
+        """Deflection of tooth i under the load's own centre per unit line load at b_ref, shape (P,) [m^2/N]."""
 
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """b_ref, shape (P,) [m]."""
 
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_k(p, q) [m^2/N]: deflection at p of tooth k per unit line load at q of tooth 0; radii are broadcast.
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_ij(p, q) = c_ji(q, p) [m^2/N]: deflection at p of tooth i per unit line load at q of another tooth j.
 
-        Tooth k = +1 is the one on the side that the load comes from: ahead of a driving tooth, behind a driven one.
+        Radii are broadcast.
         """
 
     def describe(self) -> str:
@@ -98,26 +109,37 @@ def largest_stress(curve: FilletCurve | None, stress: Array, side: Side, radius:
     return np.asarray(stress.max(axis=0) if side == "tension" else stress.min(axis=0))
 
 
-class OneTooth:
+class AlikeTeeth:
+    """Base of sources whose teeth are all alike."""
+
+    __slots__ = ()
+    period = 1
+
+    def same_as(self, first: int, count: int) -> int:  # noqa: ARG002  (the interface)
+        """Any are the same: 0."""
+        return 0
+
+
+class OneTooth(AlikeTeeth):
     """Base of compliance sources that know one tooth: neither its neighbours nor its root stress."""
 
     __slots__ = ()
     remarks = ()
     tip_wedge = (0.0, 0.0)
 
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002
         """Zero."""
         return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002
         """Unknown."""
         return None
 
-    def fillet_curve(self, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
         """Unknown."""
         return None
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 
@@ -131,7 +153,7 @@ class Rigid(OneTooth):
     power: float = 0.0
     kinks: tuple[float, ...] = ()
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
         """Zero."""
         return np.zeros(np.shape(radius))
 

@@ -34,18 +34,21 @@ class Loaded:
     shared : SharedLoad
     separation : ndarray, shape (n, P)
         e_j [m]: modifications, errors and, off the path, the corner's gap.
+    cycle : int
+        Number of the base pitch: which teeth are on the pairs.
     """
 
     grid: RollGrid
     load: Array
     shared: SharedLoad
     separation: Array
+    cycle: int = 0
 
     def under(self, number: int) -> Loaded:
         """The same under one of the loads alone."""
         one, shared = slice(number, number + 1), self.shared
         alone = SharedLoad(shared.loads[..., one], shared.transmission_error[:, one], shared.steps)
-        return Loaded(self.grid, self.load[one], alone, self.separation)
+        return Loaded(self.grid, self.load[one], alone, self.separation, self.cycle)
 
     @property
     def x(self) -> Array:
@@ -183,8 +186,14 @@ class Engagement:
 
     @property
     def cycles(self) -> int:
-        """Base pitches after which the spacing errors repeat, 1 without any."""
-        return math.lcm(*(errors.size for errors in (self.driver_spacing, self.driven_spacing) if errors.size))
+        """Base pitches after which teeth that differ meet again, by their spacing errors or as they are; else 1."""
+        errors = (errors.size for errors in (self.driver_spacing, self.driven_spacing) if errors.size)
+        return math.lcm(self.compliance.cycles, *errors)
+
+    @property
+    def uneven(self) -> bool:
+        """Whether one base pitch is not as the other: teeth have spacing errors, or differ."""
+        return bool(self.driver_spacing.size or self.driven_spacing.size) or self.compliance.cycles > 1
 
     def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
         """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""
@@ -194,10 +203,10 @@ class Engagement:
         return np.where(contacts.present, contacts.gap + added, np.inf)
 
     def solve(self, grid: RollGrid, load: ArrayLike, cycle: int = 0) -> Loaded:
-        """Share loads, shape (L,) [N], at the positions of a grid."""
-        e = self.separation(grid.contacts, cycle)
+        """Share loads, shape (L,) [N], at the positions of a grid, by the teeth of a base pitch."""
+        e, at = self.separation(grid.contacts, cycle), self.grids.turned(grid, cycle)
         loads = np.atleast_1d(np.asarray(load, dtype=float))
-        return Loaded(grid, loads, self.grids.share(grid, e, loads), e)
+        return Loaded(at, loads, self.grids.share(at, e, loads), e, cycle)
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -226,6 +235,7 @@ class Engagement:
 def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
     """Solve with another engagement's compliances at the same contacts, loads and separations."""
     grid = loaded.grid
-    matrices = other.compliance.matrices(grid.contacts)
+    matrices = other.compliance.matrices(grid.contacts, loaded.cycle)
     shared = matrices.share(loaded.separation, loaded.load)
-    return Loaded(RollGrid(grid.x, grid.contacts, matrices), loaded.load, shared, loaded.separation)
+    again = RollGrid(grid.x, grid.contacts, matrices, grid.teeth)
+    return Loaded(again, loaded.load, shared, loaded.separation, loaded.cycle)

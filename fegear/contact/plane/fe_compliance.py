@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.contact.plane.compliance import AlikeTeeth
 from fegear.contact.plane.spline import Spline, spline
 from fegear.fem.plane.contact_width import corner_angles, wedge_slope
 
@@ -38,7 +39,7 @@ _NOMINAL_HALF_WIDTH = 0.08
 
 
 @dataclass(frozen=True)
-class FiniteElementCompliance:
+class FiniteElementCompliance(AlikeTeeth):
     """One gear's influence functions over its flank, interpolated in the roll length.
 
     Parameters
@@ -60,8 +61,8 @@ class FiniteElementCompliance:
     remarks = ()
 
     @cached_property
-    def stress_rows(self) -> dict[tuple[Side, int], StressRows]:
-        """Root stress at the contacts asked for last, by fillet and by how many neighbours count."""
+    def stress_rows(self) -> dict[tuple[Side, int, int], StressRows]:
+        """Root stress at the contacts asked for last, by fillet, by how many neighbours count, and by the teeth."""
         return {}
 
     @property
@@ -103,7 +104,7 @@ class FiniteElementCompliance:
     def _roll_length(self, radius: ArrayLike) -> Array:
         return roll_length(self.influence.gear, radius, self.lowest, self.highest)
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:  # noqa: ARG002  (all alike)
         """c_0 at the reference half-width [m^2/N]."""
         return np.asarray(self.own_spline(self._roll_length(radius)))
 
@@ -111,27 +112,27 @@ class FiniteElementCompliance:
         """The half-width that `own` is for [m]; others follow by their logarithm."""
         return np.full(np.shape(radius), _NOMINAL_HALF_WIDTH * self.influence.gear.module)
 
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_k(p, q), zero beyond the reach."""
-        if abs(k) > self.reach:
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), k = i - j, zero beyond the reach."""
+        if abs(k := i - j) > self.reach:
             return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
         p, q = (self._roll_length(r) for r in (radius_p, radius_q))
         return chebyshev_over(self.lowest, self.highest, p, q, self.neighbours[k])
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
-        """Tangential stress along the fillet of tooth k [1/m], shape (points, Q); zero beyond the reach."""
-        if abs(k) > self.reach:
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Tangential stress along the fillet of tooth k = i - j [1/m], shape (points, Q); zero beyond the reach."""
+        if abs(k := i - j) > self.reach:
             return np.zeros_like(self.influence.fillet_stress(0, side, radius_q))
         return self.influence.fillet_stress(k, side, radius_q)
 
-    def fillet_curve(self, side: Side) -> FilletCurve | None:
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (all alike)
         """That of the solution."""
         return self.influence.fine.fillet_curve(side, self.influence.gear.module)
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:
-        """Estimated error of the largest stress of a fillet of tooth k under a load on tooth 0 [1/m]."""
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
+        """Estimated error of the largest stress of a fillet of tooth k = i - j under a load on tooth 0 [1/m]."""
         known = self.influence
-        return known.root_stress_error(k, side, np.clip(radius_q, known.lowest_radius, known.highest_radius))
+        return known.root_stress_error(i - j, side, np.clip(radius_q, known.lowest_radius, known.highest_radius))
 
     def describe(self) -> str:
         """Return what it includes."""

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
-from fegear.contact.plane.compliance import Side
+from fegear.contact.plane.compliance import AlikeTeeth, Side
 from fegear.contact.plane.spline import Spline, spline
 from fegear.fem.plane.root_stress import FilletCurve
 from fegear.formulas.outcome import Outcome, RootStress, RootStressSource, attempt
@@ -32,7 +32,7 @@ _FEWEST, _ROUND_OFF, _HALVINGS = 4, 1e-9, 30
 
 
 @dataclass(frozen=True)
-class FormulaRootStress:
+class FormulaRootStress(AlikeTeeth):
     """Root tension of a tooth under its own load by a closed form; loads on its neighbours leave it alone.
 
     Parameters
@@ -67,7 +67,7 @@ class FormulaRootStress:
         """Whether it gives no value for any load on the flank."""
         return not self.over_length
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """Largest root tension per unit line load [1/m], shape (1, Q), NaN where the formula gives none.
 
         No formula knows the other fillet.
@@ -75,7 +75,7 @@ class FormulaRootStress:
         if side == "compression":
             return None
         r, rb = np.atleast_1d(np.asarray(radius_q, dtype=float)), self.gear.base_radius
-        if k:
+        if i != j:
             return np.zeros((1, r.size))
         length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
         if not self.missing:
@@ -88,11 +88,11 @@ class FormulaRootStress:
             found[on] = part(np.clip(length[on], part.x[0], part.x[-1]))
         return found[None]
 
-    def fillet_curve(self, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
         """None: a formula knows the largest stress alone."""
         return None
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
         """Not a number [1/m]: a formula does not know how far it is off."""
         return np.full(np.shape(np.atleast_1d(radius_q)), math.nan)
 

@@ -144,8 +144,7 @@ class LoadedPair:
     def _rotational(self) -> FourierSeries | None:
         """Harmonics over the base pitches after which the same teeth meet again, where they are not too many."""
         e, cycles = self.engagement, self.engagement.cycles
-        uneven = bool(e.driver_spacing.size or e.driven_spacing.size)
-        return revolution(e, self.nominal, cycles, 3 * cycles) if uneven and cycles <= MOST_CYCLES else None
+        return revolution(e, self.nominal, cycles, 3 * cycles) if e.uneven and cycles <= MOST_CYCLES else None
 
     def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:
         """See `LoadedTeeth`."""

@@ -19,7 +19,7 @@ from fegear.geometry.pair import MEMBERS
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import GearCompliance
@@ -115,6 +115,42 @@ class PairCompliance:
         """E* [Pa], 1/E* = sum of (1 - nu^2)/E in plane strain, of 1/E in plane stress: Hertzian line contact."""
         return 1.0 / (1.0 / self.pair.driver.plane_modulus + 1.0 / self.pair.driven.plane_modulus)
 
+    @property
+    def cycles(self) -> int:
+        """Base pitches after which the same teeth meet again, as far as they differ: 1 where all are alike."""
+        return math.lcm(self.driver.period, self.driven.period)
+
+    def tooth(self, member: Member, number: int, cycle: int) -> int:
+        """Number of a gear's tooth on a pair in a base pitch; see `fegear.contact.plane.compliance`.
+
+        Parameters
+        ----------
+        member : {"driver", "driven"}
+        number : int
+            Of the pair: pair j + 1 is ahead of pair j.
+        cycle : int
+            Number of the base pitch: pair j is on the teeth of pair j - 1 in the base pitch before.
+        """
+        return number - cycle if member == "driver" else cycle - number
+
+    def refuse_unequal(self, asker: str) -> None:
+        """Refuse gears whose teeth differ where one tooth stands for all.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.cycles > 1:
+            raise InputError("pair", "teeth that differ", f"are not known to {asker}", "take gears of equal teeth")
+
+    def pattern(self, number: NDArray[np.int64], cycle: int) -> tuple[int, int]:
+        """Which teeth of driver and driven gear are on successive pairs: the same where they answer alike."""
+        first, last = int(number[0]), int(number[-1])
+        return (
+            self.driver.same_as(self.tooth("driver", first, cycle), number.size),
+            self.driven.same_as(self.tooth("driven", last, cycle), number.size),
+        )
+
     def reversed(self) -> PairCompliance:
         """The same gears with driver and driven exchanged."""
         return replace(self, pair=self.pair.reversed(), driver=self.driven, driven=self.driver)
@@ -134,8 +170,8 @@ class PairCompliance:
         w = np.asarray(load) / self.face_width
         return np.asarray(np.sqrt(w * self.contact_modulus / (math.pi * relative_radius)))
 
-    def matrices(self, at: Contacts) -> PairMatrices:
-        """Compliances of all pairs at all roll positions."""
+    def matrices(self, at: Contacts, cycle: int = 0) -> PairMatrices:
+        """Compliances of all pairs at all roll positions, with the teeth of a base pitch."""
         n, positions = at.x.shape
         face, present = self.face_width, at.present
         c = np.zeros((n, n, positions))
@@ -150,7 +186,14 @@ class PairCompliance:
             parts = [
                 part
                 for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True)
-                for part in self.own_parts(member, radius[j, here], relative, self.contact_load, power=not follows)
+                for part in self.own_parts(
+                    member,
+                    self.tooth(member, int(at.number[j]), cycle),
+                    radius[j, here],
+                    relative,
+                    self.contact_load,
+                    power=not follows,
+                )
             ]
             own = np.asarray(sum(parts))
             c[j, j, here] = own / face
@@ -158,7 +201,7 @@ class PairCompliance:
             if follows:
                 slope[j, here] = self.log_slope
         if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
-            self._couple(c, at)
+            self._couple(c, at, cycle)
         edges = None
         if follows and at.edge.max() > -np.inf and self.log_slope > 0.0:
             edges = self._edges(at, self.half_width(np.asarray(reference), at.relative_radius))
@@ -171,13 +214,15 @@ class PairCompliance:
         return self.nominal_load if self.hertz == "linear" else _REFERENCE_LINE_LOAD * self.face_width
 
     def own_parts(
-        self, member: Member, radius: Array, relative_radius: Array, load: ArrayLike, *, power: bool = True
+        self, member: Member, i: int, radius: Array, relative_radius: Array, load: ArrayLike, *, power: bool = True
     ) -> tuple[Array, ...]:
         """What a tooth's own compliance per line load adds up from, its contact that of a load [m^2/N].
 
         Parameters
         ----------
         member : {"driver", "driven"}
+        i : int
+            Number of the tooth.
         radius, relative_radius : ndarray, shape (P,)
             Of points of the flank, and of curvature there [m].
         load : array_like, shape () or (P,)
@@ -186,7 +231,7 @@ class PairCompliance:
             Whether Palmgren's contact counts.
         """
         source = self.source(member)
-        parts = [source.own(radius)]
+        parts = [source.own(i, radius)]
         if power and source.power > 0.0:
             parts.append(np.asarray(source.power * (np.asarray(load) / self.face_width) ** (EXPONENT - 1.0)))
         if self.hertz != "none" and source.log_slope > 0.0:
@@ -206,20 +251,28 @@ class PairCompliance:
         return EdgeContacts(at.edge / half_width, wedge, least / half_width)
 
     @tallied("neighbours")
-    def _couple(self, c: Array, at: Contacts) -> None:
-        """Add what a load on pair j' does to pair j < j', and its transpose (Maxwell).
+    def _couple(self, c: Array, at: Contacts, cycle: int) -> None:
+        """Add what a load on pair j' does to pair j < j', and its transpose (Maxwell)."""
+        for k in range(1, at.number.size):
+            for rows in self._alike(at.number, k, cycle):
+                both = at.present[rows] & at.present[rows + k]
+                if not both.any():
+                    continue
+                first = int(at.number[rows[0]])
+                driver, driven = (
+                    self.source(member).between(
+                        self.tooth(member, first, cycle), self.tooth(member, first + k, cycle),
+                        radius[rows][both], radius[rows + k][both],
+                    )
+                    for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True)
+                )  # fmt: skip
+                value = driver + driven
+                j, p = np.nonzero(both)
+                c[rows[j], rows[j] + k, p] = c[rows[j] + k, rows[j], p] = value / self.face_width
 
-        Pair j + 1 is ahead of pair j: its teeth are k = +1 seen from the driver's loaded tooth and k = -1 seen from
-        the driven gear's, since tooth +1 is the one on the side that the load comes from.
-        """
-        n = at.x.shape[0]
-        for k in range(1, n):  # all pairs that are k apart at once
-            both = at.present[: n - k] & at.present[k:]
-            if not both.any():
-                continue
-            (driver, driver_ahead), (driven, driven_ahead) = (
-                (radius[: n - k][both], radius[k:][both]) for radius in (at.radius_driver, at.radius_driven)
-            )
-            value = self.driver.neighbour(-k, driver, driver_ahead) + self.driven.neighbour(k, driven, driven_ahead)
-            j, p = np.nonzero(both)
-            c[j, j + k, p] = c[j + k, j, p] = value / self.face_width
+    def _alike(self, number: NDArray[np.int64], k: int, cycle: int) -> list[NDArray[np.intp]]:
+        """Rows j of pairs such that pairs j and j + k are on like teeth: all of them at once where all teeth are."""
+        found: dict[tuple[int, int], list[int]] = {}
+        for j in range(number.size - k):
+            found.setdefault(self.pattern(number[j : j + k + 1], cycle), []).append(j)
+        return [np.array(rows) for rows in found.values()]

@@ -92,7 +92,7 @@ def pair_history_with(
     here = (index, np.arange(x.size))
     loads = np.atleast_1d(np.asarray(load, dtype=float))
     picked = []
-    uneven = engagement.driver_spacing.size or engagement.driven_spacing.size
+    uneven = engagement.uneven
     for k in np.unique(number) if uneven else (0,):
         # Pair j is on teeth cycle - j: this pair keeps its own teeth while the base pitches pass.
         rows = number == k if uneven else np.ones(x.size, dtype=bool)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -21,6 +21,8 @@ from fegear.geometry.pair import GearPair
 
 #: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.
 _KEPT = 8
+#: So many of them are kept with other teeth of gears whose teeth differ.
+_PATTERNS = 64
 #: So many of the states under load that were found last on each of them: with the flanks as they are, and perfect.
 _STATES = 2
 #: Of longer ones none: they serve one question of a design.
@@ -39,11 +41,17 @@ class RollGrid:
         Roll positions [m].
     contacts : Contacts
     matrices : PairMatrices
+    teeth : tuple of int
+        Which teeth of driver and driven gear they are of; see `PairCompliance.pattern`.
+    others : dict
+        The same positions with teeth that differ from these, by these; empty where all teeth are alike.
     """
 
     x: Array
     contacts: Contacts
     matrices: PairMatrices
+    teeth: tuple[int, int] = (0, 0)
+    others: dict[tuple[int, int], RollGrid] = field(default_factory=dict, repr=False, compare=False)
 
 
 _PLACES = tuple(one.name for one in fields(Contacts) if one.name != "number")
@@ -125,7 +133,20 @@ class RollGrids:
         start, pitch = pair.x_start, pair.base_pitch
         outside = (x < start) | (x > start + pitch)
         contacts = self.meshing.contacts(np.where(outside, self.meshing.reduced(x), x))
-        return RollGrid(x, contacts, self._compliance.matrices(contacts))
+        teeth = self._compliance.pattern(contacts.number, 0)
+        return RollGrid(x, contacts, self._compliance.matrices(contacts), teeth)
+
+    def turned(self, grid: RollGrid, cycle: int) -> RollGrid:
+        """The grid with the teeth of a base pitch: itself where they answer alike."""
+        teeth = self._compliance.pattern(grid.contacts.number, cycle)
+        if teeth == grid.teeth:
+            return grid
+        if teeth not in grid.others:
+            while len(grid.others) >= _PATTERNS:
+                del grid.others[next(iter(grid.others))]
+            matrices = self._compliance.matrices(grid.contacts, cycle)
+            grid.others[teeth] = _read_only(RollGrid(grid.x, grid.contacts, matrices, teeth))
+        return grid.others[teeth]
 
     def share(self, grid: RollGrid, separation: Array, load: Array) -> SharedLoad:
         """Share loads, shape (L,) [N], at the positions of a grid; kept for the next time."""
@@ -134,7 +155,7 @@ class RollGrids:
                 self._shared = (*self._shared[:number], *self._shared[number + 1 :], one)
                 return one.found
         found = grid.matrices.share(separation, load)
-        kept = {id(one.grid) for one in self._kept}
+        kept = {id(grid) for one in self._kept for grid in (one.grid, *one.grid.others.values())}
         others = [one for one in self._shared if one.grid is not grid and id(one.grid) in kept]
         own = [one for one in self._shared if one.grid is grid]
         self._shared = (*others, *own[-_STATES + 1 :], _Shared(grid, separation, load, found))
@@ -172,7 +193,7 @@ def _joined(x: Array, old: RollGrid, column: NDArray[np.intp], new: RollGrid | N
         edges=None if none else EdgeContacts(*columns(lambda grid: _edges(grid.matrices.law))),
     )
     matrices = PairMatrices(columns(lambda grid: grid.matrices.compliance), law)
-    return RollGrid(x, replace(old.contacts, **places), matrices)
+    return RollGrid(x, replace(old.contacts, **places), matrices, old.teeth)
 
 
 def _edges(law: ContactLaw) -> Array:

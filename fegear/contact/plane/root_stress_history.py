@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_s
 from fegear.contact.plane.stress_rows import Rows, StressRows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Hashable, Iterable, Iterator
+
+    from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement, Loaded
@@ -79,18 +81,33 @@ def root_stress_history(
         If the source knows no root stress.
     """
     known = source or engagement.compliance.source(member)
-    along = np.stack(list(superposed_stress(engagement, loaded, member, side, beyond, known)))  # (teeth, P, L, points)
-    touching = np.broadcast_to(touching_radius(loaded, member, beyond)[:, :, None], along.shape[:3])
+    along = list(superposed_stress(engagement, loaded, member, side, beyond, known))  # (P, L, points) each
+    radius = touching_radius(loaded, member, beyond)[:, :, None]
+    touching = np.broadcast_to(radius, (*radius.shape[:2], loaded.load.size))
     contacts = loaded.grid.contacts
-    teeth = np.arange(-beyond, contacts.x.shape[0] + beyond)
-    x = contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch
+    places = np.arange(-beyond, contacts.x.shape[0] + beyond)
+    x = contacts.x[0] + places[:, None] * engagement.pair.base_pitch
     low, high = within or (-np.inf, np.inf)
     asked = (x > low) & (x < high)
     stress = np.full(touching.shape, np.nan)
-    flat = along[asked].reshape(-1, along.shape[3]).T
-    found = largest_stress(known.fillet_curve(side), flat, side, touching[asked].ravel())
-    stress[asked] = found.reshape(-1, touching.shape[2])
+    teeth = [engagement.compliance.tooth(member, int(contacts.number[0] + at), loaded.cycle) for at in places]
+    for rows in _together([known.same_as(tooth, 1) for tooth in teeth]):
+        wanted = asked[rows]
+        flat = np.stack([along[row] for row in rows])[wanted]
+        curve = known.fillet_curve(teeth[rows[0]], side)
+        found = largest_stress(curve, flat.reshape(-1, flat.shape[-1]).T, side, touching[rows][wanted].ravel())
+        part = stress[rows]
+        part[wanted] = found.reshape(-1, touching.shape[2])
+        stress[rows] = part
     return RootStressHistory(member, side, x, stress)
+
+
+def _together(keys: Iterable[Hashable]) -> list[NDArray[np.intp]]:
+    """Numbers of equal keys, together in the order in which keys come."""
+    found: dict[Hashable, list[int]] = {}
+    for number, key in enumerate(keys):
+        found.setdefault(key, []).append(number)
+    return [np.array(numbers) for numbers in found.values()]
 
 
 def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
@@ -127,30 +144,64 @@ def superposed_stress(
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     n = radius.shape[0]
     reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
-    towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
     line_load = loaded.loads / engagement.compliance.face_width
     carries = np.asarray((line_load > 0.0).any(axis=2))
-    rows = _rows(source, reach, radius[carries], side)
-    first = np.concatenate([[0], np.cumsum(carries.sum(axis=1))])
-    carrying = [(j, np.flatnonzero(carries[j]), slice(first[j], first[j + 1])) for j in range(n) if carries[j].any()]
-    for tooth in range(-beyond, n + beyond):
-        total = np.zeros((*line_load.shape[1:], rows[0].shape[1]))
-        for other, at, of_other in carrying:
-            k = towards_load * (tooth - other)
-            if k in rows:
-                load, row = line_load[other, at, :, None], rows[k][of_other, None, :]
-                # a formula may give nothing for a load at this place, which is no matter where there is none
-                total[at] += load * row if np.isfinite(row).all() else np.where(load > 0.0, load * row, 0.0)
+    numbers = [engagement.compliance.tooth(member, int(j), loaded.cycle) for j in contacts.number]
+    step = engagement.compliance.tooth(member, 1, 0) - engagement.compliance.tooth(member, 0, 0)
+    carrying: list[tuple[int, Felt]] = []
+    for like in _together([source.same_as(number - reach, 2 * reach + 1) for number in numbers]):
+        rows = _rows(source, reach, numbers[like[0]], radius[like][carries[like]], side)
+        first = np.concatenate([[0], np.cumsum(carries[like].sum(axis=1))])
+        for i, j in enumerate(like):
+            if carries[j].any():
+                of_pair = slice(first[i], first[i + 1])
+                at = np.flatnonzero(carries[j])
+                carrying.append((numbers[j], Felt(at, line_load[j, at], {k: row[of_pair] for k, row in rows.items()})))
+    for place in range(-beyond, n + beyond):
+        tooth = numbers[0] + step * place
+        felt = [(one, tooth - other) for other, one in carrying if tooth - other in one.rows]
+        points = felt[0][0].rows[felt[0][1]].shape[1] if felt else _points(source, tooth, radius[:1, 0], side)
+        total = np.zeros((*line_load.shape[1:], points))
+        for one, k in felt:
+            load, row = one.line_load[:, :, None], one.rows[k][:, None, :]
+            # a formula may give nothing for a load at this place, which is no matter where there is none
+            total[one.at] += load * row if np.isfinite(row).all() else np.where(load > 0.0, load * row, 0.0)
         yield total
 
 
-def _rows(source: RootStressInfluence, reach: int, radius: Array, side: Side) -> Rows:
-    """Stress along the fillet of teeth -reach..reach per unit line load at radii, shape (Q, points) each [1/m]."""
+class Felt(NamedTuple):
+    """What a loaded tooth does to those around it.
+
+    Attributes
+    ----------
+    at : ndarray of int, shape (Q,)
+        Roll positions at which it carries load.
+    line_load : ndarray, shape (Q, L)
+        [N/m].
+    rows : dict of int to ndarray, shape (Q, points)
+        Stress along the fillets of teeth per unit line load [1/m], by how far they are from it.
+    """
+
+    at: NDArray[np.intp]
+    line_load: Array
+    rows: Rows
+
+
+def _points(source: RootStressInfluence, tooth: int, radius: Array, side: Side) -> int:
+    """Points along the fillet of a tooth at which no load is felt."""
+    return _rows(source, 0, tooth, radius, side)[0].shape[1]
+
+
+def _rows(source: RootStressInfluence, reach: int, tooth: int, radius: Array, side: Side) -> Rows:
+    """Stress along fillets per unit line load at radii of a tooth, by how far their teeth are from it: -reach..reach.
+
+    Of shape (Q, points) each [1/m].
+    """
 
     def evaluate(at: Array) -> Rows:
         found = {}
         for k in range(-reach, reach + 1):
-            stress = source.root_stress(k, at, side)
+            stress = source.root_stress(tooth + k, tooth, at, side)
             if stress is None:
                 raise InputError(
                     "results",
@@ -161,5 +212,8 @@ def _rows(source: RootStressInfluence, reach: int, radius: Array, side: Side) ->
             found[k] = np.ascontiguousarray(stress.T)
         return found
 
-    kept: dict[tuple[Side, int], StressRows] | None = getattr(source, "stress_rows", None)
-    return evaluate(radius) if kept is None else kept.setdefault((side, reach), StressRows()).at(radius, evaluate)
+    kept: dict[tuple[Side, int, int], StressRows] | None = getattr(source, "stress_rows", None)
+    if kept is None:
+        return evaluate(radius)
+    like = source.same_as(tooth - reach, 2 * reach + 1)
+    return kept.setdefault((side, reach, like), StressRows()).at(radius, evaluate)

@@ -49,6 +49,15 @@ class ShiftedCompliance:
         return self.base.reach
 
     @property
+    def period(self) -> int:
+        """As the base."""
+        return self.base.period
+
+    def same_as(self, first: int, count: int) -> int:
+        """As the base."""
+        return self.base.same_as(first, count)
+
+    @property
     def log_slope(self) -> float:
         """As the base."""
         return self.base.log_slope
@@ -63,31 +72,31 @@ class ShiftedCompliance:
         softer, room = self.base.tip_wedge
         return softer, room * self.farther
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:
         """c_0 and its error [m^2/N]."""
         return np.asarray(
-            self.base.own(radius) + np.interp(np.asarray(radius, dtype=float), self.radii, self.own_error)
+            self.base.own(i, radius) + np.interp(np.asarray(radius, dtype=float), self.radii, self.own_error)
         )
 
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """As the base."""
         return self.base.reference_half_width(radius)
 
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_k and its error [m^2/N]."""
-        return np.asarray(self.base.neighbour(k, radius_p, radius_q) + self.neighbour_error)
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_ij and its error [m^2/N]."""
+        return np.asarray(self.base.between(i, j, radius_p, radius_q) + self.neighbour_error)
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """As the base."""
-        return self.base.root_stress(k, radius_q, side)
+        return self.base.root_stress(i, j, radius_q, side)
 
-    def fillet_curve(self, side: Side) -> FilletCurve | None:
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:
         """As the base."""
-        return self.base.fillet_curve(side)
+        return self.base.fillet_curve(i, side)
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
         """As the base."""
-        return self.base.root_stress_error(radius_q, side, k)
+        return self.base.root_stress_error(i, j, radius_q, side)
 
     def describe(self) -> str:
         """As the base, shifted."""

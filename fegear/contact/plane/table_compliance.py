@@ -137,7 +137,7 @@ class TableCompliance(OneTooth):
         lengths = (self.pitch_roll_length + self.sign * x for x in self.knots)
         return tuple(math.hypot(self.base_radius, rho) for rho in lengths if rho * self.pitch_roll_length > 0.0)
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:  # noqa: ARG002  (all alike)
         """Compliance per unit face width [m^2/N], contact included."""
         r = np.asarray(radius, dtype=float)
         rho = np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))

@@ -145,7 +145,7 @@ def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[
     def apart(state: Loaded) -> Array:
         return independent_errors(state, shifted, path).load if shifted else np.zeros_like(state.loads)
 
-    if not (e.driver_spacing.size or e.driven_spacing.size):
+    if not e.uneven:
         state = e.solve(grid, loads)
         again = [solve_again(other, state) for other in shifted]
         return LoadedStates([state] * teeth, [again] * teeth, [apart(state)] * teeth)
@@ -197,7 +197,7 @@ def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Se
 def _knows(e: Engagement, member: Member, source: RootStressInfluence, side: Side) -> bool:
     """Whether a source knows the stress of a fillet; formulas know that of the tension fillet alone."""
     ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
-    return source.root_stress(0, ends, side) is not None
+    return source.root_stress(0, 0, ends, side) is not None
 
 
 def tooth_stress(
@@ -301,26 +301,35 @@ def _by_each_load(
     few = np.linspace(radius.min(), radius.max(), 9)
     n, face = radius.shape[0], e.compliance.face_width
     reach = min(stress.reach, n + 1) if e.compliance.coupling else 0
-    towards_load = 1 if member == "driver" else -1  # as `superposed_stress` has it
-    sizes: dict[int, Array] = {}
-    left: dict[int, Array] = {}
+    numbers = [e.compliance.tooth(member, int(contacts.number[0]) + row, state.cycle) for row in range(-1, n + 1)]
+    known: dict[int, dict[int, tuple[Array, Array]]] = {}
+    by_load, by_source = (np.zeros((n + 2, *state.loads.shape[1:])) for _ in range(2))
+    for row, tooth in enumerate(numbers):
+        for other, loaded in enumerate(numbers[1:-1]):
+            like = stress.same_as(loaded - reach, 2 * reach + 1)
+            if like not in known:
+                known[like] = _sizes(stress, loaded, reach, few, side)
+            if tooth - loaded in known[like]:
+                size, left = known[like][tooth - loaded]
+                by_load[row] += (apart[other] * (np.interp(radius[other], few, size)[:, None] / face)) ** 2
+                by_source[row] += (state.loads[other] * (np.interp(radius[other], few, left)[:, None] / face)) ** 2
+    return np.sqrt(by_load), np.sqrt(by_source)
+
+
+def _sizes(
+    stress: RootStressInfluence, loaded: int, reach: int, few: Array, side: Side
+) -> dict[int, tuple[Array, Array]]:
+    """Stress per unit line load on a tooth at a few radii, and its error, by how far its tooth is from that one."""
+    found: dict[int, tuple[Array, Array]] = {}
     share: float | Array = 0.0
     for k in sorted(range(-reach, reach + 1), key=abs):
-        kernel = stress.root_stress(k, few, side)
+        kernel = stress.root_stress(loaded + k, loaded, few, side)
         if kernel is not None:
-            curve = stress.fillet_curve(side)
+            curve = stress.fillet_curve(loaded + k, side)
             # a tooth's own below the contact: at it stress is what the contact itself leaves
             size = np.abs(largest_stress(curve, kernel, side, few)) if k == 0 else np.abs(kernel).max(axis=0)
-            error = stress.root_stress_error(few, side, k)
+            error = stress.root_stress_error(loaded + k, loaded, few, side)
             share = share if k else error.max() / size.max()
             # nothing is more exact of a neighbour than of the tooth itself, should their differences vanish by chance
-            sizes[k] = np.interp(radius, few, size)[:, :, None] / face
-            left[k] = np.interp(radius, few, np.maximum(error, share * size if k else 0.0))[:, :, None] / face
-    by_load, by_source = (np.zeros((n + 2, *state.loads.shape[1:])) for _ in range(2))
-    for tooth in range(-1, n + 1):
-        for other in range(n):
-            k = towards_load * (tooth - other)
-            if k in sizes:
-                by_load[tooth + 1] += (apart[other] * sizes[k][other]) ** 2
-                by_source[tooth + 1] += (state.loads[other] * left[k][other]) ** 2
-    return np.sqrt(by_load), np.sqrt(by_source)
+            found[k] = size, np.maximum(error, share * size if k else 0.0)
+    return found

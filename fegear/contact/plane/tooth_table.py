@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.plane.compliance import AlikeTeeth
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, chebyshev_over, roll_length
 from fegear.contact.plane.spline import Spline
 
@@ -27,7 +28,7 @@ _RADII = 129
 
 
 @dataclass(frozen=True)
-class ToothTable:
+class ToothTable(AlikeTeeth):
     """What `FiniteElementCompliance` answers about deflections, without the finite elements.
 
     Parameters
@@ -71,7 +72,7 @@ class ToothTable:
             half_width, source.log_slope, source.reach, source.tip_wedge,
         )  # fmt: skip
 
-    def own(self, radius: ArrayLike) -> Array:
+    def own(self, i: int, radius: ArrayLike) -> Array:  # noqa: ARG002  (all alike)
         """c_0 at the reference half-width [m^2/N]."""
         return np.asarray(self.own_spline(roll_length(self.gear, radius, self.lowest, self.highest)))
 
@@ -79,23 +80,23 @@ class ToothTable:
         """The half-width that `own` is for [m]."""
         return np.full(np.shape(radius), self.half_width)
 
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_k(p, q), zero beyond the reach."""
-        if abs(k) > self.reach:
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), k = i - j, zero beyond the reach."""
+        if abs(k := i - j) > self.reach:
             return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
         ends = self.lowest, self.highest
         p, q = (roll_length(self.gear, r, *ends) for r in (radius_p, radius_q))
         return chebyshev_over(*ends, p, q, self.neighbours[k])
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002
         """Unknown: see `RootTable`."""
         return None
 
-    def fillet_curve(self, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
         """Unknown."""
         return None
 
-    def root_stress_error(self, radius_q: ArrayLike, side: Side = "tension", k: int = 0) -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 
@@ -170,7 +171,7 @@ def root_table(source: RootStressInfluence, gear: Gear, lowest: float, highest: 
     reach = source.reach if coupled else 0
     found = {}
     for k in range(-reach, reach + 1):
-        kernel = source.root_stress(k, radii, "tension")
+        kernel = source.root_stress(k, 0, radii, "tension")
         if kernel is not None:
             found[k] = np.ascontiguousarray(kernel.T)
-    return RootTable(rb, low, (high - low) / (_RADII - 1), found, source.fillet_curve("tension"))
+    return RootTable(rb, low, (high - low) / (_RADII - 1), found, source.fillet_curve(0, "tension"))

@@ -15,6 +15,8 @@ from fegear.contact.changes import sign_changes
 from fegear.contact.fourier import SIDE, FourierSeries, Panels, effective_error, fourier_series, panels
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement, Loaded
     from fegear.contact.plane.roll_grids import RollGrid
@@ -220,6 +222,16 @@ def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> 
     return PairStiffness(points, shared.loads[:, :, 0] / shared.transmission_error[:, 0], grid.contacts.x)
 
 
+def _by_teeth(engagement: Engagement, grid: RollGrid, cycles: int) -> list[NDArray[np.int64]]:
+    """Numbers of the base pitches, those in which like teeth meet together: all where all teeth are alike."""
+    if engagement.compliance.cycles == 1:
+        return [np.arange(cycles)]
+    found: dict[tuple[int, int], list[int]] = {}
+    for cycle in range(cycles):
+        found.setdefault(engagement.compliance.pattern(grid.contacts.number, cycle), []).append(cycle)
+    return [np.array(pitches) for pitches in found.values()]
+
+
 def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int, order: int = 8) -> FourierSeries:
     """Transmission error over many base pitches with spacing errors: its rotational harmonics.
 
@@ -250,10 +262,14 @@ def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int,
     e = engagement.separation(grid.contacts)
     finite = np.where(grid.contacts.present, e - engagement.spacing(grid.contacts, 0), np.inf)
     errors = np.concatenate([engagement.spacing(grid.contacts, k) for k in range(cycles)], axis=1)
-    shared = grid.matrices.share(finite[:, :, None] + errors[:, None, :], np.full(cycles, load))
+    error = np.empty((points.x.size, cycles))
+    for pitches in _by_teeth(engagement, grid, cycles):
+        at = engagement.grids.turned(grid, int(pitches[0]))
+        e_j = finite[:, :, None] + errors[:, None, pitches]
+        error[:, pitches] = at.matrices.share(e_j, np.full(pitches.size, load)).transmission_error
     # The points of every base pitch lie alike, so that the sum over the base pitches is a fast Fourier transform: a
     # kernel of all points times all harmonics would take gigabytes for hunting tooth numbers.
-    over_pitches = np.fft.fft(shared.transmission_error, axis=1)
+    over_pitches = np.fft.fft(error, axis=1)
     n, period = np.arange(harmonics + 1), cycles * pair.base_pitch
     within = np.exp(-2j * math.pi / period * np.multiply.outer(n, points.x)) * points.weights / period
     return FourierSeries((within * over_pitches[:, n % cycles].T).sum(axis=1), period)

@@ -134,6 +134,7 @@ def bench(engagement: Engagement, load: float, sources: tuple[RootStressInfluenc
         Of the root stress of driver and driven.
     """
     pair, none = engagement.pair, np.empty(0)
+    engagement.compliance.refuse_unequal("draws of deviations")
     compliance = replace(
         engagement.compliance, driver=light(engagement.compliance.driver), driven=light(engagement.compliance.driven)
     )

@@ -252,7 +252,7 @@ def _are_like(pair: GearPair, compliance: PairCompliance) -> bool:
         tip = roll_of_radius(gear, gear.involute_tip_radius)
         sizes.append(np.array([gear.base_radius, tip, float(gear.tooth.teeth)]))
         radius = np.asarray(pair.radius(at, member))
-        soft.append(np.concatenate([radius, np.asarray(compliance.source(member).own(radius))]))
+        soft.append(np.concatenate([radius, np.asarray(compliance.source(member).own(0, radius))]))
     return all(bool(np.allclose(one, other, rtol=_LIKE, atol=0.0)) for one, other in (sizes, soft))
 
 

@@ -26,8 +26,9 @@ SHORTEST = 2e-4
 
 
 def stands_alone(engagement: Engagement, load: float) -> bool:
-    """Whether every tooth pair is a spring of its own: no coupling of neighbours, no corner bears under the load."""
-    return not (engagement.compliance.coupling or corners_bear(engagement, load))
+    """Whether every tooth pair is a spring of its own, the same one: no neighbours, no corner under the load."""
+    compliance = engagement.compliance
+    return not (compliance.coupling or compliance.cycles > 1 or corners_bear(engagement, load))
 
 
 def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
@@ -112,7 +113,7 @@ def _one_pitch(
 ) -> tuple[list[Periodic], list[Periodic]]:
     """Local stiffness and separation of the tooth pairs in the slots over base pitch `number` from the pitch point.
 
-    `grids` keeps contacts and compliances, which are the same in every base pitch.
+    `grids` keeps contacts and compliances, which are the same in every base pitch with like teeth.
     """
     pitch = engagement.pair.base_pitch
     # load sharing counts its base pitches from the start of contact, so that this one lies in two of them

@@ -194,7 +194,7 @@ def tooth_root_stress(
     """
     kernels = _kernels(source, pair, member, around)
     touched = pair.radius(np.clip(around[0].x, pair.x_start, pair.x_end), member)
-    curve = source.fillet_curve("tension")
+    curve = source.fillet_curve(0, "tension")
     return ToothRootStress(
         root_stress({k: f.with_others for k, f in around.items()}, kernels, curve, touched),
         largest_stress(curve, _at_worst_phases(around, kernels), "tension", touched),
@@ -240,7 +240,7 @@ def _kernels(
     found = {}
     for k, force in around.items():
         on_path = np.clip(force.x, pair.x_start, pair.x_end)
-        found[k] = np.asarray(source.root_stress(-ahead * k, pair.radius(on_path, member), "tension")) / width
+        found[k] = np.asarray(source.root_stress(-ahead * k, 0, pair.radius(on_path, member), "tension")) / width
     return found
 
 
@@ -257,5 +257,5 @@ def _own_error(source: RootStressInfluence, pair: GearPair, member: Member, forc
     """What the source leaves in the stress of the tooth's own load [Pa]."""
     x = np.linspace(pair.x_start, pair.x_end, _FEW)
     width = pair.face_width
-    usual = source.root_stress_error(pair.radius(x, member)) / width
+    usual = source.root_stress_error(0, 0, pair.radius(x, member)) / width
     return np.asarray(np.interp(force.x, x, usual) * np.abs(force.total))
