@@ -276,6 +276,7 @@ PER_SI: dict[str, float] = {
     "degC": 1.0,  # inside, too
     "K": 1.0,
     "mPa.s": 1e3,
+    "%": 100.0,
 }
 
 

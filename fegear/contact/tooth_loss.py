@@ -38,9 +38,9 @@ class ToothLoss:
     """
 
     x: Array = shown("mm", "of the tooth pair on the line of action, from the pitch point")
-    load: Array = shown("N", "on the tooth pair")
+    load: Array = shown("N", "on the tooth pair", label="load on the pair")
     coefficient: Array = shown("", "friction coefficient", name="friction_coefficient")
-    power: Array = shown("W", "that this tooth pair takes", name="power_loss")
+    power: Array = shown("W", "that this tooth pair takes", name="power_loss", label="power lost")
     loss: float = shown("W", "mean power that tooth friction takes", name="tooth_loss")
     transmitted: float = shown("W", "", name="transmitted_power")
     loss_factor: float = shown("", "H_V by the computed load")

@@ -201,7 +201,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Tooth friction over the path", ("tooth-friction",),
               "friction coefficient, friction torques and loss of a tooth pair over its path of contact",
               effects=("friction",)),
-        Entry("train-loss", "pair.gear_mesh_power_loss.TRAIN_LOSS",
+        Entry("train-loss", "pair.train_power_loss.TRAIN_LOSS",
               "Gear mesh power loss of the train", ("gear-mesh-power-loss",),
               "friction loss of the teeth, H_V compared with Ohlendorf and Wimmer, efficiency of pair and train"),
         Entry("motion", "train.motion.MOTION", "Motion over the speeds", extra="motion",

@@ -145,6 +145,8 @@ def test_values_are_of_the_nominal_load_with_their_errors() -> None:
     assert value.error == pytest.approx(0.1)
     assert list(Number("largest", of="nothing").values(SEEN)) == []
     assert list(Number("largest", of="swing", si="nothing").values(SEEN)) == []
+    assert list(Number("swing.largest", si=lambda _: float("nan")).values(SEEN)) == []
+    assert [one.name for one in Number("parts.b.largest").values(SEEN)] == ["I.largest"]
     assert list(Number("largest", of="swing", when="nothing").values(SEEN)) == []
     over_loads = Number("largest", error=lambda _: np.array([1e-7, 2e-7]), of="swing")
     assert next(iter(over_loads.values(SEEN))).error == pytest.approx(0.2)
@@ -240,8 +242,13 @@ def test_maps_level_lines_and_panels_for_each() -> None:
 
 
 def test_a_bundle_draws_all_lines_of_a_member_before_the_next() -> None:
-    lines = (Line("deflection", look={"dash": "dot"}), Line("largest", "{key}", ends=True))
+    lines = (Line("deflection", look={"dash": "dot"}), Line("lacking"), Line("largest", "{key}", ends=True))
     chart = Chart("f", "F", "C", (Over("x", (Bundle(Family("parts", "no", "ramp"), lines),)),), of="swing")
+    own = Bundle(Family("parts", role="role of {key}"), (Line("deflection"), Line("deflection", role="red")))
+    (figure,) = Chart("f", "F", "C", (Over("x", (own,), "deflection"),), of="swing").figures(replace(SEEN, loads=()))
+    assert [one.role for one in figure.panels[0].items if isinstance(one, Curve)] == [
+        "role of a", "red", "role of b", "red",
+    ]  # fmt: skip
     (figure,) = chart.figures(replace(SEEN, loads=()))
     items = figure.panels[0].items
     assert [(one.name, one.dash, one.role) for one in items if isinstance(one, Curve)] == [

@@ -40,7 +40,7 @@ class Family:
     label : text
         Of a member: ``{key}`` is its name, ``{one.…}`` what it declares.
     role : str
-        ``series`` for members without order, ``ramp`` for ordered ones; else the role of all.
+        ``series`` for members without order, ``ramp`` for ordered ones; else the role of all, or a text that gives it.
     most : int
         More are not drawn: evenly chosen, the first and the last among them.
     """
@@ -64,7 +64,7 @@ class Line:
     y : str
         None there: no line. A single number is drawn level.
     label, role : text
-        Of the legend and of the look; a family has its own.
+        Of the legend and of the look, blue if empty; a family has its own, which a bundle's lines may replace.
     error : where, optional
         Estimated error of y in SI, drawn as a band.
     x : str
@@ -86,7 +86,7 @@ class Line:
 
     y: str
     label: Text = ""
-    role: Text = "blue"
+    role: Text = ""
     error: Where | None = None
     x: str = ""
     of: Where | None = None
@@ -273,7 +273,7 @@ def _items(seen: Seen, owner: Any, line: Line | Bundle | Map, base: str) -> Iter
         yield from _bundle(seen, Bundle(line.each, (replace(line, label=line.label or line.each.label),)), base)
     elif line.each is None:
         if (found := _owner(seen, owner, line)) is not None and getattr(*reach(found, line.y)) is not None:
-            yield _item(seen, found, line, base, seen.said(line.label), seen.said(line.role), seen.nominal)
+            yield _item(seen, found, line, base, seen.said(line.label), seen.said(line.role) or "blue", seen.nominal)
     else:
         found = _owner(seen, owner, line)
         for load, label, role in drawn_loads(seen):
@@ -288,7 +288,10 @@ def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
         member = members[k]
         for line in bundle.lines:
             found = member.one if line.of is None else member.find(line.of)
-            yield _item(member, found, line, base, member.said(line.label), role, seen.nominal)
+            if getattr(*reach(found, line.y)) is None:
+                continue
+            look = member.said(line.role) or member.said(role)
+            yield _item(member, found, line, base, member.said(line.label), look, seen.nominal)
 
 
 def _roles(role: str, chosen: list[int]) -> list[str]:

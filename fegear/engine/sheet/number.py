@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.engine.declared import value_of
-from fegear.engine.sheet.seen import Seen, Text, Where
+from fegear.engine.sheet.seen import Seen, Text, Where, reach
 from fegear.engine.value import Value
 
 
@@ -19,11 +19,12 @@ def exact(_seen: Seen) -> float:
 
 @dataclass(frozen=True)
 class Number:
-    """A declared quantity as a single value with its error.
+    """A declared quantity as a single value with its error; one that is not a number is no value.
 
     Parameters
     ----------
     quantity : str
+        Its attribute, or the path to it (``path.load``).
     error : where, optional
         Its estimated error, one number or one for each load; unknown where it is None.
     of : where
@@ -53,13 +54,14 @@ class Number:
         for one in seen.each(self.each):
             if not one.holds(self.when) or (found := one.find(self.of)) is None:
                 continue
-            if (number := getattr(found, self.quantity) if self.si is None else one.find(self.si)) is None:
+            number = getattr(*reach(found, self.quantity)) if self.si is None else one.find(self.si)
+            if number is None or (np.ndim(number) == 0 and np.isnan(number)):
                 continue
             error = None if self.error is None else one.find(self.error)
             if error is not None:
                 error = float(error if np.ndim(error) == 0 or one.nominal is None else error[one.nominal])
             yield value_of(
-                found, self.quantity, one.said(self.owner), error, si=number,
+                *reach(found, self.quantity), one.said(self.owner), error, si=number,
                 load=one.nominal, name=one.said(self.name), meaning=one.said(self.meaning),
                 further=one.said(self.further),
             )  # fmt: skip

@@ -100,7 +100,7 @@ def reach(owner: Any, quantity: str) -> tuple[Any, str]:
     """What declares a quantity, and its attribute there: ``path.load`` is ``load`` of ``owner.path``."""
     *path, attribute = quantity.split(".")
     for one in path:
-        owner = getattr(owner, one)
+        owner = owner[one] if isinstance(owner, Mapping) else getattr(owner, one)
     return owner, attribute
 
 

@@ -1,26 +1,23 @@
-"""Stage ``root-stress-history``: root stress of one tooth of either gear on its way through the mesh.
-
-What the results of root stress share: where ``pair.NAME.root_stress`` takes it from, and how that is reported.
-"""
+"""Stage ``root-stress-history``: root stress of one tooth of either gear on its way through the mesh."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
 from fegear.engine.citation import Citation
-from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import HeatMap, Mark
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Map, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
@@ -35,20 +32,18 @@ from fegear.results.pair.loaded_teeth import (
     needs_teeth,
     teeth_stage,
 )
+from fegear.results.pair.root_stress_data import StressAlongFace, StressBySource, StressedTooth, StressInMesh, ending
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from fegear.case.reading import Scene
     from fegear.contact.loaded_teeth import LoadedTeeth, RootStressInMesh
-    from fegear.contact.plane.tooth_stress import ToothStress
-    from fegear.contact.wide.root_stress import StressOverFace
-    from fegear.fem.plane.influence import Side
 
 #: Of a pair with a width: seconds to begin with, and of a roll position, both gears and both solutions, for each load.
 _WIDE, _WIDE_POSITION = 0.5, 0.05
-#: Points of a map over the way of the tooth and along the face.
-_ACROSS, _ALONG = 181, 81
+#: Curves of every source are drawn.
+_ALL = 100
 
 
 @dataclass(frozen=True)
@@ -134,29 +129,168 @@ def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStr
     return RootStressData(teeth, found)
 
 
-def _present(data: RootStressData, inputs: RootStressInputs) -> Outcome:
-    name, teeth, found = inputs.name, data.teeth, data.found
-    i = teeth.loads.index(teeth.nominal)
-    tables, values = [], []
-    for member, label in inputs.labels.items():
-        gear, of, over = inputs.gears[member], f"{name}.{member}", found.over_face.get(member)
-        more = () if over is None else _places(over)
-        tables.append(_stress_table(label, gear, found.stress[member], i, inputs.rate, teeth.loads, more))
-        if over is not None:
-            tables.append(_over_face(label, gear, over))
-        for k, (source, s) in enumerate(found.stress[member].items()):
-            by = told(source) if over is None else _where(s, over, i)
-            values += _stress_values(of, ending(inputs.sources, k), f"gear {gear}, {by}", s, i)
-        values += _across_the_root(of, gear, found.across.get(member))
-    notes = {inputs.gears[member]: said for member, said in found.notes.items()}
-    remarks = formula_remarks(name, notes, coupled=inputs.coupled)
-    remarks += (_direction(data, name, i),) if found.across else ()
-    figures = [_stress_figure(name, data, i, inputs.gears)]
-    settings: dict[str, object] = {"root_stress": list(inputs.sources)}
-    if found.over_face:
-        settings = {"places_along_the_face": int(found.over_face["driver"]["tension"].z.size)}
-        figures.append(_map(name, teeth.nominal, found.over_face, inputs.gears))
-    return Outcome(data, tuple(tables), tuple(values), settings, remarks, tuple(figures))
+def _shown(data: RootStressData, asked: RootStressInputs) -> StressInMesh:
+    """Both gears' teeth with the names that they have in tables."""
+    found, loads, i = data.found, data.teeth.loads, data.teeth.loads.index(data.teeth.nominal)
+    teeth: dict[Member, StressedTooth] = {}
+    for g, (member, label) in enumerate(asked.labels.items()):
+        gear, by, over = asked.gears[member], found.stress[member], found.over_face.get(member)
+        face = None if over is None else StressAlongFace(over["tension"], over["compression"])
+        sources = tuple(
+            StressBySource(
+                stress, member, gear, source, ending(tuple(by), k), f"series:{g + 2 * k}" if k else member,
+                len(found.stress["driver"]) > 1, loads, i, face,
+            )
+            for k, (source, stress) in enumerate(by.items())
+        )  # fmt: skip
+        across, off = found.across.get(member, (None, None))
+        off = None if off is None or np.isnan(off) else off
+        teeth[member] = StressedTooth(member, gear, label, sources, asked.rate, face, off, across)
+    return StressInMesh(data.teeth.pair, loads, i, found.notes, teeth)
+
+
+def _place(quantity: str, key: str, name: str, meaning: str) -> Cell:
+    """Where stress of a tooth with a width is largest."""
+    return Cell(f"over_face.{quantity}", f"over_face.{key}", name=name, meaning=meaning)
+
+
+def _row(side: str, quantity: str, name: str = "", meaning: str = "") -> Cell:
+    """A quantity of one fillet along the face, at every position of the tooth."""
+    return Cell(f"{side}.{quantity}", lambda seen: seen.one.over_face.rows(side, quantity), name=name, meaning=meaning)
+
+
+_TABLES = Each(
+    "teeth",
+    Rows(
+        "root_stress_history_{one.label}", "Root stress of a tooth of gear {one.gear} in the mesh",
+        (
+            "t", "first.x",
+            Each(
+                "sources",
+                Cell("stress.tension", name="stress{one.ending}", further=", by {one.said}"),
+                Cell("stress.compression", name="compression{one.ending}"),
+                Cell(
+                    "stress.tension_error", "known_error", name="stress_error{one.ending}",
+                    meaning="estimated error of stress{one.ending}",
+                ),
+                Each(
+                    "under_others",
+                    Cell(
+                        "stress.tension", "tension", name="stress{one.ending} at {one.load:.6g}",
+                        meaning="as stress{one.ending}, under this load",
+                    ),
+                ),
+            ),
+            _place("tension.z", "pulled_z", "stress_face_position",
+                   "where stress is largest along the face, from its middle"),
+            _place("tension.radius", "pulled_radius", "stress_radius", "and its distance from the axis"),
+            _place("compression.z", "pressed_z", "compression_face_position",
+                   "where compression is largest along the face"),
+        ),
+    ),
+    Rows(
+        "root_stress_over_face_{one.label}", "Root stress of gear {one.gear} along its face in the mesh",
+        (
+            Cell("tension.x", "over_face.x"), _row("tension", "z"), _row("tension", "value"), _row("tension", "radius"),
+            _row("compression", "value", "compression", "most negative stress up the other fillet"),
+            _row("compression", "radius", "compression_radius"),
+        ),
+        of="over_face",
+    ),
+)  # fmt: skip
+_OWNER = "{name}.{one.member}"
+_VALUES = Each(
+    "teeth",
+    Each(
+        "sources",
+        Number(
+            "stress.largest_tension", "tension_off", owner=_OWNER, name="largest_root_tension{one.ending}",
+            meaning="{one.at_tension}",
+        ),
+        Number(
+            "stress.largest_compression", "compression_off", owner=_OWNER,
+            name="largest_root_compression{one.ending}", meaning="{one.at_compression}",
+        ),
+        Number("stress.tension_range", "range_off", owner=_OWNER, name="root_stress_range{one.ending}"),
+        when="known",
+    ),
+    Number(
+        "across", "across_off", owner=_OWNER,
+        meaning="gear {one.gear}: largest tension at right angles to the helix, as formulas for the normal section "
+        "mean it",
+    ),
+)  # fmt: skip
+_FIGURES = (
+    Chart(
+        "root_stress_history_{name}", "Root stress through the mesh of pair {name}",
+        "Pair {name} at {load:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
+        "neighbours' added. A to E: points of the path of contact. Largest tension {d.largest}.",
+        (
+            Over(
+                "stress.x",
+                (
+                    Bundle(
+                        Family("sources", role="{one.role}", most=_ALL),
+                        (
+                            Line("stress.tension", "{one.label}, tension", error="known_error"),
+                            Line(
+                                "stress.compression", "{one.label}, compression", "{one.member} compression",
+                                look={"width": 1.2},
+                            ),
+                        ),
+                    ),
+                ),
+                "stress.tension", marks=lambda seen: (*path_marks(seen.data.pair), Mark("y", 0.0)),
+            ),
+        ),
+        of=lambda seen: seen.data.sources[0], under="{load:.5g} N",
+    ),
+    Chart(
+        "root_stress_over_face_{name}", "Root stress over the face of pair {name}",
+        "Pair {name}: largest tension up the fillet of a tooth of either gear along its face, on its way through the "
+        "mesh; the position is that of its contact line in the middle of the face.",
+        (
+            Over(
+                "x", (Map("value", "z", limits=lambda seen: (0.0, seen.data.top)),), each="maps",
+                title="{one.member} {one.gear}: {one.most:.4g}",
+            ),
+        ),
+        when="maps", under="{load:.5g} N",
+    ),
+)  # fmt: skip
+
+
+def _settings(seen: Seen) -> dict[str, object]:
+    over: StressAlongFace | None = seen.data.teeth["driver"].over_face
+    if over is None:
+        return {"root_stress": list(seen.asked.sources)}
+    return {"places_along_the_face": int(over.tension.z.size)}
+
+
+def _remarks(seen: Seen) -> Iterator[str]:
+    """What formulas say of themselves, and what the direction of the stress makes of it."""
+    notes = {seen.asked.gears[member]: said for member, said in seen.data.notes.items()}
+    yield from formula_remarks(seen.name, notes, coupled=seen.asked.coupled)
+    teeth: Mapping[Member, StressedTooth] = seen.data.teeth
+    across = [(m, one.across, one.first.largest_tension[seen.nominal]) for m, one in teeth.items()]
+    if differ := [f"{100.0 * (a / most - 1.0):+.1f} % ({m})" for m, a, most in across if a is not None]:
+        yield (
+            f"Pair {seen.name}: root stresses over the mesh and the face are those along the transverse section; the "
+            f"largest at right angles to the helix differs by {' and '.join(differ)}: values "
+            "largest_root_tension_across."
+        )
+
+
+_SHEET = Sheet(
+    of=_shown,
+    loads="loads",
+    nominal="at",
+    tables=(_TABLES,),
+    values=(_VALUES,),
+    figures=_FIGURES,
+    remarks=(_remarks,),
+    settings=_settings,
+)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -206,16 +340,6 @@ def seconds_of(sources: tuple[str, ...]) -> float:
     return 2.0 * sum(_FORMULA_SECONDS.get(source, 0.03) for source in sources if source != FINITE_ELEMENTS)
 
 
-def ending(sources: tuple[str, ...], k: int) -> str:
-    """What the names of columns and values of the k-th source end in: nothing for the first."""
-    return f"_{sources[k].replace('-', '_')}" if k else ""
-
-
-def told(source: str) -> str:
-    """A source in words."""
-    return "finite elements" if source == FINITE_ELEMENTS else source
-
-
 def formula_remarks(pair: str, notes: Mapping[str, Mapping[str, tuple[str, ...]]], *, coupled: bool) -> tuple[str, ...]:
     """What formulas say of their own values, and that they leave the neighbours' loads out where those count.
 
@@ -239,168 +363,13 @@ def formula_remarks(pair: str, notes: Mapping[str, Mapping[str, tuple[str, ...]]
     return tuple(remarks)
 
 
-def _stress_table(
-    name: str,
-    gear: str,
-    found: Mapping[str, ToothStress],
-    i: int,
-    rate: float | None,
-    loads: tuple[float, ...],
-    more: tuple[Column, ...],
-) -> Table:
-    """One tooth of a gear by every source, at load `i` and the others; `rate` [m/s] makes a time of its way."""
-    sources = tuple(found)
-    first = found[sources[0]]
-    columns = [*columns_of(first, "x")]
-    if rate is not None:
-        columns.insert(0, Column("t", (first.x - first.x[0]) / rate, "s", "from the first position"))
-    for k, (source, s) in enumerate(found.items()):
-        end = ending(sources, k)
-        tension = column_of(s, "tension", load=i, name=f"stress{end}")
-        tension = replace(tension, meaning=f"{tension.meaning}, by {told(source)}")
-        columns.append(tension)
-        if s.compression is not None:
-            columns.append(column_of(s, "compression", load=i, name=f"compression{end}"))
-        if s.knows_error:
-            error = s.tension_error[:, i]
-            columns.append(replace(error_column(tension, error), name=f"stress_error{end}"))
-        for j, load in enumerate(loads):
-            if j != i:
-                head, meaning = f"stress{end} at {load:.6g} N", f"as stress{end}, under this load"
-                columns.append(column_of(s, "tension", load=j, name=head, meaning=meaning))
-    return Table(f"root_stress_history_{name}", (*columns, *more), f"Root stress of a tooth of gear {gear} in the mesh")
-
-
-def _stress_values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[Value]:
-    """Largest stresses by one source, under load `i`."""
-
-    def value(key: str, error: float | None = None, at: int | None = None) -> Value:
-        where = "" if at is None else f"{by}, contact at x = {s.x[at] * 1e3:.5g} mm"
-        found = value_of(s, key, of, error, load=i, meaning=where)
-        return replace(found, name=f"{found.name}{end}")
-
-    if np.isnan(s.tension[:, i]).all():
-        return []
-    pressed = [] if s.compression is None else [
-        value("largest_compression", s.compression_off(i), s.largest_pressed(i))
-    ]  # fmt: skip
-    return [value("largest_tension", s.error(i), s.worst(i)), *pressed, value("tension_range", s.range_off(i))]
-
-
-def _places(over: Mapping[Side, StressOverFace]) -> tuple[Column, ...]:
-    tension, along = over["tension"], "where stress is largest along the face, from its middle"
-    (_, pull, radius), (_, press, _) = tension.largest(1.0), over["compression"].largest(-1.0)
-    return (
-        column_of(tension, "z", pull, name="stress_face_position", meaning=along),
-        column_of(tension, "radius", radius, name="stress_radius", meaning="and its distance from the axis"),
-        column_of(tension, "z", press, name="compression_face_position",
-                  meaning="where compression is largest along the face"),
-    )  # fmt: skip
-
-
-def _where(stress: ToothStress, over: Mapping[Side, StressOverFace], i: int) -> str:
-    z = float(over["tension"].largest(1.0)[1][stress.worst(i)])
-    return f"largest tension at face position {z * 1e3:.4g} mm"
-
-
-def _over_face(label: str, gear: str, over: Mapping[Side, StressOverFace]) -> Table:
-    """Every place along the face at every position of the tooth, at the nominal load."""
-    pull, press = over["tension"], over["compression"]
-    columns = (
-        column_of(pull, "x", np.repeat(pull.x, pull.z.size)),
-        column_of(pull, "z", np.tile(pull.z, pull.x.size)),
-        column_of(pull, "value", pull.value.ravel()),
-        column_of(pull, "radius", pull.radius.ravel()),
-        column_of(press, "value", press.value.ravel(), name="compression",
-                  meaning="most negative stress up the other fillet"),
-        column_of(press, "radius", press.radius.ravel(), name="compression_radius"),
-    )  # fmt: skip
-    return Table(f"root_stress_over_face_{label}", columns, f"Root stress of gear {gear} along its face in the mesh")
-
-
-def _across_the_root(of: str, gear: str, found: tuple[float, float] | None) -> list[Value]:
-    if found is None:
-        return []
-    value, error = found
-    said = f"gear {gear}: largest tension at right angles to the helix, as formulas for the normal section mean it"
-    return [Value(f"{of}.largest_root_tension_across", value, "MPa", None if np.isnan(error) else error, said)]
-
-
-def _direction(data: RootStressData, name: str, i: int) -> str:
-    """What the direction of the stress makes of it."""
-    largest = {m: next(iter(s.values())).largest_tension[i] for m, s in data.found.stress.items()}
-    across = data.found.across.items()
-    more = " and ".join(f"{100.0 * (value / largest[m] - 1.0):+.1f} % ({m})" for m, (value, _) in across)
-    return (
-        f"Pair {name}: root stresses over the mesh and the face are those along the transverse section; the "
-        f"largest at right angles to the helix differs by {more}: values largest_root_tension_across."
-    )
-
-
-def _stress_figure(name: str, data: RootStressData, i: int, gears: Mapping[Member, str]) -> Figure:
-    """Draw the largest stresses of both gears over the way of a tooth at the nominal load, number `i`."""
-    pair, load, stress = data.teeth.pair, data.teeth.nominal, data.found.stress
-    curves, largest = [], []
-    several = len(stress["driver"]) > 1
-    for g, (member, found) in enumerate(stress.items()):
-        for k, (source, s) in enumerate(found.items()):
-            label = f"{member} {gears[member]}" + (f", {told(source)}" if several else "")
-            error, role = s.tension_error[:, i] if s.knows_error else None, f"series:{g + 2 * k}" if k else member
-            curves.append(curve_of(s, "x", "tension", f"{label}, tension", role, error, load=i))
-            if s.compression is not None:
-                pressed = curve_of(s, "x", "compression", f"{label}, compression", f"{member} compression", load=i)
-                curves.append(replace(pressed, width=1.2))
-            most = float(s.largest_tension[i]) * 1e-6
-            if np.isfinite(most):
-                largest.append(f"{most:.4g} MPa ({member}{f', {told(source)}' if several else ''})")
-    of, marks = type(next(iter(stress["driver"].values()))), (*path_marks(pair), Mark("y", 0.0))
-    return Figure(
-        f"root_stress_history_{name}",
-        f"Root stress through the mesh of pair {name}",
-        f"Pair {name} at {load:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
-        f"neighbours' added. A to E: points of the path of contact. Largest tension {' and '.join(largest)}.",
-        (Panel(axis_of(of, "x"), axis_of(of, "tension"), tuple(curves), marks),),
-        under=f"{load:.5g} N",
-    )
-
-
-def _map(
-    name: str, load: float, over_face: Mapping[Member, Mapping[Side, StressOverFace]], gears: Mapping[Member, str]
-) -> Figure:
-    """Draw the largest tension of both gears along the face over the way of a tooth, with one scale of colours."""
-    maps = {member: over["tension"] for member, over in over_face.items()}
-    top = max(float(one.value.max()) for one in maps.values()) * 1e-6
-    panels = []
-    for member, one in maps.items():
-        # Roll positions stand unevenly; straight between them.
-        x, z = np.linspace(one.x[0], one.x[-1], _ACROSS), np.linspace(one.z[0], one.z[-1], _ALONG)
-        way = np.stack([np.interp(x, one.x, along) for along in one.value.T]) * 1e-6
-        value = np.stack([np.interp(z, one.z, along) for along in way.T], axis=1)
-        panels.append(
-            Panel(
-                axis_of(type(one), "x", "position of the tooth's contact on the line of action"),
-                axis_of(type(one), "z"),
-                (HeatMap(x * 1e3, z * 1e3, value, "largest root tension", "MPa", limits=(0.0, top)),),
-                title=f"{member} {gears[member]}: {one.value.max() * 1e-6:.4g} MPa",
-            )
-        )
-    return Figure(
-        f"root_stress_over_face_{name}",
-        f"Root stress over the face of pair {name}",
-        f"Pair {name}: largest tension up the fillet of a tooth of either gear along its face, on its way through the "
-        "mesh; the position is that of its contact line in the middle of the face.",
-        tuple(panels),
-        under=f"{load:.5g} N",
-    )
-
-
 ROOT_STRESS_HISTORY = teeth_stage(
     answers=("root tension",),
     every_load=True,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=_cites,
     forecast=_forecast,

@@ -25,15 +25,14 @@ from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import solution_of
+from fegear.results.pair.root_stress_data import ending, told
 from fegear.results.pair.root_stress_history import (
     cited_sources,
-    ending,
     formula_remarks,
     needs_sources,
     seconds_of,
     stress_sources,
     table_names,
-    told,
 )
 from fegear.results.train.gear_train import RPM, needs_one_speed, needs_plane_teeth, own_meshes
 from fegear.results.train.tooth_force import ToothForceData, others_of, over_time, rippled
