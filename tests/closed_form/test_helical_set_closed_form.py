@@ -17,7 +17,7 @@ from fegear.dynamics.planetary.phases import mesh_phases
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.flank_surface_tables import flank_pressure_figure
+from fegear.results.pair.flank_pressure import flank_pressure_figure
 
 TEETH = {"sun": 22, "planet": 20, "ring": 62}
 CACHE = SolutionCache(most=600)

@@ -235,6 +235,15 @@ def test_maps_level_lines_and_panels_for_each() -> None:
     np.testing.assert_allclose(level.y, [2.5, 2.5, 2.5])
     np.testing.assert_allclose((ends.x, ends.y), ([0.0, 2.0], [2.5, 2.5]))
     assert (first.y.label, len(second.items)) == ("across", 2)  # what is None is not drawn
+    turned = Over(
+        "z", (Map("heat", "x", si=lambda seen: seen.find("heat").T), Line("mean", si=lambda _: np.array([1e-6, 2e-6])),
+              Line("mean", si=lambda _: None)), each=lambda seen: [FIELD],
+    )  # fmt: skip
+    heat, other = next(Chart("f", "F", "C", (turned,)).figures(seen)).panels[0].items
+    assert isinstance(heat, HeatMap)
+    assert isinstance(other, Curve)
+    np.testing.assert_allclose(heat.z, [[0, 3], [1, 4], [2, 5]])
+    np.testing.assert_allclose(other.y, [1.0, 2.0])
     named = Over("x", (Line("deflection", each=Family(lambda seen: [SWING])),), "mean")  # the panel's, not the line's
     assert next(Chart("f", "F", "C", (named,), of=lambda _: FIELD).figures(seen)).panels[0].y.label == "mean"
     of = Over("x", ("mean",), each=lambda seen: [seen], of=lambda seen: seen.one.data["b"])

@@ -67,6 +67,8 @@ class Line:
         Of the legend and of the look, blue if empty; a family has its own, which a bundle's lines may replace.
     error : where, optional
         Estimated error of y in SI, drawn as a band.
+    si : where, optional
+        Numbers in place of the quantity's own; None there: no line.
     x : str
         Quantity that it is drawn over, where it is not the panel's.
     of : where, optional
@@ -96,6 +98,7 @@ class Line:
     when: Where | None = None
     first: int | None = None
     ends: bool = False
+    si: Where | None = None
 
 
 @dataclass(frozen=True)
@@ -118,6 +121,8 @@ class Map:
     y : str
     x : str
         Where it is not the panel's.
+    si : where, optional
+        Numbers in place of the quantity's own.
     label : text
         Of the colours; the declared one if empty.
     of, when : where, optional
@@ -139,6 +144,7 @@ class Map:
     limits: Where | None = None
     centre: Where | None = None
     numbers: bool = False
+    si: Where | None = None
 
 
 @dataclass(frozen=True)
@@ -265,19 +271,24 @@ def _owner(seen: Seen, owner: Any, line: Line | Map) -> Any:
 
 def _items(seen: Seen, owner: Any, line: Line | Bundle | Map, base: str) -> Iterator[Item]:
     if isinstance(line, Map):
-        if (found := _owner(seen, owner, line)) is not None and getattr(*reach(found, line.z)) is not None:
+        if (found := _owner(seen, owner, line)) is not None and _there(seen, found, line.z, line.si):
             yield _map(seen, found, line, line.x or base)
     elif isinstance(line, Bundle):
         yield from _bundle(seen, line, base)
     elif isinstance(line.each, Family):
         yield from _bundle(seen, Bundle(line.each, (replace(line, label=line.label or line.each.label),)), base)
     elif line.each is None:
-        if (found := _owner(seen, owner, line)) is not None and getattr(*reach(found, line.y)) is not None:
+        if (found := _owner(seen, owner, line)) is not None and _there(seen, found, line.y, line.si):
             yield _item(seen, found, line, base, seen.said(line.label), seen.said(line.role) or "blue", seen.nominal)
     else:
         found = _owner(seen, owner, line)
         for load, label, role in drawn_loads(seen):
             yield _item(seen, found, line, base, label, role, load, banded=load == seen.nominal)
+
+
+def _there(seen: Seen, owner: Any, quantity: str, si: Where | None) -> bool:
+    """Whether there is anything to be drawn of a quantity."""
+    return (getattr(*reach(owner, quantity)) if si is None else seen.find(si)) is not None
 
 
 def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
@@ -288,7 +299,7 @@ def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
         member = members[k]
         for line in bundle.lines:
             found = member.one if line.of is None else member.find(line.of)
-            if getattr(*reach(found, line.y)) is None:
+            if not _there(member, found, line.y, line.si):
                 continue
             look = member.said(line.role) or member.said(role)
             yield _item(member, found, line, base, member.said(line.label), look, seen.nominal)
@@ -313,7 +324,8 @@ def _item(
 ) -> Item:  # fmt: skip
     """One curve, row of bars or of stems, in the units in which its quantities are read."""
     upto, (of, quantity) = slice(line.first), reach(owner, line.y)
-    along, y = drawn(*reach(owner, line.x or base), load=load)[upto], drawn(of, quantity, load=load)
+    si = None if line.si is None else seen.find(line.si)
+    along, y = drawn(*reach(owner, line.x or base), load=load)[upto], drawn(of, quantity, si, load=load)
     y = y[upto] if y.ndim else np.full(along.shape, y)
     if line.ends:
         along, y = along[[0, -1]], y[[0, -1]]
@@ -331,7 +343,7 @@ def _item(
 
 def _map(seen: Seen, owner: Any, spec: Map, x: str) -> HeatMap:
     """Colours over a grid, in the units in which its quantities are read."""
-    of, quantity = reach(owner, spec.z)
+    (of, quantity), si = reach(owner, spec.z), None if spec.si is None else seen.find(spec.si)
     how = declared(of if isinstance(of, type) else type(of), quantity)
 
     def pair(where: Where | None) -> tuple[float, float] | None:
@@ -341,7 +353,7 @@ def _map(seen: Seen, owner: Any, spec: Map, x: str) -> HeatMap:
         return one, other
 
     return HeatMap(
-        drawn(*reach(owner, x)), drawn(*reach(owner, spec.y)), drawn(of, quantity),
+        drawn(*reach(owner, x)), drawn(*reach(owner, spec.y)), drawn(of, quantity, si),
         seen.said(spec.label) or how.label, how.unit, pair(spec.centre), spec.numbers,
         pair(spec.limits),
     )  # fmt: skip

@@ -11,10 +11,11 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.case.built.pair_surface import PairSurface, pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Upstream, Work
-from fegear.results.pair.flank_surface_data import FlankSurfaceData
-from fegear.results.pair.flank_surface_tables import surface_figures, surface_tables, surface_values
+from fegear.results.pair.flank_surface_data import FlankSurfaceData, ShownSurface
+from fegear.results.pair.flank_surface_sheet import FIGURES, TABLES, VALUES
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage
 
 if TYPE_CHECKING:
@@ -86,12 +87,10 @@ def _compute(inputs: FlankSurfaceInputs, upstream: Upstream, _work: Work) -> Fla
     return _standards(asked, computed, wide=found.over_face, outside=found.outside)
 
 
-def _present(data: FlankSurfaceData, inputs: FlankSurfaceInputs) -> Outcome:
-    name, asked = inputs.name, inputs.surface
-    rated, tests = asked.rated, asked.tests
-    remarks = [*asked.remarks, *_remarks(name, data, asked)]
+def _settings(seen: Seen) -> dict[str, object]:
+    rated, tests, friction = seen.data.asked.rated, seen.data.asked.tests, seen.data.asked.friction
     settings: dict[str, object] = {
-        "friction": "mean coefficients of the standards" if asked.friction is None else asked.friction.law,
+        "friction": "mean coefficients of the standards" if friction is None else friction.law,
         "load_factors": rated.factors.product,
         "speed": rated.speed,
         "oil_temperature": rated.surface.temperature,
@@ -100,10 +99,7 @@ def _present(data: FlankSurfaceData, inputs: FlankSurfaceInputs) -> Outcome:
         settings["scuffing_load_stage"] = tests.scuffing_stage
     if tests.micropitting_stage is not None:
         settings["micropitting_load_stage"] = tests.micropitting_stage
-    return Outcome(
-        data, surface_tables(name, data, asked), surface_values(name, data, asked), settings, tuple(remarks),
-        surface_figures(name, data, asked),
-    )  # fmt: skip
+    return settings
 
 
 def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]:
@@ -177,6 +173,19 @@ def _recalled(name: str, asked: PairSurface) -> list[str]:
     return told
 
 
+_SHEET = Sheet(
+    of=lambda data, asked: ShownSurface(data, asked.surface),
+    tables=TABLES,
+    values=VALUES,
+    figures=FIGURES,
+    remarks=(
+        lambda seen: seen.data.asked.remarks,
+        lambda seen: _remarks(seen.name, seen.data.data, seen.data.asked),
+    ),
+    settings=_settings,
+)
+
+
 def _forecast(_scene: Scene, _name: str) -> Forecast:
     return Forecast({}, 0.05)
 
@@ -191,7 +200,7 @@ _CITES = citing(
 FLANK_SURFACE = teeth_stage(
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=_CITES,
     forecast=_forecast,

@@ -23,7 +23,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
-from fegear.results.pair.flank_surface_tables import flank_pressure_figure
+from fegear.results.pair.flank_pressure import flank_pressure_figure
 from fegear.results.pair.load_over_flanks import LoadOverFlanks
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import gears_of
