@@ -18,6 +18,7 @@ from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import level_for, solve_gear, solve_to_tolerance
 from fegear.fem.plane.table import stiffness_table
 from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
@@ -77,6 +78,18 @@ def test_a_missed_tolerance_is_refined_and_its_error_estimated_on_the_same_mesh(
     sizes = [one.unknowns for one in known.rounds]
     assert sizes == sorted(sizes)
     assert known.seconds["total"] == pytest.approx(sum(one.seconds for one in known.rounds))
+
+
+@pytest.mark.parametrize(("rack", "level"), [(BasicRack(1.0, 1.25, 0.38), -4.5), (BasicRack(0.8, 1.0, 0.4), -4.0)])
+def test_a_tolerance_of_a_hundredth_starts_finer_where_the_fillet_has_few_edges(rack, level):
+    """Of forty gears seven, all with short fillets, were solved twice."""
+    tooth = Tooth(60, rack)
+    assert solution.first_level(tooth, 1e-2) == level
+    known = solve_to_tolerance(Gear(tooth, 1e-3, 0.5e-3 * tooth.root_radius), 1e-2)
+    assert known.settings == settings_at(level)
+    assert len(known.rounds) == 1
+    assert solution.first_level(tooth, 1e-3) == -2
+    assert solution.first_level(tooth, 0.5) == -6
 
 
 @pytest.mark.parametrize(

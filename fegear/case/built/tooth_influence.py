@@ -111,12 +111,12 @@ def solve_influence_functions(
     RangeError
         If the gear's bore cannot be meshed, under its key in the case.
     """
-    from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
+    from fegear.fem.plane.solution import first_level, solve_gear, solve_to_tolerance
 
     gear, reach = asked.gear, asked.reach
     try:
         if asked.draft:
-            first = replace(settings_for(asked.tolerance), solver=asked.solver)
+            first = replace(settings_at(first_level(gear.tooth, asked.tolerance)), solver=asked.solver)
             return solve_gear(gear, first, reach=reach, estimate_error=False, cache=cache)
         if asked.settings is None:
             return solve_to_tolerance(

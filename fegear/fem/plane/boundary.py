@@ -297,6 +297,17 @@ def _fewest_edges(tooth: InvoluteTooth, settings: MeshSettings) -> int:
     return max(_FEWEST_FILLET_EDGES, round(graded_by_level))
 
 
+def fillet_edges(tooth: InvoluteTooth, settings: MeshSettings) -> float:
+    """How many edges a fillet would have if all were as long as along most of it: those graded to its ends count less.
+
+    Errors of root stress go with them; they are known before anything is meshed.
+    """
+    length = _length(tooth.fillet)
+    nodes = graded(length, _front_sizes(tooth, settings)["fillet"], fewest=_fewest_edges(tooth, settings))
+    edges = np.diff(nodes)
+    return float(edges.sum() ** 2 / (edges**2).sum())
+
+
 def _fillet_size(tooth: InvoluteTooth, settings: MeshSettings) -> Law:
     """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
     parameter, length = arc_length(tooth.fillet)

@@ -149,6 +149,8 @@ COARSEST_LEVEL, FINEST_LEVEL = -6.0, 4.0
 #: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md); the next half
 #: level is taken. Half a level coarser a fifth of the gears misses 1e-2 or 1e-3 and is solved twice.
 _LEVELS = ((1e-1, -6.0), (1e-2, -4.34), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))
+#: So little above the half level below most gears hold a tolerance there.
+_ALL_BUT = 0.17
 
 
 def settings_at(level: float) -> MeshSettings:
@@ -158,6 +160,15 @@ def settings_at(level: float) -> MeshSettings:
 
 def level_for(tolerance: float) -> float:
     """Level of `settings_at` that usually meets a relative tolerance, a multiple of a half: -2 for 1e-3, 0 for 1e-4."""
+    return min(max(0.5 * math.ceil(2.0 * _level_between(tolerance) - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)
+
+
+def all_but_met_coarser(tolerance: float) -> bool:
+    """Whether most gears meet a tolerance half a level below `level_for`: it all but takes the half level below."""
+    level = level_for(tolerance)
+    return level > COARSEST_LEVEL and _level_between(tolerance) - (level - 0.5) <= _ALL_BUT
+
+
+def _level_between(tolerance: float) -> float:
     decades, levels = zip(*((-math.log10(known), level) for known, level in _LEVELS), strict=True)
-    between = float(np.interp(-math.log10(tolerance), decades, levels))
-    return min(max(0.5 * math.ceil(2.0 * between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)
+    return float(np.interp(-math.log10(tolerance), decades, levels))
