@@ -40,8 +40,8 @@ Progress = Callable[[str], None]
 
 #: How many solutions are tried at most.
 _MOST_ROUNDS = 4
-#: Fillets of so many edges meet a tolerance of 1e-2 half a level coarser: none of 21 random gears missed it there, of 19
-#: with fewer 7 did.
+#: Fillets of so many edges meet a tolerance of 1e-2 half a level coarser: none of 21 random gears missed it there, of
+#: 19 with fewer 7 did.
 _ENOUGH_EDGES = 4.9
 #: By what factor errors fall at least from one level to the next, and the farthest step.
 _FALLS, _FARTHEST = 2.5, 2.0
