@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from fegear.case.part import (
     Angle,
@@ -23,19 +23,13 @@ from fegear.case.part import (
     refuse_more,
 )
 
-Teeth = Annotated[list[Annotated[int, Field(ge=5, le=1000)]], Field(min_length=1)]
-
-
-Numbers = Annotated[list[Number], Field(min_length=1)]
-
-
-Positives = Annotated[list[PositiveNumber], Field(min_length=1)]
-
-
-Angles = Annotated[list[Angle], Field(min_length=1)]
-
-
-Shares = Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(min_length=1)]
+#: Each value once, whose gears would be the same.
+_ONCE = AfterValidator(lambda values: list(dict.fromkeys(values)))
+Teeth = Annotated[list[Annotated[int, Field(ge=5, le=1000)]], Field(min_length=1), _ONCE]
+Numbers = Annotated[list[Number], Field(min_length=1), _ONCE]
+Positives = Annotated[list[PositiveNumber], Field(min_length=1), _ONCE]
+Angles = Annotated[list[Angle], Field(min_length=1), _ONCE]
+Shares = Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(min_length=1), _ONCE]
 
 
 #: Lists between whose ends gears are drawn.

@@ -219,6 +219,53 @@ def test_ranges_in_which_no_model_can_be_built_are_refused_by_the_plan(follow, r
         make_plan(scene, STAGES)
 
 
+WIDE = """
+results = ["load-distribution"]
+[gear.p]
+teeth = 20
+module = "3 mm"
+face_width = "12 mm"
+[gear.w]
+teeth = 29
+module = "3 mm"
+face_width = "12 mm"
+[pair.I]
+driver = "p"
+driven = "w"
+load = "2 kN"
+width = "slices"
+[load_distribution]
+positions = 8
+[accuracy]
+tolerance = 0.1
+"""
+
+
+@pytest.mark.dear
+def test_data_that_no_effect_of_a_pair_with_a_width_uses_may_be_wrong():
+    """Such data ended the run after its teeth had been solved, for the size of what is neglected."""
+    document = tomllib.loads(WIDE)
+    document["gear"]["p"] |= {"bias": {"amount": "5 um", "start_radius": "3 mm"}}
+    scene = build_scene(document, "case", Path())
+    remarks = " ".join(run_plan(scene, make_plan(scene, STAGES)).remarks)
+    assert "relief is off; its effect cannot be estimated from the data given: gear.p.bias = radius 3 mm" in remarks
+    on = build_scene(document | {"effects": {"relief": True}}, "case", Path())
+    with pytest.raises(InputError, match=r"gear\.p\.bias = radius 3 mm: lies inside the base circle"):
+        make_plan(on, STAGES)
+    document["gear"]["p"]["relief"] = {"tip": {"amount": "9 mm", "length": "1 mm"}}
+    on = build_scene(document | {"effects": {"relief": True}}, "case", Path())
+    with pytest.raises(InputError, match=r"gear\.p\.relief = 9000 um"):
+        make_plan(on, STAGES)
+
+
+def test_a_value_that_a_study_names_twice_is_one():
+    """The tiles of gears that are the same could not be laid: numpy's words, after all had been solved."""
+    lists = {"teeth": [17, 20, 17], "profile_shift": [0.0, 0.0], "load_position": [1.0, 0.1, 1.0]}
+    document = {"results": ["root-stress-study"], "gear": {"a": {"teeth": 28, "module": "3 mm"}}, "study": lists}
+    study = build_scene(document, "case", Path()).case.study
+    assert (study.teeth, study.profile_shift, study.load_position) == ([17, 20], [0.0], [1.0, 0.1])
+
+
 #: Answers that somebody might type; the plan refuses what makes no gears.
 TYPED = {
     "teeth": ("8", "12", "17", "21", "53", "80"), "module": ("0.5 mm", "3 mm", "10 mm", "8 / inch"),

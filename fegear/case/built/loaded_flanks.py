@@ -20,8 +20,9 @@ from fegear.case.reading import Scene
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.flank_modification import FlankModification
-from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.plausible_flanks import refuse_load
+from fegear.geometry.relief import Relief
 
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0
@@ -104,16 +105,20 @@ class FlanksToLoad:
         """The same on shafts that open other gaps."""
         return replace(self, errors=replace(self.errors, shafts=shafts))
 
+    def _relief(self, member: Member) -> Relief:
+        flank = self.flanks[MEMBERS.index(member)]
+        try:
+            return build_relief(self.pair, member, flank, math.nan)
+        except InputError as error:
+            raise at(f"gear.{flank.gear}", error) from None
+
     def gaps(self, *, relief: bool, misalignment: bool, spacing_errors: bool = False) -> FlankGaps:
         """What keeps the flanks apart."""
         from fegear.contact.wide.gaps import FlankGaps
 
         apart = FlankGaps()
         if relief:
-            driver, driven = (
-                build_relief(self.pair, member, flank, math.nan)
-                for member, flank in zip(MEMBERS, self.flanks, strict=True)
-            )
+            driver, driven = (self._relief(member) for member in MEMBERS)
             first, second = (face.built(self.pair, m) for m, face in zip(MEMBERS, self.faces, strict=True))
             apart = FlankGaps(driver, driven, driver_flank=(*first, *self.cutter), driven_flank=second)
         if misalignment:
@@ -232,15 +237,10 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
             "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
             f"give gear.{part.driver}.spacing_errors, or leave the effect out",
         )  # fmt: skip
-    for member, flank in zip(MEMBERS, asked.flanks, strict=True):
+    for flank in asked.flanks:
         if effects.relief and flank.wants_delta:
             raise InputError(
                 f"gear.{flank.gear}.relief", "amount_over_delta", "counts in deflections of plane teeth",
                 "give the amount as a length for a pair with a width",
             )  # fmt: skip
-        if effects.relief:
-            asked.faces[MEMBERS.index(member)].built(pair, member)
-        try:
-            build_relief(pair, member, flank, math.nan) if effects.relief else None
-        except InputError as error:
-            raise at(f"gear.{flank.gear}", error) from None
+    asked.gaps(relief=effects.relief, misalignment=False)

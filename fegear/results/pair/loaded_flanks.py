@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.base.errors import InputError
 from fegear.case.built.loaded_flanks import FlanksToLoad, check_flanks_to_load, flanks_to_load, table_notes
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_inputs import gear_name
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
     from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
     from fegear.contact.wide.on_shafts import LoadedShafts
-    from fegear.contact.wide.over_pitch import Stated
+    from fegear.contact.wide.over_pitch import OverPitch, Stated
     from fegear.fem.solid.flank_body import FlankBody
 
 #: Where the shafts of a case come from (`fegear.results.shafts.loaded_shafts`).
@@ -129,15 +130,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     error = no_estimate(found)
     if asked.estimates:
         error = with_misses(flank_error(flanks, found, coarse, gaps, over, asked.nominal), found, missed)
-    neglected = {
-        effect: _with_edges(asked, flanks, gaps, over.stated)
-        if effect == "corner_contact"
-        else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
-        for effect in WIDE_EFFECTS
-        if asked.estimates and not effects.is_on(effect) and asked.has_data(effect)
-    }
-    stated, i = over.stated, asked.loads.index(asked.nominal)
-    changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}
+    neglected = _neglected(asked, flanks, gaps, over) if asked.estimates else Neglected()
     unloaded, beside = np.full(found.lines.roll.size, math.nan), 0.0
     if asked.estimates:  # nothing else is found from either; while a value moves neither is looked at
         rigid = gaps.under(asked.nominal)
@@ -146,9 +139,30 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
     apart = asked.gaps(relief=False, misalignment=effects.misalignment)
     flanks = replace(flanks, progress=None)  # which goes no farther than this stage
     return LoadedWidePair(
-        flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, Neglected(changes), unloaded,
+        flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, neglected, unloaded,
         beside, missed,
     )  # fmt: skip
+
+
+def _neglected(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps, over: OverPitch) -> Neglected:
+    """What each effect that is off would change."""
+    stated, i = over.stated, asked.loads.index(asked.nominal)
+    changes: dict[str, tuple[Change, ...]] = {}
+    wrong: dict[str, InputError] = {}
+    for effect in WIDE_EFFECTS:
+        if asked.effects.is_on(effect) or not asked.has_data(effect):
+            continue
+        try:
+            if effect == "corner_contact":
+                sizes = _with_edges(asked, flanks, gaps, stated)
+            else:
+                finer = replace(flanks, positions=over.found.lines.roll.size)
+                sizes = _with(effect, asked, finer, over.found, gaps)
+        except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
+            wrong[effect] = error
+            continue
+        changes[effect] = _changes(sizes, stated, i, asked.nominal)
+    return Neglected(changes, wrong)
 
 
 def _changes(sizes: tuple[float, float], stated: Stated, i: int, load: float) -> tuple[Change, Change]:
