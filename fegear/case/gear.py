@@ -198,7 +198,9 @@ class GearPart(Part):
         default=None, description="of flanks and root fillets, for scuffing, micropitting, friction and rating"
     )
     flank_treatment: FlankTreatment | None = Field(
-        default=None, description="what was done to the flanks: factor X_W of scuffing (default: through-hardened)"
+        default=None,
+        description="what was done to the flanks: X_W of scuffing (default: that of `through-hardened`, 1) and W_W of "
+        "micropitting (default: by the gear's `strength`, else 1)",
     )
     tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
         default=None,
