@@ -132,6 +132,8 @@ def test_cells_take_other_numbers_names_and_words() -> None:
 def test_stacked_rows_and_a_row_an_object() -> None:
     (below,) = Rows("t", "T", ("x",), stacked="parts").tables(SEEN)
     np.testing.assert_allclose(below["x"], [0.0, 1.0, 0.0, 2.0])
+    (words,) = Rows("t", "T", ("word", "x"), stacked="parts").tables(SEEN)
+    assert words["word"].tolist() == ["stiff"] * 4
     (each,) = Rows("t", "T", ("word",), of=lambda seen: list(seen.data.parts.values())).tables(SEEN)
     assert each["word"].tolist() == ["stiff", "stiff"]
     named = list(Rows("t_{key}", "T", ("x",), each="parts").tables(SEEN))
@@ -253,6 +255,9 @@ def test_maps_level_lines_and_panels_for_each() -> None:
 def test_a_bundle_draws_all_lines_of_a_member_before_the_next() -> None:
     lines = (Line("deflection", look={"dash": "dot"}), Line("lacking"), Line("largest", "{key}", ends=True))
     chart = Chart("f", "F", "C", (Over("x", (Bundle(Family("parts", "no", "ramp"), lines),)),), of="swing")
+    stem = Line("deflection", kind="stems", look=lambda seen: {"notes": (seen.key,)})
+    (figure,) = Chart("f", "F", "C", (Over("x", (replace(stem, each=Family("parts")),)),), of="swing").figures(SEEN)
+    assert [one.notes for one in figure.panels[0].items if isinstance(one, Stems)] == [("a",), ("b",)]
     own = Bundle(Family("parts", role="role of {key}"), (Line("deflection"), Line("deflection", role="red")))
     (figure,) = Chart("f", "F", "C", (Over("x", (own,), "deflection"),), of="swing").figures(replace(SEEN, loads=()))
     assert [one.role for one in figure.panels[0].items if isinstance(one, Curve)] == [

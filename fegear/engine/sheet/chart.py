@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -76,8 +76,8 @@ class Line:
     each : Family or LOADS, optional
         Members for each of which there is one.
     kind : {"curve", "bars", "stems", "points"}
-    look : mapping
-        Further options of the item: ``dash``, ``width``, ``markers``, ``fill``, ``symbol``, ``size``.
+    look : mapping or function
+        Further options of the item: ``dash``, ``width``, ``markers``, ``fill``, ``symbol``, ``size``, ``notes``.
     when : where, optional
         Whether it is drawn.
     first : int, optional
@@ -94,7 +94,7 @@ class Line:
     of: Where | None = None
     each: Family | Literal["loads"] | None = None
     kind: Literal["curve", "bars", "stems", "points"] = "curve"
-    look: dict[str, Any] = field(default_factory=dict)
+    look: Mapping[str, Any] | Callable[[Seen], Mapping[str, Any]] = field(default_factory=dict)
     when: Where | None = None
     first: int | None = None
     ends: bool = False
@@ -332,13 +332,14 @@ def _item(
     error = None if line.error is None or not banded else seen.find(line.error)
     if error is not None:
         error = drawn(of, quantity, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
+    look = line.look(seen) if callable(line.look) else line.look
     if line.kind == "bars":
         return Bars(along, y, label, role, error)
     if line.kind == "stems":
-        return Stems(along, y, label, role)
+        return Stems(along, y, label, role, **look)
     if line.kind == "points":
-        return Points(along, y, label, role, error=error, **line.look)
-    return Curve(along, y, label, role, error, **line.look)
+        return Points(along, y, label, role, error=error, **look)
+    return Curve(along, y, label, role, error, **look)
 
 
 def _map(seen: Seen, owner: Any, spec: Map, x: str) -> HeatMap:

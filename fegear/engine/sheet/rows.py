@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -98,7 +98,8 @@ class Rows:
     when : where, optional
         Whether there is one.
     stacked : where, optional
-        Objects whose rows stand one below the other; `columns` are of these.
+        Objects whose rows stand one below the other; `columns` are of these, a single number or word of an object
+        stands in all of its rows.
     on : tuple of str
         Axes of the grid over which the quantities are known; a row for each of its points.
     printed, matlab : bool
@@ -130,7 +131,7 @@ class Rows:
             return columns_on_grid(owner, self.on, *cells, table=tables[0] if tables else "")
         if self.stacked is None:
             return tuple(_flat(seen, owner, self.columns, seen.nominal))
-        return stacked([_flat(one, one.one, self.columns, seen.nominal) for one in seen.each(self.stacked)])
+        return stacked([_even(_flat(one, one.one, self.columns, seen.nominal)) for one in seen.each(self.stacked)])
 
 
 @dataclass(frozen=True)
@@ -161,6 +162,12 @@ class EveryLoad:
         parts = [_flat(seen, owner, self.columns, load) for load in range(len(seen.loads))]
         loads = column_of(*self.over, np.repeat(seen.loads, [len(part[0]) for part in parts]))
         yield Table(seen.said(self.name), (loads, *stacked(parts)), seen.said(self.title))
+
+
+def _even(columns: list[Column]) -> list[Column]:
+    """Columns of one object with single numbers and words in all rows."""
+    rows = max(column.si.size for column in columns)
+    return [column if column.si.ndim else replace(column, si=np.full(rows, column.si)) for column in columns]
 
 
 def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Column]:

@@ -1,7 +1,4 @@
-"""Stage ``contact-lines``: the lines along which the flanks of an aligned helical pair touch, and their length.
-
-Figures of the contact lines of helical pairs: on both flanks, in space, and their total length over a cycle.
-"""
+"""Stage ``contact-lines``: the lines along which the flanks of an aligned helical pair touch, and their length."""
 
 from __future__ import annotations
 
@@ -12,19 +9,22 @@ from functools import partial
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 from fegear.case.reading import Scene
 from fegear.contact.unloaded.contact_lines import LineContact, LineLength
 from fegear.contact.unloaded.pair import HelicalPair
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, columns_of, value_of
+from fegear.engine.declared import axis_of
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import DeferredFigure, Figure
-from fegear.engine.figure.items import Curve, Mark, Surface, outline, ramp
+from fegear.engine.figure.items import Mark, Surface
 from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Cell, Every, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.results.helical.drawn_tooth_contact import solid_tooth
 from fegear.results.helical.tooth_contact import check_misalignment
@@ -75,48 +75,6 @@ def _compute(asked: ContactLinesInputs, _upstream: Upstream, _work: Work) -> Con
     return ContactLinesData(asked.pair, contact_lines(asked.pair), line_length(asked.pair, asked.positions))
 
 
-def _lines_table(name: str, found: LineContact) -> Table:
-    number = np.repeat(np.arange(1, found.phi_1.shape[0] + 1), found.phi_1.shape[1])
-    given = ("phi_1", "u_1", "theta_1", "u_2", "theta_2", "phi_2", "z", "r_1", "r_2")
-    columns = (column_of(found, key, getattr(found, key).ravel()) for key in given)
-    # The line of a spur gear is parallel to its base helix: it has no length from there.
-    finite = [column for column in columns if np.isfinite(column.si).all()]
-    return Table(
-        f"contact_lines_{name}",
-        (Column("line", number, "", "number of the line"), *finite),
-        f"Contact lines of pair {name}",
-    )
-
-
-def _present(data: ContactLinesData, asked: ContactLinesInputs) -> Outcome:
-    name, pair, length = asked.name, data.pair, data.length
-    tables = (
-        _lines_table(name, data.lines),
-        Table(
-            f"contact_line_length_{name}",
-            columns_of(length, table="cycle"),
-            f"Total length of the contact lines of pair {name}",
-        ),
-    )
-    play = float((data.lines.phi_2 - pair.ratio * data.lines.phi_1).mean())
-    values = (
-        *(value_of(length, key, name, 0.0) for key in ("mean", "least", "largest")),
-        Value(
-            f"{name}.aligned_transmission_error", play, "arcsec", 1e-15, "of the aligned pair, the same at all angles"
-        ),
-    )
-    remarks = []
-    if asked.left_out:
-        remarks.append(
-            f"Pair {name}: contact lines are those of the aligned pair with flanks as designed; errors of the case "
-            "other than that of the centre distance, and its modification, leave points in place of lines."
-        )
-    if pair.pinion.helix_angle == 0.0:
-        remarks.append(f"Pair {name}: lines of a spur gear are parallel to its axis, so that u1 and u2 do not exist.")
-    figures = contact_lines_figures(name, data.pair, data.lines, length)
-    return Outcome(data, tables, values, {"positions": asked.positions}, tuple(remarks), figures, sharper_by="")
-
-
 #: Width of a line drawn on a tooth in space, over the face width, and its height above the flank, over its width.
 _RIBBON, _LIFT = 0.014, 0.2
 
@@ -125,40 +83,104 @@ _RIBBON, _LIFT = 0.014, 0.2
 _ALONG, _ACROSS = 41, 25
 
 
-def contact_lines_figures(
-    name: str, pair: HelicalPair, lines: LineContact, length: LineLength
-) -> tuple[Figure | DeferredFigure, ...]:
-    """Describe all figures of one pair."""
-    title = f"Contact lines on the teeth of pair {name}"
-    space = DeferredFigure(f"contact_lines_on_teeth_{name}", title, partial(_on_teeth, name, pair, lines, title))
-    return _on_flanks(name, pair, lines), space, _length(name, length)
+#: All lines are drawn.
+_ALL = 1000
+#: What is left of the transmission error of an aligned pair [rad].
+_PLAY = 1e-15
 
 
-def _on_flanks(name: str, pair: HelicalPair, lines: LineContact) -> Figure:
-    """Each line over height and radius of either flank, seen from the side."""
-    panels = []
-    for gear, radius, centre, which in (
-        (pair.pinion, lines.r_1, 0.0, "pinion"),
-        (pair.gear, lines.r_2, pair.axial_offset, "gear"),
-    ):
-        half, low, high = 0.5 * gear.face_width, gear.form_radius, gear.tip_radius
-        width = centre + half * np.array([-1.0, 1.0, 1.0, -1.0, -1.0])
-        side = np.stack([width, np.array([low, low, high, high, low])])
-        items = [outline(side * 1e3, "", "ink", 1.0)]
-        roles = ramp(len(lines.z))
-        for k, (z, r) in enumerate(zip(lines.z, radius, strict=True)):
-            shown = k in (0, len(lines.z) - 1)
-            label = f"φ_{{1}} = {math.degrees(lines.phi_1[k, 0]):.3g}°" if shown else ""
-            items.append(Curve(z * 1e3, r * 1e3, label, roles[k], dash="solid", width=1.6, markers=False))
-        panels.append(Panel(Axis(f"height z on the {which}", "mm"), Axis(f"radius on the {which}", "mm"), tuple(items)))
-    return Figure(
-        f"contact_lines_{name}",
-        f"Contact lines of pair {name}",
-        f"Pair {name}, aligned: lines along which one tooth pair touches, at even steps of the pinion angle. They are "
-        "straight in space, tangent to the base helix; over the radius they bend.",
-        tuple(panels),
-        columns=2,
-    )
+@dataclass(frozen=True)
+class DrawnLine:
+    """A line of contact over the face and the radius of a flank."""
+
+    label: str
+    z: Array = shown("mm", "height")
+    r: Array = shown("mm", "radius")
+
+
+@dataclass(frozen=True)
+class DrawnFlank:
+    """A flank with its lines, seen from the side."""
+
+    which: str
+    lines: list[DrawnLine]
+    z: Array = shown("mm", "height of the outline")
+    r: Array = shown("mm", "radius of the outline")
+
+
+@dataclass(frozen=True)
+class LengthOverCycle:
+    """Total length over a cycle, the first position once more at its end."""
+
+    found: LineLength
+
+    @property
+    @shows("deg", "pinion angle φ_{1}")
+    def phi(self) -> Array:
+        """[rad]."""
+        phi = self.found.phi_1
+        return np.append(phi, 2.0 * phi[-1] - phi[-2])
+
+    @property
+    @shows("mm", "length of all contact lines")
+    def total(self) -> Array:
+        """[m]."""
+        return np.append(self.found.total, self.found.total[0])
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Of the axis [mm]."""
+        low, high = self.found.least * 1e3, self.found.largest * 1e3
+        room = max(0.2 * (high - low), 0.02 * high)
+        return max(0.0, low - room), high + room
+
+
+@dataclass(frozen=True)
+class ShownLines:
+    """Contact lines of a pair as they are shown."""
+
+    pair: HelicalPair
+    lines: LineContact
+    length: LineLength
+
+    @property
+    @shows("", "number of the line", name="line")
+    def number(self) -> Array:
+        """In each row, from 1."""
+        return np.repeat(np.arange(1, self.lines.phi_1.shape[0] + 1), self.lines.phi_1.shape[1])
+
+    def finite(self, key: str) -> Array | None:
+        """A parameter in rows; none that is infinite: the line of a spur gear is parallel to its base helix."""
+        values = getattr(self.lines, key).ravel()
+        return values if np.isfinite(values).all() else None
+
+    @property
+    @shows("arcsec", "of the aligned pair, the same at all angles", name="aligned_transmission_error")
+    def play(self) -> float:
+        """[rad]."""
+        return float((self.lines.phi_2 - self.pair.ratio * self.lines.phi_1).mean())
+
+    @property
+    def over_cycle(self) -> LengthOverCycle:
+        """Total length."""
+        return LengthOverCycle(self.length)
+
+    @property
+    def flanks(self) -> list[DrawnFlank]:
+        """Of both gears."""
+        lines, last = self.lines, len(self.lines.z) - 1
+        labels = [f"φ_{{1}} = {math.degrees(phi):.3g}°" if k in (0, last) else ""
+                  for k, phi in enumerate(lines.phi_1[:, 0])]  # fmt: skip
+        drawn = []
+        for gear, radius, centre, which in (
+            (self.pair.pinion, lines.r_1, 0.0, "pinion"),
+            (self.pair.gear, lines.r_2, self.pair.axial_offset, "gear"),
+        ):
+            half, low, high = 0.5 * gear.face_width, gear.form_radius, gear.tip_radius
+            side = centre + half * np.array([-1.0, 1.0, 1.0, -1.0, -1.0])
+            each = [DrawnLine(*one) for one in zip(labels, lines.z, radius, strict=True)]
+            drawn.append(DrawnFlank(which, each, side, np.array([low, low, high, high, low])))
+        return drawn
 
 
 def _on_teeth(name: str, pair: HelicalPair, lines: LineContact, title: str) -> Figure:
@@ -205,26 +227,90 @@ def _ribbons(flank: InvoluteHelicoid, t: Array, z: Array, face: float) -> list[A
     return found
 
 
-def _length(name: str, length: LineLength) -> Figure:
-    phi = np.degrees(np.append(length.phi_1, 2.0 * length.phi_1[-1] - length.phi_1[-2]))
-    total = np.append(length.total, length.total[0]) * 1e3
-    low, high = length.least * 1e3, length.largest * 1e3
-    room = max(0.2 * (high - low), 0.02 * high)
-    axis = Axis("length of all contact lines", "mm", limits=(max(0.0, low - room), high + room))
-    curve = Curve(phi, total, "total length", "blue", markers=False)
-    return Figure(
-        f"contact_line_length_{name}",
-        f"Total length of the contact lines of pair {name}",
-        f"Pair {name}, aligned: length of all lines of contact over a cycle, {low:.4g} to {high:.4g} mm.",
-        (Panel(Axis("pinion angle φ_{1}", "deg"), axis, (curve,), (Mark("y", length.mean * 1e3, "mean"),)),),
-    )
+def _in_space(seen: Seen) -> tuple[DeferredFigure, ...]:
+    """A tooth of either gear with its lines."""
+    name, title = seen.name, f"Contact lines on the teeth of pair {seen.name}"
+    made = partial(_on_teeth, name, seen.data.pair, seen.data.lines, title)
+    return (DeferredFigure(f"contact_lines_on_teeth_{name}", title, made),)
+
+
+_PARAMETERS = ("phi_1", "u_1", "theta_1", "u_2", "theta_2", "phi_2", "z", "r_1", "r_2")
+
+
+def _finite(key: str) -> Cell:
+    """A parameter of the lines, where it is finite."""
+    return Cell(f"lines.{key}", lambda seen: seen.data.finite(key))
+
+
+_SHEET = Sheet(
+    of=lambda data, _asked: ShownLines(data.pair, data.lines, data.length),
+    tables=(
+        Rows("contact_lines_{name}", "Contact lines of pair {name}", ("number", *map(_finite, _PARAMETERS))),
+        Rows(
+            "contact_line_length_{name}", "Total length of the contact lines of pair {name}", (Every("cycle"),),
+            of="length",
+        ),
+    ),
+    values=(
+        *(Number(f"length.{key}", exact) for key in ("mean", "least", "largest")),
+        Number("play", lambda _: _PLAY),
+    ),
+    figures=(
+        Chart(
+            "contact_lines_{name}", "Contact lines of pair {name}",
+            "Pair {name}, aligned: lines along which one tooth pair touches, at even steps of the pinion angle. They "
+            "are straight in space, tangent to the base helix; over the radius they bend.",
+            (
+                Over(
+                    lambda seen: Axis(f"height z on the {seen.one.which}", "mm"),
+                    (
+                        Line("r", role="ink", x="z", look={"width": 1.0, "markers": False}),
+                        Line(
+                            "r", x="z", look={"dash": "solid", "width": 1.6, "markers": False},
+                            each=Family("lines", "{one.label}", "ramp", most=_ALL),
+                        ),
+                    ),
+                    lambda seen: Axis(f"radius on the {seen.one.which}", "mm"), each="flanks",
+                ),
+            ),
+            columns=2,
+        ),
+        _in_space,
+        Chart(
+            "contact_line_length_{name}", "Total length of the contact lines of pair {name}",
+            "Pair {name}, aligned: length of all lines of contact over a cycle, {d.length.least:.4g!} to "
+            "{d.length.largest:.4g}.",
+            (
+                Over(
+                    "phi", (Line("total", "total length", look={"markers": False}),),
+                    lambda seen: axis_of(LengthOverCycle, "total", limits=seen.data.over_cycle.ends),
+                    marks=lambda seen: (Mark("y", seen.data.length.mean * 1e3, "mean"),),
+                ),
+            ),
+            of="over_cycle",
+        ),
+    ),
+    remarks=(
+        Remark(
+            "Pair {name}: contact lines are those of the aligned pair with flanks as designed; errors of the case "
+            "other than that of the centre distance, and its modification, leave points in place of lines.",
+            when=lambda seen: seen.asked.left_out,
+        ),
+        Remark(
+            "Pair {name}: lines of a spur gear are parallel to its axis, so that u1 and u2 do not exist.",
+            when=lambda seen: seen.data.pair.pinion.helix_angle == 0.0,
+        ),
+    ),
+    settings={"positions": lambda seen: seen.asked.positions},
+    sharper_by="",
+)  # fmt: skip
 
 
 CONTACT_LINES = Stage(
     subjects=lambda scene: tuple(scene.helical_pairs),
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=check_misalignment,
     cites=citing(Citation("litvin", "line contact of aligned helicoids", "Appendix 3, A.3.1 to A.3.9")),
     forecast=lambda scene, _name: Forecast({"positions": scene.case.tooth_contact.positions}, 0.02),

@@ -71,12 +71,6 @@ class FrictionAtSpeed:
     over_path: FrictionOverPath
     speed: float = shown("rpm", "")
 
-    @property
-    @shows("rpm", "", name="speed")
-    def speed_of_rows(self) -> Array:
-        """The speed, once for each place on the path [rad/s]."""
-        return np.full(self.over_path.x.size, self.speed)
-
     @cached_property
     @shows("deg", "of the contact point on the driver", name="roll_angle", label="roll angle of the driver")
     def driver_roll_angle(self) -> Array:
@@ -180,7 +174,7 @@ _SHEET = Sheet(
         Rows(
             "tooth_friction_{name}", "Tooth friction of mesh {name} over the path of contact",
             (
-                Cell("speed_of_rows", meaning=_SPEED), "over_path.x", _ROLL, "over_path.load", "over_path.sliding",
+                Cell("speed", meaning=_SPEED), "over_path.x", _ROLL, "over_path.load", "over_path.sliding",
                 "over_path.rolling", Cell("over_path.coefficient", meaning="law {asked.law.law}"),
                 *(f"over_path.{k}" for k in ("torque_driver", "torque_driven", "total_driver", "total_driven")),
             ),

@@ -12,7 +12,7 @@ from fegear.case.effects import WIDE_EFFECTS
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
@@ -102,14 +102,6 @@ def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> Load
     return LoadedShafts(inputs.gearbox, states, tuple(one is not None for one in inputs.flanks))
 
 
-def _present(data: LoadedShafts, inputs: LoadedShaftsInputs) -> Outcome:
-    settings: dict[str, object] = {
-        "scales": list(inputs.scales), "newton_steps": [state.steps for state in data.states],
-        "tolerance": TOLERANCE, "flanks_loaded": list(data.feeding),
-    }  # fmt: skip
-    return Outcome(data, settings=settings, remarks=tuple(_remarks(data, inputs.said)))
-
-
 def _remarks(data: LoadedShafts, bodies: tuple[str, ...]) -> list[str]:
     """What the model assumes and neglects, and what is not from a print at hand."""
     said = [f"Shafts: {one}." for one in bodies]
@@ -136,6 +128,18 @@ def _remarks(data: LoadedShafts, bodies: tuple[str, ...]) -> list[str]:
     return said
 
 
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    remarks=(lambda seen: _remarks(seen.data, seen.asked.said),),
+    settings={
+        "scales": lambda seen: list(seen.asked.scales),
+        "newton_steps": lambda seen: [state.steps for state in seen.data.states],
+        "tolerance": lambda _: TOLERANCE,
+        "flanks_loaded": lambda seen: list(seen.data.feeding),
+    },
+)
+
+
 def _fed(scene: Scene) -> list[str]:
     return [mesh.pair for mesh in mesh_places(scene) if _feeding(scene, mesh.pair)]
 
@@ -159,7 +163,7 @@ LOADED_SHAFTS = Stage(
     subjects=shafts_of,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     needs=_needs,
     check=_check,
     effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else ("misalignment",),

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shown, shows
 from fegear.case.built.shafts import mesh_places
 from fegear.case.reading import Scene
 from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, drawn, stacked, value_of
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
-from fegear.shafts.gearbox import CAUSES, MeshMisalignment, MeshState
+from fegear.shafts.gearbox import CAUSES, MeshGap, MeshMisalignment, MeshState
 
 _WORDS = {"bearings": "of the rings in their bearings", "housing": "of the bearings' seats",
           "bending": "of the shafts that bend", "torsion": "of the shafts that twist"}  # fmt: skip
@@ -48,58 +44,108 @@ def _compute(_inputs: None, upstream: Upstream, _work: Work) -> MisalignmentData
     return MisalignmentData(shafts, rows)
 
 
-def _present(data: MisalignmentData, _inputs: None) -> Outcome:
-    meshes, nominal = data.shafts.gearbox.meshes, data.states[data.shafts.states.index(data.shafts.nominal)]
-    tables, figures, values = [_by_cause(data)], [], []
-    for mesh, (shares, gap) in zip(meshes, nominal, strict=True):
-        values.append(_value(mesh.pair, shares))
-        tables.append(Table(
-            f"shaft_gap_{mesh.pair}",
-            (*columns_of(gap, "z", "gap"),
-             *(column_of(gap, "by_cause", gap.by_cause[n], name=f"gap_{cause}", meaning=_WORDS[cause])
-               for n, cause in enumerate(CAUSES)),
-             *columns_of(gap, "line_load")),
-            f"Gap that shafts open over the face of pair {mesh.pair}",
-        ))  # fmt: skip
-        z = drawn(gap, "z")
-        curves = tuple(
-            Curve(z, drawn(gap, "by_cause", gap.by_cause[n]), cause, f"series:{n + 1}", markers=False)
-            for n, cause in enumerate(CAUSES)
-        )
-        figures.append(Figure(
-            f"shaft_gap_{mesh.pair}", f"What shafts open over the face of pair {mesh.pair}",
-            f"Pair {mesh.pair}: gap of the flanks in the plane of action by shafts, bearings and housing, in all and "
-            "by cause.",
-            (Panel(axis_of(gap, "z"), axis_of(gap, "gap"),
-                   (replace(curve_of(gap, "z", "gap", "in all", "series:0"), markers=False), *curves)),),
-        ))  # fmt: skip
-    return Outcome(data, tuple(tables), tuple(values), {}, (), tuple(figures))
+@dataclass(frozen=True)
+class MisalignedMesh:
+    """A mesh under one load, by cause.
+
+    Parameters
+    ----------
+    shares : MeshMisalignment
+    gap : MeshGap
+    """
+
+    shares: MeshMisalignment
+    gap: MeshGap
+    pair: str = shown("", "name of the pair")
+    load: float = shown("N", "along the transverse line of action")
+    end: str = shown("", "end of the shafts toward which it lies", name="end_II")
+
+    @property
+    @shows("", "what misaligns the mesh")
+    def cause(self) -> tuple[str, ...]:
+        """Names of the rows."""
+        return ("all", *CAUSES)
 
 
-def _value(pair: str, shares: MeshMisalignment) -> Value:
-    return value_of(
-        shares, "over_face", pair, name="shaft_misalignment", si=shares.over_face[0],
-        meaning="over the face in the plane of action, toward end II, by shafts, bearings and housing",
-    )  # fmt: skip
+@dataclass(frozen=True)
+class MisalignedMeshes:
+    """Every mesh of a gearbox."""
+
+    found: MisalignmentData
+
+    def _under(self, n: int, k: int) -> MisalignedMesh:
+        """Mesh number n under load number k."""
+        mesh = self.found.shafts.gearbox.meshes[n]
+        load, end = self.found.shafts.states[k].scale * mesh.load, "left" if mesh.sense > 0 else "right"
+        return MisalignedMesh(*self.found.states[k][n], mesh.pair, load, end)
+
+    @property
+    def under_all(self) -> list[MisalignedMesh]:
+        """Under every load, mesh by mesh."""
+        shafts = self.found.shafts
+        return [self._under(n, k) for n in range(len(shafts.gearbox.meshes)) for k in range(len(shafts.states))]
+
+    @property
+    def nominal(self) -> list[MisalignedMesh]:
+        """Under the nominal loads."""
+        shafts = self.found.shafts
+        return [self._under(n, shafts.states.index(shafts.nominal)) for n in range(len(shafts.gearbox.meshes))]
 
 
-def _by_cause(data: MisalignmentData) -> Table:
-    meshes, scales = data.shafts.gearbox.meshes, [state.scale for state in data.shafts.states]
-    rows = [(mesh, scale, shares) for n, mesh in enumerate(meshes)
-            for scale, shares in zip(scales, (state[n][0] for state in data.states), strict=True)]  # fmt: skip
-    keys = tuple(MeshMisalignment.__dataclass_fields__)
-    times = 1 + len(CAUSES)
-    return Table(
-        "misalignment",
-        (Column("pair", np.repeat([mesh.pair for mesh, *_ in rows], times), "", "name of the pair"),
-         Column("load", np.repeat([scale * mesh.load for mesh, scale, _ in rows], times), "N",
-                "along the transverse line of action"),
-         Column("cause", np.tile(("all", *CAUSES), len(rows)), "", "what misaligns the mesh"),
-         *stacked([columns_of(shares, *keys) for *_, shares in rows]),
-         Column("end_II", np.repeat(["left" if mesh.sense > 0 else "right" for mesh, *_ in rows], times), "",
-                "end of the shafts toward which it lies")),
-        "Misalignment of the meshes by cause",
-    )  # fmt: skip
+def _gap_by(n: int, cause: str) -> Cell:
+    """Share of a cause in a gap."""
+    return Cell("gap.by_cause", lambda seen: seen.one.gap.by_cause[n], name=f"gap_{cause}", meaning=_WORDS[cause])
+
+
+def _line_by(n: int, cause: str) -> Line:
+    """The same as a curve."""
+    return Line(
+        "gap.by_cause", cause, f"series:{n + 1}", look={"markers": False}, si=lambda seen: seen.one.gap.by_cause[n]
+    )
+
+
+_SHEET = Sheet(
+    of=lambda data, _asked: MisalignedMeshes(data),
+    name=lambda _asked: "",
+    tables=(
+        Rows(
+            "misalignment", "Misalignment of the meshes by cause",
+            ("pair", "load", "cause", *(f"shares.{key}" for key in MeshMisalignment.__dataclass_fields__), "end"),
+            stacked="under_all",
+        ),
+        Rows(
+            "shaft_gap_{one.pair}", "Gap that shafts open over the face of pair {one.pair}",
+            (
+                "gap.z", "gap.gap", *(_gap_by(n, cause) for n, cause in enumerate(CAUSES)), "gap.line_load",
+            ),
+            each="nominal",
+        ),
+    ),
+    values=(
+        Number(
+            "shares.over_face", si=lambda seen: seen.one.shares.over_face[0], owner="{one.pair}",
+            name="shaft_misalignment", each="nominal",
+            meaning="over the face in the plane of action, toward end II, by shafts, bearings and housing",
+        ),
+    ),
+    figures=(
+        Chart(
+            "shaft_gap_{one.pair}", "What shafts open over the face of pair {one.pair}",
+            "Pair {one.pair}: gap of the flanks in the plane of action by shafts, bearings and housing, in all and by "
+            "cause.",
+            (
+                Over(
+                    "gap.z",
+                    (
+                        Line("gap.gap", "in all", "series:0", look={"markers": False}),
+                        *(_line_by(n, cause) for n, cause in enumerate(CAUSES)),
+                    ),
+                ),
+            ),
+            each="nominal",
+        ),
+    ),
+)  # fmt: skip
 
 
 def _check(scene: Scene, _name: str) -> None:
@@ -113,7 +159,7 @@ MISALIGNMENT = Stage(
     subjects=shafts_of,
     inputs=lambda _scene, _name: None,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     needs=lambda _scene, _name: (LOADED_SHAFTS_TASK,),
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     check=_check,

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_of, curve_of, stacked
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage
-from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
 from fegear.shafts.solution import BearingLoads
@@ -23,6 +20,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.engine.stage import Upstream, Work
     from fegear.shafts.life import LifeRating
+    from fegear.shafts.solution import Deflection
 
 
 @dataclass(frozen=True)
@@ -31,6 +29,16 @@ class DeflectionInputs:
 
     bearings: tuple[tuple[str, ...], ...]
     lives: tuple[tuple[LifeRating | None, ...], ...]
+
+
+@dataclass(frozen=True)
+class DeflectedShaft:
+    """A shaft under the nominal loads, with the loads of its bearings."""
+
+    bent: Deflection
+    loads: BearingLoads
+    name: str = shown("", "name of the shaft", name="shaft")
+    bearings: tuple[str, ...] = shown("", "its name", name="bearing")
 
 
 def _inputs(scene: Scene, _name: str) -> DeflectionInputs:
@@ -44,44 +52,47 @@ def _compute(_inputs: DeflectionInputs, upstream: Upstream, _work: Work) -> Load
     return loaded_shafts(upstream)
 
 
-def _present(data: LoadedShafts, inputs: DeflectionInputs) -> Outcome:
-    tables, figures, loads = [], [], []
-    for name, bent, lives in zip(data.gearbox.names, data.nominal.bent, inputs.lives, strict=True):
-        line = bent.line
-        tables.append(Table(
-            f"shaft_deflection_{name}",
-            columns_of(line, "z", "x", "y", "along", "turn_x", "turn_y", "twist"), f"Deflection of shaft {name}",
-        ))  # fmt: skip
-        curves = tuple(
-            replace(curve_of(line, "z", key, key, f"series:{n}"), markers=False) for n, key in enumerate(("x", "y"))
-        )
-        figures.append(Figure(
-            f"shaft_deflection_{name}", f"Deflection of shaft {name}",
-            f"Shaft {name}: displacement of its axis along x and y under the forces of all meshes.",
-            (Panel(axis_of(line, "z"), axis_of(line, "x", "displacement of the axis"), curves),),
-        ))  # fmt: skip
-        loads.append(bent.bearing_loads(lives))
-    tables.append(_bearings(data, inputs, loads))
-    return Outcome(data, tuple(tables), (), {}, (), tuple(figures))
+def _deflected(data: LoadedShafts, asked: DeflectionInputs) -> list[DeflectedShaft]:
+    """Every shaft."""
+    rows = zip(data.gearbox.names, data.nominal.bent, asked.bearings, asked.lives, strict=True)
+    return [DeflectedShaft(bent, bent.bearing_loads(lives), name, bearings) for name, bent, bearings, lives in rows]
 
 
-def _bearings(data: LoadedShafts, inputs: DeflectionInputs, loads: list[BearingLoads]) -> Table:
-    keys = tuple(BearingLoads.__dataclass_fields__)
-    on = [name for name, row in zip(data.gearbox.names, inputs.bearings, strict=True) for _ in row]
-    return Table(
-        "bearing_forces",
-        (Column("shaft", np.array(on), "", "name of the shaft"),
-         Column("bearing", np.array([name for row in inputs.bearings for name in row]), "", "its name"),
-         *stacked([columns_of(one, *keys) for one in loads])),
-        "Forces and lives of the bearings",
-    )  # fmt: skip
+_SHEET = Sheet(
+    of=_deflected,
+    name=lambda _asked: "",
+    tables=(
+        Rows(
+            "shaft_deflection_{one.name}", "Deflection of shaft {one.name}",
+            ("z", "x", "y", "along", "turn_x", "turn_y", "twist"), of="bent.line", each="",
+        ),
+        Rows(
+            "bearing_forces", "Forces and lives of the bearings",
+            ("name", "bearings", *(f"loads.{key}" for key in BearingLoads.__dataclass_fields__)), stacked="",
+        ),
+    ),
+    figures=(
+        Chart(
+            "shaft_deflection_{one.name}", "Deflection of shaft {one.name}",
+            "Shaft {one.name}: displacement of its axis along x and y under the forces of all meshes.",
+            (
+                Over(
+                    "z",
+                    tuple(Line(key, key, f"series:{n}", look={"markers": False}) for n, key in enumerate(("x", "y"))),
+                    options={"label": "displacement of the axis"},
+                ),
+            ),
+            of="bent.line", each="",
+        ),
+    ),
+)  # fmt: skip
 
 
 SHAFT_DEFLECTION = Stage(
     subjects=shafts_of,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     needs=lambda _scene, _name: (LOADED_SHAFTS_TASK,),
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     forecast=lambda _scene, _name: forecasts.constant(0.01),
