@@ -72,6 +72,11 @@ def figures():
             Panel(ticked, Axis("y"), (shaded,)), Panel(ticked, Axis("y"), (lettered,), title="below"),
             Panel(Axis(categories=("p", "q")), Axis(hidden=True, limits=(-0.05, 1.05)), (Curve([0, 1], [0, 1], "l"),)),
         )),
+        "beside": Figure("beside", "Beside", "C.", (
+            Panel(Axis("x", "mm"), force, (Curve(few, few, "plain"),), title="One\nof two lines"),
+            Panel(along, force, (Curve(x, x, "scaled"),)),
+            Panel(along, Axis("y"), (Curve(x, -x, "below"),)),
+        ), columns=2),
         "views": Figure("views", "Views", "C.", views=views),
         "field": Figure("field", "Field", "C.", (
             Panel(Axis("x", "mm"), Axis("y", "mm"), (

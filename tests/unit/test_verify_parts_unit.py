@@ -241,9 +241,26 @@ def test_states_of_contact_are_tried_until_forces_and_gaps_agree():
         force = enumerated(linear, rows, k, gap, load)
         z = np.linalg.solve(linear, load - rows.T @ force)
         np.testing.assert_allclose(force, k * np.maximum(rows @ z - gap, 0.0), atol=1e-9)
+        np.testing.assert_allclose(enumerated(linear, rows, k, 1e9 * gap, 1e9 * load), 1e9 * force, rtol=1e-6, atol=1.0)
         touching_ones.add(int((force > 0.0).sum()))
     assert {0, 1, 2} <= touching_ones
     assert enumerated(np.zeros((1, 1)), np.array([[1.0]]), np.ones(1), np.zeros(1), np.array([-1.0])) is None
+
+
+def test_bodies_in_space_know_no_unit_of_force():
+    """Springs that push, one of them apart: forces grow with the load, from tiny to huge ones."""
+    from fegear.verify.bodies import contact_in_space
+
+    rng = np.random.default_rng(3)
+    rows, k, linear = rng.normal(size=(4, 3)), rng.uniform(1.0, 3.0, 4), np.diag([0.5, 1.0, 2.0])
+    load = np.array([1.0, -2.0, 0.5])
+    forces = contact_in_space(rows, linear, load, k)
+    q = np.linalg.solve(linear, load - rows.T @ forces)
+    np.testing.assert_allclose(forces, np.where(forces > 0.0, k * (rows @ q), 0.0), atol=1e-12)
+    assert 0 < (forces > 0.0).sum() < 4
+    for size in (1e-12, 1e12):
+        np.testing.assert_allclose(contact_in_space(rows, linear, size * load, k), size * forces, rtol=1e-9)
+    assert contact_in_space(np.array([[1.0], [1.0]]), np.zeros((1, 1)), np.array([-1.0]), np.ones(2)) is None
 
 
 def test_a_mesh_is_handed_on_with_the_lag_that_its_load_takes(monkeypatch, tmp_path):
