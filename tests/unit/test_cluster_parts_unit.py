@@ -1,0 +1,74 @@
+"""Waiting for a cluster: how long without workers, whose code; with a client and a clock that are made up."""
+
+import itertools
+from types import SimpleNamespace
+
+import pytest
+
+from fegear.base.errors import InputError, MissingLibraryError
+from fegear.engine import cluster
+
+
+@pytest.fixture
+def waiting(monkeypatch):
+    """Batches as they come and whether somebody works; a second passes at each look."""
+
+    def prepare(batches, workers):
+        left, naps = list(batches), []
+        coming = SimpleNamespace(count=lambda: len(left), next_batch=lambda block: left.pop(0))
+        monkeypatch.setattr("dask.distributed.as_completed", lambda futures: coming)
+        clock = itertools.count(100.0)
+        monkeypatch.setattr(cluster.time, "monotonic", lambda: next(clock))
+        monkeypatch.setattr(cluster.time, "sleep", naps.append)
+        present = iter(workers)
+        client = SimpleNamespace(scheduler_info=lambda: {"workers": next(present)})
+        return cluster._finished(client, [], "tcp://there"), naps
+
+    return prepare
+
+
+def test_a_cluster_may_be_without_workers_for_a_minute(waiting):
+    finished, naps = waiting([[]] * 60 + [["a"]], [{}] * 60)
+    assert list(finished) == ["a"]
+    assert naps == [0.02] * 60
+    finished, _ = waiting([[]] * 61 + [["a"]], [{}] * 61)
+    with pytest.raises(InputError, match="has lost all its workers"):
+        list(finished)
+
+
+def test_work_that_comes_and_workers_that_are_there_begin_the_minute_anew(waiting):
+    finished, _ = waiting([[]] * 40 + [["a"]] + [[]] * 40 + [["b", "c"]], [{}] * 80)
+    assert list(finished) == ["a", "b", "c"]
+    finished, naps = waiting([[]] * 50 + [[]] + [[]] * 50 + [["a"]], [{}] * 50 + [{"w": 1}] + [{}] * 50)
+    assert list(finished) == ["a"]
+    assert len(naps) == 101  # no nap behind what has come
+
+
+def client(**more):
+    ours = cluster.made_by()
+    return SimpleNamespace(**{
+        "wait_for_workers": lambda count, timeout: None,
+        "run_on_scheduler": lambda find, name: "spec",
+        "run": lambda function, *given, on_error=None: {"w1": "spec"} if given else {"w1": dict(ours)},
+    } | more)  # fmt: skip
+
+
+def test_scheduler_and_workers_must_have_fegear_of_the_same_code():
+    cluster._check_workers(client(), "tcp://there")
+    with pytest.raises(MissingLibraryError, match="not installed where scheduler runs"):
+        cluster._check_workers(client(run_on_scheduler=lambda find, name: None), "tcp://there")
+    with pytest.raises(MissingLibraryError, match="not installed where w1 runs"):
+        cluster._check_workers(client(run=lambda *given, **how: {"w1": None}), "tcp://there")
+
+    def other(function, *given, on_error=None):
+        return {"w1": "spec", "w2": "spec"} if given else {"w1": dict(cluster.made_by()), "w2": OSError("old")}
+
+    with pytest.raises(InputError, match=r"worker w2 has .*of an older release"):
+        cluster._check_workers(client(run=other), "tcp://there")
+
+    def none(count, timeout):
+        assert (count, timeout) == (1, 15.0)
+        raise TimeoutError
+
+    with pytest.raises(InputError, match="has no workers"):
+        cluster._check_workers(client(wait_for_workers=none), "tcp://there")
