@@ -1,51 +1,57 @@
-"""Result ``crosscheck``: every closed form compared with the finite elements, over load positions.
-
-What the result ``crosscheck`` reads and what it finds, by the names of gears and pairs.
-
-Tables and single values of the result ``crosscheck``: closed forms over finite elements.
-
-Figures of closed forms compared with finite elements.
-"""
+"""Result ``crosscheck``: every closed form compared with the finite elements, over load positions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown, shows
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, columns_of, error_column, tiled
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Mark, Zone
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Every, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_iso import (
+    ISO_TABLE,
+    ISO_VALUES,
+    SECTION_TABLE,
+    SECTION_VALUES,
+    CornellSection,
     IsoInputs,
+    IsoPair,
     iso_inputs,
-    iso_table,
     load_of_stiffness,
+    on_iso,
     section_figure,
-    section_table,
+)
+from fegear.results.gear.crosscheck_rows import (
+    GEAR_COMPLIANCE_COLUMNS,
+    PAIR_COMPLIANCE_COLUMNS,
+    ROOT_STRESS_COLUMNS,
+    GearComplianceRows,
+    PairComplianceRows,
+    RootStressRows,
+    comparison,
+    extremes,
 )
 from fegear.results.gear.load_positions import chosen_gears
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.compared.rated_gears import RatedPair
+    from fegear.engine.sheet.seen import Seen, Text
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
@@ -56,10 +62,6 @@ if TYPE_CHECKING:
 
 #: Line load of the pairs when the case names none [N/m].
 USUAL_LINE_LOAD = 100e3
-
-
-#: What formulas answer, by their names.
-_Answers: TypeAlias = "Mapping[str, RootStressAnswers] | Mapping[str, ComplianceAnswers]"
 
 
 #: The whole case is one subject: gears and pairs share the tables of sources and the remarks.
@@ -174,46 +176,6 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
     return CrosscheckData(gears, pairs, rated)
 
 
-def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
-    # A case of helical pairs alone compares no spur gear of its own: its remarks come with each pair.
-    tables, values = [sources_table()], []
-    remarks = [*(_GEAR_REMARKS if asked.gears else ()), *((_PAIR_REMARK,) if asked.pairs else ())]
-    for name, gear in asked.gears.items():
-        answers = data.gears[name]
-        found = (
-            root_stress_table(name, gear, answers.table, answers.root_stress),
-            gear_compliance_table(name, gear, answers),
-        )
-        tables += [table for table, _ in found]
-        values += [value for _, some in found for value in some]
-    for name, check in asked.pairs.items():
-        if check.chosen:
-            load = f"{check.line_load * 1e-3:.6g} N/mm"
-            remarks.append(f"Pair {name}: no load was given; its contact is that of {load}.")
-        table, some, remark = pair_table(name, check, data.pairs[name])
-        remarks += [remark] if remark else []
-        tables.append(table)
-        values += some
-    for name, wanted in asked.iso.items():
-        table, some, more = iso_table(name, wanted, data.iso[name])
-        remarks += more
-        tables.append(table)
-        values += some
-    for table in tables[1:]:
-        head = table.columns[0].name
-        silent = {str(f): str(r) for f, r in zip(table[head], table["reason"], strict=True) if r}
-        remarks += [f"{table.title}: {f} is out of its range at some positions: {r}" for f, r in silent.items()]
-    figures = [crosscheck_figure(table) for table in tables[1:] if "formula" in table.columns[0].name]
-    for name, gear in asked.gears.items():
-        answers = data.gears[name]
-        if answers.cornell.value is not None:
-            table, some = section_table(name, gear, answers.table.radius, answers.cornell.value)
-            tables.append(table)
-            values += some
-            figures.append(section_figure(name, gear, answers.table, answers.cornell.value))
-    return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), tuple(figures))
-
-
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     """Every closed form for every gear and pair; helical pairs solve two virtual spur gears for each of theirs."""
     virtual = 4 * len(_helical(scene)) * seconds_of_gear(mesh_settings(scene.case.accuracy))
@@ -290,192 +252,205 @@ class CrosscheckData:
     iso: Mapping[str, RatedPair]
 
 
-def root_stress_table(
-    name: str, gear: Gear, fe: StiffnessTable, answers: Mapping[str, RootStressAnswers]
-) -> tuple[Table, tuple[Value, ...]]:
-    """Every root-stress formula over the finite elements of one gear."""
-    count, m = fe.radius.size, gear.module
-    times = len(answers)
+@dataclass(frozen=True)
+class GearCompared:
+    """One gear: its formulas over finite elements, and Cornell's section of it."""
 
-    def joined(attribute: str, scale: float) -> Array:
-        return np.concatenate([getattr(a, attribute) for a in answers.values()]) * scale
+    gear: Gear
+    answers: GearAnswers
 
-    stress = joined("stress", 1.0 / m)
-    ratio = stress / np.tile(fe.root_tension, times)
-    of_fe = column_of(
-        fe, "root_tension", name="root_tension_fe", meaning="largest tangential stress of the fillet by FE"
-    )
-    columns = (
-        _formulas(answers, count),
-        *tiled(columns_of(fe, "radius", "roll_angle"), times),
-        column_of(fe, "root_tension", stress, meaning="by the formula, per line load normal to the flank"),
-        *tiled((of_fe, error_column(of_fe, fe.errors["root_tension"], "estimated error of FE")), times),
-        Column("ratio_to_fe", ratio, "", "formula over FE"),
-        column_of(
-            fe, "root_tension_radius", joined("radius", m), name="place_radius", meaning="where the formula puts it"
-        ),
-        *tiled((column_of(fe, "root_tension_radius", name="place_radius_fe", meaning="where FE puts it"),), times),
-        column_of(fe, "root_tension_angle", joined("tangent_angle", 1.0), name="place_angle"),
-        *tiled((column_of(fe, "root_tension_angle", name="place_angle_fe", meaning="the same by FE"),), times),
-        _reasons(answers),
-    )
-    title = f"Root stress of gear {name}: closed forms over finite elements"
-    values = _extremes(f"{name}.root_stress", ratio.reshape(times, count), tuple(answers))
-    return Table(f"crosscheck_root_stress_{name}", columns, title), values
+    @cached_property
+    def root_stress(self) -> RootStressRows:
+        """Formula by formula."""
+        return RootStressRows.of(self.answers.root_stress, self.answers.table, self.gear.module)
+
+    @cached_property
+    def compliance(self) -> GearComplianceRows:
+        """Formula by formula."""
+        return GearComplianceRows.of(self.answers.compliance, self.answers.table, self.answers.contact_zone)
+
+    @property
+    def cornell(self) -> CornellSection | None:
+        """None where there is none."""
+        found = self.answers.cornell.value
+        return None if found is None else CornellSection(found, self.gear, self.answers.table)
 
 
-def _formulas(answers: _Answers, count: int) -> Column:
-    return Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources")
+@dataclass(frozen=True)
+class PairCompared:
+    """One pair: its formulas over finite elements, and c' of ISO 6336-1."""
+
+    check: PairCheck
+    answers: PairAnswers
+
+    @cached_property
+    def compliance(self) -> PairComplianceRows:
+        """Formula by formula."""
+        return PairComplianceRows.of(self.answers.compliance, self.answers.reference)
+
+    @property
+    @shows("N/(mm.um)", "greatest stiffness of one tooth pair by FE")
+    def single_stiffness_fe(self) -> float:
+        """[Pa]."""
+        return float(1.0 / self.answers.reference.total.min())
+
+    @property
+    @shows("N/(mm.um)")
+    def single_stiffness_iso(self) -> float | None:
+        """c' [Pa]."""
+        iso = self.answers.iso.value
+        return None if iso is None else iso.single
+
+    @property
+    @shows("N/(mm.um)", "ISO 6336-1 c'_th")
+    def theoretical_stiffness_iso(self) -> float | None:
+        """c'_th [Pa]."""
+        iso = self.answers.iso.value
+        return None if iso is None else iso.theoretical
+
+    @property
+    @shows("", "c' over FE")
+    def ratio_to_fe(self) -> float | None:
+        """Of both."""
+        c = self.single_stiffness_iso
+        return None if c is None else c / self.single_stiffness_fe
+
+    @property
+    def under(self) -> str:
+        """The load that c' is for, in words."""
+        return load_of_stiffness(self.check.applied_load, self.check.load_factor)
+
+    @property
+    def remark(self) -> str:
+        """What is to be said of c'; empty if nothing."""
+        iso = self.answers.iso
+        if iso.value is None:
+            return f"ISO 6336-1 gives no c': {iso.reason}"
+        return f"{iso.value.remark}." if iso.value.remark else ""
 
 
-def _reasons(answers: _Answers) -> Column:
-    words = np.array([reason for a in answers.values() for reason in a.reasons], dtype=np.str_)
-    return column_of(next(iter(answers.values())), "reasons", words)
+@dataclass(frozen=True)
+class Everything:
+    """All that is compared, by the names of gears and pairs."""
 
+    gears: dict[str, GearCompared]
+    pairs: dict[str, PairCompared]
+    iso: dict[str, IsoPair]
 
-def _extremes(prefix: str, ratio: Array, names: tuple[str, ...]) -> tuple[Value, ...]:
-    """Smallest and largest ratio and the largest deviation of every formula that gives anything."""
-    found = []
-    for name, row in zip(names, ratio, strict=True):
-        r = row[np.isfinite(row)]
-        if r.size:
-            key = f"{prefix}.{name}"
-            found += [
-                Value(f"{key}.lowest_ratio", float(r.min()), "", None, f"{name} over FE, smallest over the positions"),
-                Value(f"{key}.highest_ratio", float(r.max()), "", None, f"{name} over FE, largest over the positions"),
-                Value(
-                    f"{key}.largest_deviation", float(np.abs(r - 1.0).max()), "", None, f"{name} against FE, relative"
-                ),
-            ]
-    return tuple(found)
-
-
-def _compliance_table(
-    name: str,
-    what: str,
-    first: tuple[Column, ...],
-    reference: tuple[Column, ...],
-    answers: Mapping[str, ComplianceAnswers],
-    parts: tuple[str, ...],
-) -> tuple[Table, tuple[Value, ...]]:
-    times, count = len(answers), len(first[0].si)
-    total = np.concatenate([a.total for a in answers.values()])
-    ratio = total / np.tile(reference[0].si, times)
-    split = [
-        np.concatenate([a.parts[i] if len(a.parts) > i else a.parts[0] for a in answers.values()])
-        for i in range(len(parts))
-    ]
-    some = next(iter(answers.values()))
-    columns = (
-        _formulas(answers, count),
-        *tiled(first, times),
-        column_of(some, "total", total),
-        *tiled(reference, times),
-        Column("ratio_to_fe", ratio, "", "formula over FE"),
-        *(column_of(some, "parts", s, name=p) for p, s in zip(parts, split, strict=True)),
-        _reasons(answers),
-    )
-    table = Table(f"crosscheck_compliance_{name}", columns, f"{what}: closed forms over finite elements")
-    return table, _extremes(f"{name}.compliance", ratio.reshape(times, count), tuple(answers))
-
-
-def gear_compliance_table(name: str, gear: Gear, found: GearAnswers) -> tuple[Table, tuple[Value, ...]]:
-    """Every compliance formula of one tooth, without its contact, over the finite elements."""
-    fe, zone = found.table, found.contact_zone
-    tooth = column_of(
-        fe, "c_self", fe.c_self - zone, name="compliance_fe", meaning="FE, the loaded tooth without its contact zone"
-    )
-    taken_off = "half-plane approach that was taken off from FE"
-    reference = (
-        tooth,
-        error_column(tooth, fe.errors["c_self"], "estimated error of FE"),
-        column_of(fe, "c_self", zone, name="contact_zone", meaning=taken_off),
-    )
-    parts = ("bending", "shear", "axial", "foundation")
-    what = f"Compliance of one tooth of gear {name} without its contact, plane {gear.plane_assumption}"
-    first = columns_of(fe, "radius", "roll_angle")
-    return _compliance_table(name, what, first, reference, found.compliance, parts)
-
-
-def pair_table(name: str, check: PairCheck, found: PairAnswers) -> tuple[Table, tuple[Value, ...], str]:
-    """Table and values of a pair, and what is to be remarked about ISO's c'; empty if nothing."""
-    fe, w = found.reference, check.line_load
-    first, reference = columns_of(fe, "x"), columns_of(fe, "total", "driver", "driven", "half_width")
-    what = f"Compliance of one tooth pair of pair {name} under {w * 1e-3:.6g} N/mm"
-    parts = ("driver", "driven", "contact")
-    table, values = _compliance_table(name, what, first, reference, found.compliance, parts)
-    greatest = float(1.0 / fe.total.min())
-    unit = "N/(mm.um)"
-    own = Value(f"{name}.single_stiffness_fe", greatest, unit, None, "greatest stiffness of one tooth pair by FE")
-    iso = found.iso.value
-    if iso is None:
-        return table, (*values, own), f"Pair {name}: ISO 6336-1 gives no c': {found.iso.reason}"
-    under = load_of_stiffness(check.applied_load, check.load_factor)
-    extra = (
-        *values,
-        own,
-        Value(f"{name}.single_stiffness_iso", iso.single, unit, None, f"ISO 6336-1 c', solid, C_M = 0.8, {under}"),
-        Value(f"{name}.theoretical_stiffness_iso", iso.theoretical, unit, None, "ISO 6336-1 c'_th"),
-        Value(f"{name}.single_stiffness_iso.ratio_to_fe", iso.single / greatest, "", None, "c' over FE"),
-    )
-    return table, extra, f"Pair {name}: {iso.remark}." if iso.remark else ""
-
-
-def sources_table() -> Table:
-    """Where each closed form comes from and what it compares."""
-    from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
-
-    rows = [(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values()]
-    rows += [(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()]
-    heads = ("formula", "gives", "source", "what_is_compared")
-    columns = (Column(head, np.array(values)) for head, values in zip(heads, zip(*rows, strict=True), strict=True))
-    return Table("crosscheck_sources", tuple(columns), "The closed forms and what each compares")
-
-
-#: Ratios that figures shade as agreement.
-_AGREEMENT = (0.95, 1.05)
-
-
-def crosscheck_figure(table: Table) -> Figure:
-    """Every formula of a table compared with the finite elements, their ratio, and of a root stress its place."""
-    shown = {column.name: column.values for column in table.columns}
-    formulas = list(dict.fromkeys(str(name) for name in shown["formula"]))
-    stress = "root_tension" in shown
-    first = "x" if "x" in shown else "roll_angle"
-    label = ("contact point from the pitch point", "mm") if first == "x" else ("roll angle of the load", "deg")
-
-    def curves(key: str, reference: str) -> tuple[Curve, ...]:
-        drawn = []
-        for number, formula in enumerate(formulas):
-            rows = shown["formula"] == formula
-            x, y = (np.asarray(shown[k][rows], dtype=float) for k in (first, key))
-            if reference and not number:
-                fe = np.asarray(shown[reference][rows], dtype=float)
-                drawn.append(Curve(x, fe, "finite elements", "finite elements", width=2.6))
-            drawn.append(Curve(x, y, formula, f"series:{number}"))
-        return tuple(drawn)
-
-    x = Axis(*label)
-    key = "root_tension" if stress else "compliance"
-    unit = table.column(key).unit
-    title = "root stress per line load" if stress else "deflection per line load"
-    panels = [
-        Panel(x, Axis(title, unit, zero=not stress), curves(key, f"{key}_fe"), height=1.2),
-        Panel(x, Axis("formula / FE"), curves("ratio_to_fe", ""), (Zone("y", *_AGREEMENT), Mark("y", 1.0, "±5 %"))),
-    ]
-    if stress:
-        angle = Axis("fillet tangent to centre line", "deg")
-        panels.append(Panel(x, angle, curves("place_angle", "place_angle_fe")))
-    silent = dict.fromkeys(str(f) for f, r in zip(shown["formula"], shown["reason"], strict=True) if r)
-    out = f" Out of range at some positions (see the table's reasons): {', '.join(silent)}." if silent else ""
-    what = "along the line of action (secant), and its ratio to the finite elements"
-    if stress:
-        what = (
-            "largest fillet stress under a load normal to the flank, its ratio to the finite elements, and its place "
-            "(ISO looks at 30 deg always)"
+    @classmethod
+    def of(cls, data: CrosscheckData, asked: CrosscheckInputs) -> Everything:
+        """What was found beside what was asked."""
+        return cls(
+            {name: GearCompared(gear, data.gears[name]) for name, gear in asked.gears.items()},
+            {name: PairCompared(check, data.pairs[name]) for name, check in asked.pairs.items()},
+            {name: IsoPair(wanted, data.iso[name]) for name, wanted in asked.iso.items()},
         )
-    subject = table.title.split(":", maxsplit=1)[0]
-    return Figure(table.name, table.title, f"{subject}: {what}.{out}", tuple(panels))
+
+    @property
+    def sources(self) -> tuple[FormulaSource, ...]:
+        """Where each closed form comes from."""
+        from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+
+        stress = (FormulaSource(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values())
+        return (*stress, *(FormulaSource(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()))
+
+
+@dataclass(frozen=True)
+class FormulaSource:
+    """Where one closed form comes from and what it compares."""
+
+    formula: str = shown("", table="sources")
+    gives: str = shown("", table="sources")
+    source: str = shown("", table="sources")
+    what_is_compared: str = shown("", table="sources")
+
+
+def _of_pair(seen: Seen) -> str:
+    load = f"{seen.one.check.line_load * 1e-3:.6g} N/mm"
+    return f"Compliance of one tooth pair of pair {seen.key} under {load}: closed forms over finite elements"
+
+
+_ROOT = "Root stress of gear {key}: closed forms over finite elements"
+_TOOTH = (
+    "Compliance of one tooth of gear {key} without its contact, plane {one.gear.plane_assumption}: closed forms over "
+    "finite elements"
+)
+_STRESS_DRAWN = (
+    "largest fillet stress under a load normal to the flank, its ratio to the finite elements, and its place (ISO "
+    "looks at 30 deg always)"
+)
+_COMPLIANCE_DRAWN = "along the line of action (secant), and its ratio to the finite elements"
+_STRESS_TABLE = Rows("crosscheck_root_stress_{key}", _ROOT, ROOT_STRESS_COLUMNS, of="root_stress")
+_TOOTH_TABLE = Rows("crosscheck_compliance_{key}", _TOOTH, GEAR_COMPLIANCE_COLUMNS, of="compliance")
+_PAIR_TABLE = Rows("crosscheck_compliance_{key}", _of_pair, PAIR_COMPLIANCE_COLUMNS, of="compliance")
+
+
+def _silent(title: Text, where: str) -> Callable[[Seen], list[str]]:
+    """Which formulas answer nothing at some positions."""
+
+    def said(seen: Seen) -> list[str]:
+        silent = seen.find(where).silent.items()
+        return [f"{seen.said(title)}: {name} is out of its range at some positions: {why}" for name, why in silent]
+
+    return said
+
+
+def _silent_iso(seen: Seen) -> list[str]:
+    silent = {row.name: row.reason for row in seen.one.rows if row.reason}
+    title = seen.said(ISO_TABLE.title)
+    return [f"{title}: {name} is out of its range at some positions: {why}" for name, why in silent.items()]
+
+
+def _on_load(seen: Seen) -> str:
+    load = f"{seen.one.check.line_load * 1e-3:.6g} N/mm"
+    return f"Pair {seen.key}: no load was given; its contact is that of {load}."
+
+
+_SHEET = Sheet(
+    name=lambda _asked: _WHOLE,
+    of=Everything.of,
+    tables=(
+        Rows("crosscheck_sources", "The closed forms and what each compares", (Every("sources"),), of="sources"),
+        Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
+        Each("pairs", _PAIR_TABLE),
+        Each("iso", ISO_TABLE),
+        Each("gears", SECTION_TABLE, when="cornell"),
+    ),
+    values=(
+        Each("gears", extremes("root_stress", "root_stress"), extremes("compliance", "compliance")),
+        Each(
+            "pairs",
+            extremes("compliance", "compliance"),
+            Number("single_stiffness_fe", owner="{key}"),
+            Number(
+                "single_stiffness_iso", owner="{key}", meaning="ISO 6336-1 c', solid, C_M = 0.8, {one.under}"
+            ),
+            Number("theoretical_stiffness_iso", owner="{key}"),
+            Number("ratio_to_fe", owner="{key}", name="single_stiffness_iso.ratio_to_fe"),
+        ),
+        Each("iso", *ISO_VALUES),
+        Each("gears", *SECTION_VALUES, when="cornell"),
+    ),
+    figures=(
+        Each(
+            "gears",
+            comparison("crosscheck_root_stress_{key}", _ROOT, _STRESS_DRAWN, "root_stress", "roll_angle", stress=True),
+            comparison("crosscheck_compliance_{key}", _TOOTH, _COMPLIANCE_DRAWN, "compliance", "roll_angle"),
+        ),
+        Each("pairs", comparison("crosscheck_compliance_{key}", _of_pair, _COMPLIANCE_DRAWN, "compliance", "x")),
+        Each("gears", section_figure, when="cornell"),
+    ),
+    remarks=(
+        # A case of helical pairs alone compares no spur gear of its own: its remarks come with each pair.
+        lambda seen: _GEAR_REMARKS if seen.asked.gears else (),
+        Remark(_PAIR_REMARK, when="pairs"),
+        Each("pairs", Remark(_on_load, when="check.chosen"), Remark("Pair {key}: {one.remark}", when="remark")),
+        Each("iso", on_iso),
+        Each("gears", _silent(_ROOT, "root_stress"), _silent(_TOOTH, "compliance")),
+        Each("pairs", _silent(_of_pair, "compliance")),
+        Each("iso", _silent_iso),
+    ),
+)  # fmt: skip
 
 
 CROSSCHECK = Stage(
@@ -483,7 +458,7 @@ CROSSCHECK = Stage(
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(
         *ROOT_STRESS_FORMULAS,

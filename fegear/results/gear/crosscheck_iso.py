@@ -1,23 +1,22 @@
-"""ISO 6336 part of the result ``crosscheck``: what a case asks for, and its table of factors and root stresses.
-
-Cornell's root section: its table, and a drawing of it on the tooth that it stands for.
-"""
+"""ISO 6336 part of the result ``crosscheck``, factors and root stresses of each pair; and Cornell's root section."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.engine.declared import column_of
+from fegear.base.shown import shows
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points, outline
 from fegear.engine.figure.panel import Panel
-from fegear.engine.table import Column, Table
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.value import Value
 from fegear.geometry.gear_data import GearData
 from fegear.geometry.outline import tooth_outline
@@ -25,11 +24,13 @@ from fegear.geometry.outline import tooth_outline
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.compared.rated_gears import HelicalCheck, RatedPair
+    from fegear.contact.compared.rated_gears import HelicalCheck, RatedGear, RatedPair
+    from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.settings import MeshSettings
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
-    from fegear.formulas.iso6336.part3_pair import RatingChoice
+    from fegear.formulas.iso6336.part1_stiffness import Stiffness
+    from fegear.formulas.iso6336.part3_pair import RatingChoice, RootRating
     from fegear.geometry.gear import Gear
 
 
@@ -90,96 +91,308 @@ def load_of_stiffness(applied_load: float, load_factor: float) -> str:
     return f"{symbol} = {applied_load * 1e-3:.6g} N/mm"
 
 
-def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tuple[Value, ...], tuple[str, ...]]:
-    """Table, values and remarks of one pair."""
-    ratings = [gear.rating.value for gear in found.gears]
+@dataclass(frozen=True)
+class IsoRow:
+    """Factors and root stresses of one gear by ISO 6336, beside its finite elements; nan where there is none."""
 
-    def column(head: str, unit: str, meaning: str, *path: str) -> Column:
-        values = []
-        for one in ratings:
-            value: object = one
-            for step in path:
-                value = None if value is None else getattr(value, step)
-            values.append(math.nan if value is None else value)
-        return Column(head, np.array(values, dtype=float), unit, meaning)
+    gear: RatedGear
+    role: str
+    name: str
 
-    form, fe = (np.array([getattr(gear, key) for gear in found.gears]) for key in ("form_stress", "fe"))
-    stress = column("sigma_f0", "MPa", "nominal root stress with every factor", "stress")
-    columns = (
-        column_of(GearData, "name", np.array(asked.names)),
-        column("z_n", "", "number of teeth of the virtual spur gear", "teeth"),
-        column("Y_F", "", "form factor without f_epsilon", "form", "Y_F"),
-        column("f_epsilon", "", "load distribution, edition 2019", "load_distribution"),
-        column("Y_S", "", "stress correction factor", "form", "Y_S"),
-        column("Y_beta", "", "helix angle factor", "helix"),
-        column("Y_B", "", "rim thickness factor", "rim"),
-        column("Y_DT", "", "deep tooth factor", "deep_tooth"),
-        stress,
-        Column("form_stress", form, "MPa", "F_t/(b m_n) Y_F Y_S alone"),
-        Column("root_tension_fe", fe, "MPa", "largest root tension of the same (virtual) spur tooth by FE"),
-        Column("ratio_to_fe", form / fe, "", "form_stress over FE"),
-        Column("reason", np.array([gear.reason for gear in found.gears]), "", "why there is nothing"),
+    @property
+    def rating(self) -> RootRating | None:
+        """None where the standard gives none."""
+        return self.gear.rating.value
+
+    def _of(self, *path: str) -> float:
+        value: Any = self.rating
+        for step in path:
+            value = None if value is None else getattr(value, step)
+        return math.nan if value is None else float(value)
+
+    @property
+    @shows("", "number of teeth of the virtual spur gear")
+    def z_n(self) -> float:
+        """z_n."""
+        return self._of("teeth")
+
+    @property
+    @shows("", "form factor without f_epsilon")
+    def Y_F(self) -> float:
+        """Y_F."""
+        return self._of("form", "Y_F")
+
+    @property
+    @shows("", "load distribution, edition 2019")
+    def f_epsilon(self) -> float:
+        """f_epsilon."""
+        return self._of("load_distribution")
+
+    @property
+    @shows("", "stress correction factor")
+    def Y_S(self) -> float:
+        """Y_S."""
+        return self._of("form", "Y_S")
+
+    @property
+    @shows("", "helix angle factor")
+    def Y_beta(self) -> float:
+        """Y_beta."""
+        return self._of("helix")
+
+    @property
+    @shows("", "rim thickness factor")
+    def Y_B(self) -> float:
+        """Y_B."""
+        return self._of("rim")
+
+    @property
+    @shows("", "deep tooth factor")
+    def Y_DT(self) -> float:
+        """Y_DT."""
+        return self._of("deep_tooth")
+
+    @property
+    @shows("MPa", "nominal root stress with every factor")
+    def sigma_f0(self) -> float:
+        """[Pa]."""
+        return self._of("stress")
+
+    @property
+    @shows("MPa", "F_t/(b m_n) Y_F Y_S alone")
+    def form_stress(self) -> float:
+        """[Pa]."""
+        return self.gear.form_stress
+
+    @property
+    @shows("MPa", "largest root tension of the same (virtual) spur tooth by FE")
+    def root_tension_fe(self) -> float:
+        """[Pa]."""
+        return self.gear.fe
+
+    @property
+    @shows("", "form_stress over FE")
+    def ratio_to_fe(self) -> float:
+        """Of both."""
+        return self.gear.form_stress / self.gear.fe
+
+    @property
+    @shows("", "why there is nothing")
+    def reason(self) -> str:
+        """Empty where there is something."""
+        return self.gear.reason
+
+
+@dataclass(frozen=True)
+class IsoPair:
+    """What ISO 6336 gives for one pair, and what it was asked."""
+
+    asked: IsoInputs
+    found: RatedPair
+
+    @property
+    def rows(self) -> tuple[IsoRow, ...]:
+        """Driver first."""
+        parts = zip(self.found.gears, ("driver", "driven"), self.asked.names, strict=True)
+        return tuple(IsoRow(gear, role, name) for gear, role, name in parts)
+
+    @property
+    def rated(self) -> tuple[IsoRow, ...]:
+        """Gears that the standard rates."""
+        return tuple(row for row in self.rows if row.rating is not None)
+
+    @property
+    def stiffness(self) -> Stiffness | None:
+        """Of helical pairs; None where there is none."""
+        return None if self.found.stiffness is None else self.found.stiffness.value
+
+    @property
+    @shows("N/(mm.um)")
+    def single(self) -> float | None:
+        """c' [Pa]."""
+        return None if self.stiffness is None else self.stiffness.single
+
+    @property
+    @shows("N/(mm.um)", "ISO 6336-1 c_gamma_alpha")
+    def mesh_alpha(self) -> float | None:
+        """[Pa]."""
+        return None if self.stiffness is None else self.stiffness.mesh_alpha
+
+    @property
+    def under(self) -> str:
+        """The load that c' is for, in words."""
+        check = self.asked.helical
+        return load_of_stiffness(check.applied_load, check.load_factor) if check else ""
+
+
+def on_iso(seen: Seen) -> Iterator[str]:
+    """Say what was chosen, and what is not given of one pair."""
+    one: IsoPair = seen.one
+    yield from one.asked.said
+    if one.asked.chosen:
+        load = f"F_t/b = {USUAL_SPECIFIC_LOAD * 1e-3:.6g} N/mm"
+        yield f"Pair {seen.key}: no load was given; ISO 6336 takes {load}."
+    if one.found.stiffness is None:
+        return
+    if one.stiffness is None:
+        yield f"Pair {seen.key}: ISO 6336-1 gives no c': {one.found.stiffness.reason}"
+    yield (
+        f"Crosscheck of pair {seen.key}: the helical teeth are compared through their virtual spur teeth; finite "
+        "elements are interpolated between the whole numbers of teeth next to z_n and know no helix."
     )
-    edition = asked.choice.edition
-    table = Table(f"crosscheck_iso_6336_{name}", columns, f"ISO 6336-3:{edition} root stress of pair {name}")
-    values = [
-        Value(f"{name}.{role}.sigma_f0_iso", one.stress, "MPa", None, f"ISO 6336-3:{edition} nominal root stress")
-        for role, one in zip(("driver", "driven"), ratings, strict=True)
-        if one is not None
-    ]
-    remarks = list(asked.said)
-    if asked.chosen:
-        remarks.append(f"Pair {name}: no load was given; ISO 6336 takes F_t/b = {USUAL_SPECIFIC_LOAD * 1e-3:.6g} N/mm.")
-    if found.stiffness is not None:
-        iso = found.stiffness.value
-        if iso is None:
-            remarks.append(f"Pair {name}: ISO 6336-1 gives no c': {found.stiffness.reason}")
-        else:
-            unit, check = "N/(mm.um)", asked.helical
-            under = load_of_stiffness(check.applied_load, check.load_factor) if check else ""
-            values += [
-                Value(f"{name}.single_stiffness_iso", iso.single, unit, None, f"ISO 6336-1 c', solid blank, {under}"),
-                Value(f"{name}.mesh_stiffness_iso", iso.mesh_alpha, unit, None, "ISO 6336-1 c_gamma_alpha"),
-            ]
-        remarks.append(
-            f"Crosscheck of pair {name}: the helical teeth are compared through their virtual spur teeth; finite "
-            "elements are interpolated between the whole numbers of teeth next to z_n and know no helix."
-        )
-    return table, tuple(values), tuple(remarks)
+
+
+#: Of an `IsoPair` whose name is the key.
+ISO_TABLE = Rows(
+    "crosscheck_iso_6336_{key}",
+    lambda seen: f"ISO 6336-3:{seen.one.asked.choice.edition} root stress of pair {seen.key}",
+    (
+        Cell("name", si=lambda seen: np.array(seen.one.asked.names), of=lambda _: GearData),
+        "z_n", "Y_F", "f_epsilon", "Y_S", "Y_beta", "Y_B", "Y_DT", "sigma_f0", "form_stress", "root_tension_fe",
+        "ratio_to_fe", "reason",
+    ),
+    of="rows",
+)  # fmt: skip
+
+
+def _rated(seen: Seen) -> Iterator[Value]:
+    """Nominal root stress of the gears that the standard rates."""
+    edition = seen.one.asked.choice.edition
+    number = Number(
+        "sigma_f0", owner=f"{seen.key}.{{one.role}}", name="sigma_f0_iso", each="rated",
+        meaning=f"ISO 6336-3:{edition} nominal root stress",
+    )  # fmt: skip
+    return number.values(seen)
+
+
+ISO_VALUES = (
+    _rated,
+    Number("single", owner="{key}", name="single_stiffness_iso", meaning="ISO 6336-1 c', solid blank, {one.under}"),
+    Number("mesh_alpha", owner="{key}", name="mesh_stiffness_iso"),
+)
 
 
 #: How far chords may lie off the curves [modules], and points on an arc.
 _CHORD, _ARC = 1e-3, 41
 
 
-def section_table(name: str, gear: Gear, radius: Array, found: SectionLengths) -> tuple[Table, tuple[Value, ...]]:
-    """Table of the section over load positions, and the numbers that do not depend on them."""
-    m, s = gear.module, found.section
-    columns = (
-        Column("radius", radius, "mm", "radius of the load point"),
-        Column("roll_angle", found.roll, "deg", "epsilon"),
-        Column("load_angle", found.load_angle, "deg", "phi' (B.5), of the load against the normal to the centre line"),
-        Column("load_point_angle", found.load_half_angle, "deg", "gamma (B.10), of the load point to the centre line"),
-        Column("load_thickness", found.load_thickness * m, "mm", "h_W (B.6), tooth thickness at the load point"),
-        Column("arm", found.arm * m, "mm", "l_0 (B.9), line of action on the centre line above R_m"),
-        Column("place_angle", found.place, "deg", "gamma_s (B.2), tangent at the section to the centre line"),
-        Column("a", found.a, "", "A (B.3) = h_s/r"),
-        Column("b", found.b, "", "B (B.4) = l_s'/r"),
-        Column("section_thickness", found.thickness * m, "mm", "h_s"),
-        Column("section_to_load", found.to_load * m, "mm", "l_s (B.7)"),
-        Column("section_to_line", found.to_line * m, "mm", "l_s' (B.8)"),
-    )
-    values = (
-        Value(f"{name}.cornell.base_half_angle", s.base_half_angle, "deg", 0.0, "beta"),
-        Value(f"{name}.cornell.fillet_radius", s.fillet_radius * m, "mm", 0.0, "r, the trochoid's smallest"),
-        Value(f"{name}.cornell.fillet_height", s.fillet_height * m, "mm", 0.0, "R_m, where it meets the radial flank"),
-        Value(f"{name}.cornell.root_thickness", s.root_thickness * m, "mm", 0.0, "h_0, tooth thickness there"),
-    )
-    return Table(f"cornell_section_{name}", columns, f"Cornell's root section of gear {name}"), values
+@dataclass(frozen=True)
+class CornellSection:
+    """Cornell's root section of a gear over load positions, shape (N,), in SI; lengths scaled by its module."""
+
+    found: SectionLengths
+    gear: Gear
+    stiffness: StiffnessTable
+
+    @property
+    @shows("mm", "radius of the load point", table="section")
+    def radius(self) -> Array:
+        """[m]."""
+        return self.stiffness.radius
+
+    @property
+    @shows("deg", "epsilon", table="section")
+    def roll_angle(self) -> Array:
+        """[rad]."""
+        return self.found.roll
+
+    @property
+    @shows("deg", "phi' (B.5), of the load against the normal to the centre line", table="section")
+    def load_angle(self) -> Array:
+        """[rad]."""
+        return self.found.load_angle
+
+    @property
+    @shows("deg", "gamma (B.10), of the load point to the centre line", table="section")
+    def load_point_angle(self) -> Array:
+        """[rad]."""
+        return self.found.load_half_angle
+
+    @property
+    @shows("mm", "h_W (B.6), tooth thickness at the load point", table="section")
+    def load_thickness(self) -> Array:
+        """[m]."""
+        return self.found.load_thickness * self.gear.module
+
+    @property
+    @shows("mm", "l_0 (B.9), line of action on the centre line above R_m", table="section")
+    def arm(self) -> Array:
+        """[m]."""
+        return self.found.arm * self.gear.module
+
+    @property
+    @shows("deg", "gamma_s (B.2), tangent at the section to the centre line", table="section")
+    def place_angle(self) -> Array:
+        """[rad]."""
+        return self.found.place
+
+    @property
+    @shows("", "A (B.3) = h_s/r", table="section")
+    def a(self) -> Array:
+        """A."""
+        return self.found.a
+
+    @property
+    @shows("", "B (B.4) = l_s'/r", table="section")
+    def b(self) -> Array:
+        """B."""
+        return self.found.b
+
+    @property
+    @shows("mm", "h_s", table="section")
+    def section_thickness(self) -> Array:
+        """[m]."""
+        return self.found.thickness * self.gear.module
+
+    @property
+    @shows("mm", "l_s (B.7)", table="section")
+    def section_to_load(self) -> Array:
+        """[m]."""
+        return self.found.to_load * self.gear.module
+
+    @property
+    @shows("mm", "l_s' (B.8)", table="section")
+    def section_to_line(self) -> Array:
+        """[m]."""
+        return self.found.to_line * self.gear.module
+
+    @property
+    @shows("deg", "beta")
+    def base_half_angle(self) -> float:
+        """[rad]."""
+        return self.found.section.base_half_angle
+
+    @property
+    @shows("mm", "r, the trochoid's smallest")
+    def fillet_radius(self) -> float:
+        """[m]."""
+        return self.found.section.fillet_radius * self.gear.module
+
+    @property
+    @shows("mm", "R_m, where it meets the radial flank")
+    def fillet_height(self) -> float:
+        """[m]."""
+        return self.found.section.fillet_height * self.gear.module
+
+    @property
+    @shows("mm", "h_0, tooth thickness there")
+    def root_thickness(self) -> float:
+        """[m]."""
+        return self.found.section.root_thickness * self.gear.module
 
 
-def section_figure(name: str, gear: Gear, fe: StiffnessTable, found: SectionLengths) -> Figure:
+#: Of what has a `CornellSection` as ``cornell``, and the gear's name as the key.
+SECTION_TABLE = Rows("cornell_section_{key}", "Cornell's root section of gear {key}", (Every("section"),), of="cornell")
+SECTION_VALUES = tuple(
+    Number(key, lambda _: 0.0, "cornell", owner="{key}.cornell")
+    for key in ("base_half_angle", "fillet_radius", "fillet_height", "root_thickness")
+)
+
+
+def section_figure(seen: Seen) -> Iterator[Figure]:
     """Cornell's tooth over the generated one, with the load that stresses it most and both places of the stress."""
+    shown = seen.one.cornell
+    name, gear, fe, found = seen.key, shown.gear, shown.stiffness, shown.found
     tooth, s, mm = gear.tooth, found.section, gear.module * 1e3
     i = int(np.argmax(fe.root_tension))
     r, r_b, beta, phi = s.fillet_radius, s.base_radius, s.base_half_angle, float(found.load_angle[i])
@@ -212,7 +425,7 @@ def section_figure(name: str, gear: Gear, fe: StiffnessTable, found: SectionLeng
         Points([fe_at[0] * 1e3], [fe_at[1] * 1e3], f"place by finite elements, {fe_angle:.1f}°", "blue", "square"),
     )
     x, y = Axis("x", "mm", limits=(-across * mm, across * mm)), Axis("y", "mm", limits=(low * mm, high * mm))
-    return Figure(
+    yield Figure(
         f"cornell_section_{name}",
         f"Cornell's root section of gear {name}",
         f"Gear {name}: the tooth with the load that stresses its root most by finite elements, at radius "
