@@ -58,6 +58,8 @@ class Effect:
         Whether plane teeth know it, as those with a width do.
     on : bool or str
         Value that switches it on.
+    words : str
+        What figures call it, where that is not its name.
     """
 
     needs: str
@@ -66,6 +68,7 @@ class Effect:
     of: Literal["teeth", "flanks", "motion"] = "teeth"
     plane: bool = True
     on: bool | str = True
+    words: str = ""
 
 
 def _always(_pair: Described) -> bool:
@@ -96,7 +99,13 @@ class EffectsPart(Part):
     ] = Field(default=False, description="Whether a loaded tooth bends its neighbours through the body.")  # fmt: skip
     hertz: Annotated[
         Literal["load-dependent", "linear", "none"],
-        Effect("a source with a contact of its own: no table", ("nonlinear steps",), _always, on="load-dependent"),
+        Effect(
+            "a source with a contact of its own: no table",
+            ("nonlinear steps",),
+            _always,
+            on="load-dependent",
+            words="contacts that widen with load",
+        ),
     ] = Field(
         default="none",
         description="Contact deformation: as it grows with the load, linearised at the nominal load, or neglected.",
@@ -125,9 +134,12 @@ class EffectsPart(Part):
             lambda _pair: False, of="motion",
         ),
     ] = Field(default=False, description="Sliding friction between the teeth.")  # fmt: skip
-    parametric: Annotated[bool, Effect("results in time", ("springs in time",), _moving, of="motion")] = Field(
-        default=False, description="Whether the mesh stiffness varies in time."
-    )
+    parametric: Annotated[
+        bool,
+        Effect(
+            "results in time", ("springs in time",), _moving, of="motion", words="stiffness that varies in time"
+        ),
+    ] = Field(default=False, description="Whether the mesh stiffness varies in time.")  # fmt: skip
     torque_ripple: Annotated[
         bool,
         Effect("`train.torque_ripple`", ("ripple lines",), lambda pair: pair.rippling, of="motion"),

@@ -234,9 +234,6 @@ _TITLES = {
 }
 
 
-_NAMES = {"hertz": "contacts that widen with load", "parametric": "stiffness that varies in time"}
-
-
 _ABSCISSAE = {"x": "position on the line of action", "speed": "speed", "phi1": "pinion angle"}
 
 
@@ -292,7 +289,7 @@ def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Fig
     title : str
         Of the case.
     """
-    name = _NAMES.get(found.effect, found.effect.replace("_", " "))
+    name = EFFECTS[found.effect].words or found.effect.replace("_", " ")
     name = f"{name[0].upper()}{name[1:]}"
     panels, what = _compared(curve, f"{name}\n{title}"), "what it takes" if curve is None else "the change"
     seconds = (

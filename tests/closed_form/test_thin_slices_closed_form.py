@@ -113,7 +113,7 @@ def test_neighbours_answer_where_both_lines_pass():
     before, after = (np.concatenate([f(x) for x in z]) for f in (
         lambda x: np.append(0.0, np.diff(x)), lambda x: np.append(np.diff(x), 0.0)))  # fmt: skip
     line = bands(radius, np.concatenate(z), before, 0.2, after=after, slope=body.line_slope(radius))
-    block = body.pressed(line, [slice(0, 6), slice(6, 10)]).between(1, [(0, 1)])[0]
+    block = body.pressed(line, [slice(0, 6), slice(6, 10)], [1, 0]).between(1, 0, [(0, 1)])[0]
     edges = np.linspace(0.5, 3.0, 4001)
     fine = 0.5 * (edges[1:] + edges[:-1])
     at = [np.hypot(rb, np.interp(fine, x, r)) for x, r in zip(z, rolled, strict=True)]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fegear.contact.plane.compliance import AlikeTeeth
+from fegear.fem.teeth import AlikeTeeth
 from fegear.geometry.gear import Gear
 
 

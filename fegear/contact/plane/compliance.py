@@ -6,9 +6,8 @@ the pair's Hertzian half-width b(W)
 
     c_0(W) = own(tooth, radius) + kappa ln(b_ref / b(W)).
 
-Every tooth has a number. Numbers rise toward the side that a load comes from: tooth i + 1 is ahead of tooth i of a
-driving gear, behind it of a driven one; they go on through any number of turns. Where all teeth are alike an answer
-depends on the difference of two numbers only, `period` is 1, and everything that is made of answers is kept once.
+Every tooth has a number (`fegear.fem.teeth`). Where all teeth are alike an answer depends on the difference of two
+numbers only, and everything that is made of answers is kept once.
 """
 
 from __future__ import annotations
@@ -22,11 +21,12 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.fem.plane.root_stress import FilletCurve
+from fegear.fem.teeth import AlikeTeeth, Teeth
 
 Side = Literal["tension", "compression"]
 
 
-class RootStressInfluence(Protocol):
+class RootStressInfluence(Teeth, Protocol):
     """Root stress of one gear's teeth per unit line load, whether from finite elements or from a formula."""
 
     @property
@@ -36,13 +36,6 @@ class RootStressInfluence(Protocol):
     @property
     def remarks(self) -> tuple[str, ...]:
         """What the source says of its own values; empty when nothing."""
-
-    @property
-    def period(self) -> int:
-        """Teeth after which all answers repeat: 1 where they are alike, else those of the gear."""
-
-    def same_as(self, first: int, count: int) -> int:
-        """First of `count` successive teeth that answer as those from `first` on: the same for all that do."""
 
     def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """Stress along a fillet of tooth i per unit line load at q of tooth j, (points, Q) [1/m]; None if unknown."""
@@ -107,17 +100,6 @@ def largest_stress(curve: FilletCurve | None, stress: Array, side: Side, radius:
     if curve is not None:
         return curve.largest(stress, radius)[0]
     return np.asarray(stress.max(axis=0) if side == "tension" else stress.min(axis=0))
-
-
-class AlikeTeeth:
-    """Base of sources whose teeth are all alike."""
-
-    __slots__ = ()
-    period = 1
-
-    def same_as(self, first: int, count: int) -> int:  # noqa: ARG002  (the interface)
-        """Any are the same: 0."""
-        return 0
 
 
 class OneTooth(AlikeTeeth):

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.contact.plane.compliance import AlikeTeeth
 from fegear.contact.plane.spline import Spline, spline
 from fegear.fem.plane.contact_width import corner_angles, wedge_slope
+from fegear.fem.teeth import AlikeTeeth
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

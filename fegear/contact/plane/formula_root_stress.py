@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
-from fegear.contact.plane.compliance import AlikeTeeth, Side
+from fegear.contact.plane.compliance import Side
 from fegear.contact.plane.spline import Spline, spline
 from fegear.fem.plane.root_stress import FilletCurve
+from fegear.fem.teeth import AlikeTeeth
 from fegear.formulas.outcome import Outcome, RootStress, RootStressSource, attempt
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
 from fegear.geometry.gear import Gear

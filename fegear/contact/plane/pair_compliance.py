@@ -13,6 +13,7 @@ from fegear.base.tally import tallied
 from fegear.contact.contact_law import LINEAR, ContactLaw
 from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
+from fegear.fem.teeth import together
 from fegear.formulas.palmgren import EXPONENT
 from fegear.geometry.pair import MEMBERS
 
@@ -121,7 +122,7 @@ class PairCompliance:
         return math.lcm(self.driver.period, self.driven.period)
 
     def tooth(self, member: Member, number: int, cycle: int) -> int:
-        """Number of a gear's tooth on a pair in a base pitch; see `fegear.contact.plane.compliance`.
+        """Number of a gear's tooth on a pair in a base pitch; see `fegear.fem.teeth`.
 
         Parameters
         ----------
@@ -272,7 +273,4 @@ class PairCompliance:
 
     def _alike(self, number: NDArray[np.int64], k: int, cycle: int) -> list[NDArray[np.intp]]:
         """Rows j of pairs such that pairs j and j + k are on like teeth: all of them at once where all teeth are."""
-        found: dict[tuple[int, int], list[int]] = {}
-        for j in range(number.size - k):
-            found.setdefault(self.pattern(number[j : j + k + 1], cycle), []).append(j)
-        return [np.array(rows) for rows in found.values()]
+        return together(self.pattern(number[j : j + k + 1], cycle) for j in range(number.size - k))

@@ -10,9 +10,10 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_stress
 from fegear.contact.plane.stress_rows import Rows, StressRows
+from fegear.fem.teeth import together
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
@@ -91,7 +92,7 @@ def root_stress_history(
     asked = (x > low) & (x < high)
     stress = np.full(touching.shape, np.nan)
     teeth = [engagement.compliance.tooth(member, int(contacts.number[0] + at), loaded.cycle) for at in places]
-    for rows in _together([known.same_as(tooth, 1) for tooth in teeth]):
+    for rows in together([known.same_as(tooth, 1) for tooth in teeth]):
         wanted = asked[rows]
         flat = np.stack([along[row] for row in rows])[wanted]
         curve = known.fillet_curve(teeth[rows[0]], side)
@@ -100,14 +101,6 @@ def root_stress_history(
         part[wanted] = found.reshape(-1, touching.shape[2])
         stress[rows] = part
     return RootStressHistory(member, side, x, stress)
-
-
-def _together(keys: Iterable[Hashable]) -> list[NDArray[np.intp]]:
-    """Numbers of equal keys, together in the order in which keys come."""
-    found: dict[Hashable, list[int]] = {}
-    for number, key in enumerate(keys):
-        found.setdefault(key, []).append(number)
-    return [np.array(numbers) for numbers in found.values()]
 
 
 def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
@@ -149,7 +142,7 @@ def superposed_stress(
     numbers = [engagement.compliance.tooth(member, int(j), loaded.cycle) for j in contacts.number]
     step = engagement.compliance.tooth(member, 1, 0) - engagement.compliance.tooth(member, 0, 0)
     carrying: list[tuple[int, Felt]] = []
-    for like in _together([source.same_as(number - reach, 2 * reach + 1) for number in numbers]):
+    for like in together([source.same_as(number - reach, 2 * reach + 1) for number in numbers]):
         rows = _rows(source, reach, numbers[like[0]], radius[like][carries[like]], side)
         first = np.concatenate([[0], np.cumsum(carries[like].sum(axis=1))])
         for i, j in enumerate(like):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.plane.compliance import AlikeTeeth
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, chebyshev_over, roll_length
 from fegear.contact.plane.spline import Spline
+from fegear.fem.teeth import AlikeTeeth
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

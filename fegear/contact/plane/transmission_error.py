@@ -13,6 +13,7 @@ from fegear.base.errors import InputError
 from fegear.base.shown import shows
 from fegear.contact.changes import sign_changes
 from fegear.contact.fourier import SIDE, FourierSeries, Panels, effective_error, fourier_series, panels
+from fegear.fem.teeth import together
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -226,10 +227,7 @@ def _by_teeth(engagement: Engagement, grid: RollGrid, cycles: int) -> list[NDArr
     """Numbers of the base pitches, those in which like teeth meet together: all where all teeth are alike."""
     if engagement.compliance.cycles == 1:
         return [np.arange(cycles)]
-    found: dict[tuple[int, int], list[int]] = {}
-    for cycle in range(cycles):
-        found.setdefault(engagement.compliance.pattern(grid.contacts.number, cycle), []).append(cycle)
-    return [np.array(pitches) for pitches in found.values()]
+    return together(engagement.compliance.pattern(grid.contacts.number, cycle) for cycle in range(cycles))
 
 
 def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int, order: int = 8) -> FourierSeries:

@@ -2,15 +2,15 @@
 
 Each gear is seen in its own drawing, loaded flank toward +x: turning the driven gear's by half a turn about the axis
 lays both together, so heights z count alike on both, and hands are opposite. A ring is drawn as its own mirror image
-(`Gear.flank_twist`), and its mate has its hand. Pair j + 1 is ahead of pair j: its teeth are k = +1 seen from the
-driver's loaded tooth and k = -1 seen from the driven gear's.
+(`Gear.flank_twist`), and its mate has its hand. Teeth have numbers (`fegear.fem.teeth`): in base pitch p pair j is on
+tooth j - p of the driver and on tooth p - j of the driven gear.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -111,6 +111,7 @@ def flank_compliance(
     coupling: bool = True,
     hertz: Hertz = "load-dependent",
     cache: SolutionCache | None = None,
+    cycle: int = 0,
 ) -> FlankCompliance:
     """Assemble the compliance of all stations at all roll positions.
 
@@ -127,6 +128,8 @@ def flank_compliance(
         The half-width follows each station's own line load; is that of the mean line load at `load`; or 0.08 modules.
     cache : SolutionCache, optional
         Where what does not depend on the load is recalled from and kept.
+    cycle : int
+        Number of the base pitch: which teeth are on the pairs.
 
     Returns
     -------
@@ -142,14 +145,29 @@ def flank_compliance(
     mean = _line_means(lines, b)
     # Apart, so that a changed load has little to find anew, and changed gaps nothing.
     known = cache or SolutionCache()
-    own = known.call_kept(_PLAIN, _own, pair, gears, lines).value
-    matrix = own + known.call_kept(_PLAIN, _widened, pair, gears, lines, b, mean).value
+    first = like_cycle(gears, lines, cycle)
+    own = known.call_kept(_PLAIN, _own, pair, gears, lines, first).value
+    matrix = own + known.call_kept(_PLAIN, _widened, pair, gears, lines, b, mean, first).value
     if coupling:
-        matrix += known.call_kept(_PLAIN, _beside, pair, gears, lines).value
+        matrix += known.call_kept(_PLAIN, _beside, pair, gears, lines, first).value
     index = np.arange(lines.x.shape[1])
     matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
     log_slope = sum(gears[m].contact_slope / pair.gear(m).material.young_modulus for m in MEMBERS)
     return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b, mean)
+
+
+def like_cycle(gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int) -> int:
+    """The first base pitch whose teeth answer as those of another: 0 where all teeth are alike."""
+    pairs = lines.pair[lines.present]
+    low, high = int(pairs.min()), int(pairs.max())
+
+    def pattern(number: int) -> tuple[int, int]:
+        starts = zip(MEMBERS, (low - number, number - high), strict=True)
+        driver, driven = (gears[member].same_as(first, high - low + 1) for member, first in starts)
+        return driver, driven
+
+    every = math.lcm(*(gears[member].period for member in MEMBERS))
+    return next(number for number in range(every) if pattern(number) == pattern(cycle))
 
 
 def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
@@ -159,26 +177,31 @@ def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]
     return places, [slice(a, b) for a, b in itertools.pairwise(ends)]
 
 
-def _own(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines) -> Array:
+def _own(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int) -> Array:
     """What each line does to itself under contacts of half-width one metre, less what `_widened` adds, (P, M, M)."""
     module = pair.driver.module
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
         softer, log = _softer(pair, member), 2.0 * math.log(module) * gears[member].contact_slope
-        for places, pressed in _pressed(pair, gears, member, lines):
+        for places, pressed in _pressed(pair, gears, member, lines, cycle):
             for (p, s), own, common in zip(places, pressed.own(), pressed.common, strict=True):
                 matrix[p, s, s] += softer * (own + log * common)
     return matrix
 
 
 def _widened(
-    pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, half_width: Array, mean: Array
+    pair: GearPair,
+    gears: Mapping[Member, FlankBody],
+    lines: ContactLines,
+    half_width: Array,
+    mean: Array,
+    cycle: int,
 ) -> Array:
     """What half-widths change, those of the stations and of their lines, (P, M) [m]; cheap, shape (P, M, M)."""
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
         softer, slope = _softer(pair, member), gears[member].contact_slope
-        for places, pressed in _pressed(pair, gears, member, lines):
+        for places, pressed in _pressed(pair, gears, member, lines, cycle):
             width = np.concatenate([half_width[p, s] for p, s in places]) / pair.driver.module
             for (p, s), wider, common in zip(places, pressed.widened(width), pressed.common, strict=True):
                 matrix[p, s, s] += softer * (wider - 2.0 * math.log(mean[p, s.start]) * slope * common)
@@ -186,24 +209,32 @@ def _widened(
 
 
 @tallied("neighbours")
-def _beside(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines) -> Array:
+def _beside(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int) -> Array:
     """What the lines of each roll position do to each other, shape (P, M, M); its transpose by Maxwell."""
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
-        softer, forward, reach = _softer(pair, member), 1 if member == "driver" else -1, gears[member].reach
-        for places, pressed in _pressed(pair, gears, member, lines):
-            tooth = [forward * int(lines.pair[p, s.start]) for p, s in places]
-            found: dict[int, list[tuple[int, int]]] = {}
+        body, softer = gears[member], _softer(pair, member)
+        for places, pressed in _pressed(pair, gears, member, lines, cycle):
+            tooth = _teeth(member, lines, places, cycle)
+            found: dict[tuple[int, int], list[tuple[int, int]]] = {}
             for _, group in itertools.groupby(range(len(places)), key=lambda line: places[line][0]):
                 for a, b in itertools.combinations(group, 2):
-                    if abs(tooth[a] - tooth[b]) <= reach:
-                        found.setdefault(tooth[a] - tooth[b], []).append((a, b))
-            for k, pairs in found.items():
-                for (a, b), block in zip(pairs, pressed.between(k, pairs), strict=True):
+                    if abs(k := tooth[a] - tooth[b]) <= body.reach:
+                        like = body.same_as(min(tooth[a], tooth[b]), abs(k) + 1)
+                        found.setdefault((k, like), []).append((a, b))
+            for pairs in found.values():
+                i, j = (tooth[line] for line in pairs[0])
+                for (a, b), block in zip(pairs, pressed.between(i, j, pairs), strict=True):
                     (p, first), (_, second) = places[a], places[b]
                     matrix[p, first, second] += softer * block
                     matrix[p, second, first] += softer * block.T
     return matrix
+
+
+def _teeth(member: Member, lines: ContactLines, places: Sequence[tuple[int, slice]], cycle: int) -> list[int]:
+    """Numbers of a gear's teeth on contact lines in a base pitch."""
+    forward = 1 if member == "driver" else -1
+    return [forward * (int(lines.pair[p, s.start]) - cycle) for p, s in places]
 
 
 def _softer(pair: GearPair, member: Member) -> float:
@@ -212,7 +243,7 @@ def _softer(pair: GearPair, member: Member) -> float:
 
 
 def _pressed(
-    pair: GearPair, gears: Mapping[Member, FlankBody], member: Member, lines: ContactLines
+    pair: GearPair, gears: Mapping[Member, FlankBody], member: Member, lines: ContactLines, cycle: int
 ) -> Iterator[tuple[list[tuple[int, slice]], FlankLines]]:
     """Press the lines on one gear, those of some roll positions at a time: where they stand, and what they answer."""
     body = gears[member]
@@ -223,7 +254,8 @@ def _pressed(
         some = list(group)
         start, stop = spans[some[0]].start, spans[some[-1]].stop
         moved = [slice(spans[i].start - start, spans[i].stop - start) for i in some]
-        yield [places[i] for i in some], body.pressed(line.part(slice(start, stop)), moved)
+        here = [places[i] for i in some]
+        yield here, body.pressed(line.part(slice(start, stop)), moved, _teeth(member, lines, here, cycle))
 
 
 def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLines) -> Bands:

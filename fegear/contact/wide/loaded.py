@@ -318,8 +318,8 @@ class FlankPair:
         """Roll positions [m]."""
         return self.points.x
 
-    def compliance(self, load: float, roll: Array | None = None) -> FlankCompliance:
-        """Lines and compliances at all roll positions, or at those given; see `flank_compliance` for `load`.
+    def compliance(self, load: float, roll: Array | None = None, cycle: int = 0) -> FlankCompliance:
+        """Lines and compliances at all roll positions, or at those given; see `flank_compliance` for `load`, `cycle`.
 
         Recalled where they are known: changed gaps change nothing of them.
         """
@@ -327,8 +327,9 @@ class FlankPair:
             if self.gears[member].reach == 0 and self.coupling:
                 raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
         if roll is not None:  # places between these, which the next gaps move
-            return _compliance(self, load, roll)
-        return self.cache.call(_compliance, self, load).value
+            return _compliance(self, load, cycle, roll)
+        every = math.lcm(*(self.gears[member].period for member in MEMBERS))
+        return self.cache.call(_compliance, self, load, cycle % every).value
 
     def solve(
         self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None
@@ -341,7 +342,8 @@ class FlankPair:
             Along the transverse line of action [N].
         gaps : FlankGaps, optional
         known : FlankCompliance, optional
-            What `compliance` gave: the same for all gaps, and for all loads about the one it was made for.
+            What `compliance` gave: the same for all gaps of a base pitch, of all where all teeth are alike, and for
+            all loads about the one it was made for.
 
         Returns
         -------
@@ -356,16 +358,17 @@ class FlankPair:
         loads = np.atleast_1d(np.asarray(load, dtype=float))
         if not (np.isfinite(loads) & (loads > 0.0)).all():
             raise InputError("load", f"{loads.min()} N", "must be positive and finite")
-        known = self.compliance(float(loads.max())) if known is None else known
+        gaps = gaps or FlankGaps()
+        known = self.compliance(float(loads.max()), cycle=gaps.base_pitch) if known is None else known
         assembled = time.perf_counter()
         with one_thread(with_scipy=False):
-            apart = (gaps or FlankGaps()).at(self.pair, known.lines, loads)
+            apart = gaps.at(self.pair, known.lines, loads)
             known, contact = solve_spots(known, apart, loads, self.progress)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)
 
 
-def _compliance(flanks: FlankPair, load: float, roll: Array | None = None) -> FlankCompliance:
+def _compliance(flanks: FlankPair, load: float, cycle: int, roll: Array | None = None) -> FlankCompliance:
     if roll is None:
         points = flanks.points
         roll, weight = points.x, points.weights / points.period
@@ -374,5 +377,6 @@ def _compliance(flanks: FlankPair, load: float, roll: Array | None = None) -> Fl
     lines = contact_lines(flanks.pair, roll, flanks.panel * flanks.pair.driver.module, weight, flanks.most_gap)
     with one_thread(with_scipy=False):
         return flank_compliance(
-            flanks.pair, flanks.gears, lines, load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache
-        )
+            flanks.pair, flanks.gears, lines, load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache,
+            cycle=cycle,
+        )  # fmt: skip

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
+from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
 from fegear.contact.wide.lines import ContactLines, base_twist
@@ -270,6 +271,8 @@ def rooted_lines(
     coupling : bool
         Whether a tooth feels the loads of those beside it.
     """
+    if solution.period > 1:
+        raise InputError("gear", "teeth that differ", "are not known to root stress over the face")
     places, _ = places_of(lines)
     bands = line_bands(pair, member, solution, lines)
     reach = abs(base_twist(pair)) * 0.5 * pair.face_width + (pair.base_pitch if coupling else 0.0)

@@ -103,9 +103,9 @@ class PressedLines:
         return [block + solution.normal_length * _at_the_faces(solution, line.part(span), mean)
                 for span, block, mean in zip(self._spans, found, means, strict=True)]  # fmt: skip
 
-    def between(self, k: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
-        """c_k between lines on different teeth, by their numbers: seen on the first, pressed on the second."""
-        answers = self._answered(k, [self._spans[pressed] for _, pressed in pairs])
+    def between(self, i: int, j: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
+        """c_k, k = i - j, between lines on teeth i and j: seen on the first, pressed on the second."""
+        answers = self._answered(i - j, [self._spans[pressed] for _, pressed in pairs])
         return [self._loads[:, self._spans[seen]].T @ answer
                 for (seen, _), answer in zip(pairs, answers, strict=True)]  # fmt: skip
 

@@ -14,6 +14,7 @@ from fegear.fem.plane.influence import curvature_slope
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands
 from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.teeth import AlikeTeeth, Teeth
 from fegear.geometry.involute_tooth import InvoluteTooth
 
 if TYPE_CHECKING:
@@ -45,11 +46,11 @@ class FlankLines(Protocol):
     def widened(self, half_width: Array) -> list[Array]:
         """What the contacts' half-widths, shape (all P,), change beside their logarithm, (P, P) for each line."""
 
-    def between(self, k: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
-        """c_k between lines on different teeth, by their numbers: seen on the first, pressed on the second."""
+    def between(self, i: int, j: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
+        """c_ij between lines of pairs by their places: seen on the first, on tooth i, pressed on the second, on j."""
 
 
-class FlankBody(Protocol):
+class FlankBody(Teeth, Protocol):
     """A gear whose flank can be pressed along contact lines."""
 
     @property
@@ -74,11 +75,11 @@ class FlankBody(Protocol):
     def line_slope(self, radius: ArrayLike) -> Array:
         """Arc up the flank per length along the face of the contact line through a radius, shape (P,)."""
 
-    def pressed(self, line: Bands, spans: Sequence[slice]) -> FlankLines:
-        """Press contact lines on it."""
+    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> FlankLines:
+        """Press contact lines on its teeth, by their numbers."""
 
 
-class TwistedFlank:
+class TwistedFlank(AlikeTeeth):
     """What the flank of a gear with a width is by its shape alone; lengths in modules."""
 
     tooth: InvoluteTooth

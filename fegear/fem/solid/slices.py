@@ -234,7 +234,7 @@ class ThinSlices(TwistedFlank):
     settings: SolidSettings
     seconds: Mapping[str, float]
 
-    def pressed(self, line: Bands, spans: Sequence[slice]) -> ThinLines:
+    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> ThinLines:  # noqa: ARG002
         """Press contact lines on it."""
         return ThinLines(self, line, spans)
 
@@ -254,9 +254,9 @@ class ThinLines:
         """What the contacts' half-widths change beside their logarithm, (P, P) for each line."""
         return widened_by_curvature(self._body, self._line, self._spans, self.common, half_width)
 
-    def between(self, k: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
-        """c_k between lines on different teeth: of slices where both lines pass."""
-        return self._products(k, pairs)
+    def between(self, i: int, j: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
+        """c_k, k = i - j, between lines on teeth i and j: of slices where both lines pass."""
+        return self._products(i - j, pairs)
 
     def _products(self, k: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
         """Integrals of the bands' profiles on two lines times what the slices there answer, (P, Q) each."""
