@@ -1,0 +1,200 @@
+"""The everyday questions as the cases that they are: what each puts into its document; nothing is run."""
+
+import math
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import fegear
+from fegear.base.errors import InputError
+from fegear.workbench import questions
+from fegear.workbench.pair import Pair
+from fegear.workbench.results import Results
+
+PINION = fegear.Gear(20, "3 mm", name="pinion", face_width="10 mm")
+WHEEL = fegear.Gear(33, "3 mm", name="wheel", face_width="10 mm")
+BASE = 0.03 * math.cos(math.radians(20.0))
+
+
+@pytest.fixture
+def pair():
+    return fegear.Pair(PINION, WHEEL, compliance="cornell")
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """The scenes that would be run, with what they are run with."""
+    scenes = []
+    monkeypatch.setattr(questions, "run_scene", lambda scene, **how: scenes.append((scene, how)) or scene)
+    return scenes
+
+
+def test_loads_along_the_line_of_action_are_torques_over_the_base_radius(pair, asked):
+    one = fegear.transmission_error(pair, torque="90 N*m").case.pair["I"]
+    assert (one.torque, one.load, one.loads) == (90.0, None, None)
+    several = fegear.transmission_error(pair, torque=["30 N*m", 90.0]).case.pair["I"]
+    assert several.loads == pytest.approx([30.0 / BASE, 90.0 / BASE])
+    forces = fegear.load_sharing(pair, load=["1 kN", 2500.0])
+    assert forces.case.pair["I"].loads == pytest.approx([1000.0, 2500.0])
+    assert forces.case.results == ["load-sharing"]
+    assert forces.case.title == "Load sharing of pinion and wheel"
+    for wrong in ({}, {"torque": "90 N*m", "load": "1 kN"}):
+        with pytest.raises(InputError, match="must be given, or load instead"):
+            fegear.transmission_error(pair, **wrong)
+    with pytest.raises(InputError, match=r"is no fegear\.Pair"):
+        fegear.transmission_error(PINION, torque="90 N*m")
+
+
+def test_what_is_neglected_is_sized_only_where_asked_and_tolerances_are_the_case_s(pair, asked):
+    plain = fegear.root_stress(pair, load="1 kN")
+    assert plain.case.results == ["root-stress-history"]
+    asking = fegear.root_stress(pair, load="1 kN", neglected=True, tolerance=3e-2, effects={"hertz": "linear"})
+    assert (asking.neglects, asking.case.accuracy.tolerance) == (True, 3e-2)
+    assert asking.case.effects.hertz == "linear"
+    assert plain.neglects is False
+    assert asked[0][1]["cache"] is pair.known  # what was solved for the pair is recalled
+    with pytest.raises(InputError, match="is for gears"):
+        fegear.root_stress(pair, load="1 kN", positions=3)
+
+
+def test_tables_of_gears_stand_where_they_are_asked_for(asked):
+    table = fegear.stiffness_table(PINION, ["29 mm", 0.031], contact_half_width="40 um", tolerance=1e-2).case
+    assert (table.results, table.stiffness.gear) == (["stiffness"], "pinion")
+    assert table.stiffness.radii == pytest.approx((0.029, 0.031))
+    assert table.stiffness.contact_half_width == pytest.approx(40e-6)
+    assert fegear.stiffness_table(PINION, "29 mm").case.stiffness.radii == pytest.approx((0.029,))
+    over_face = fegear.stiffness_table(PINION, positions=7, face_positions=5, source="slices").case.stiffness
+    assert (over_face.positions, over_face.face_positions, over_face.source) == (7, 5, "slices")
+    assert table.title == "Stiffness of pinion"
+    with pytest.raises(InputError, match=r"is no fegear\.Gear"):
+        fegear.stiffness_table("pinion")
+
+
+def test_root_stress_of_gears_is_compared_at_twenty_places(asked):
+    both = fegear.root_stress([PINION, WHEEL]).case
+    assert (both.results, both.stiffness.positions, list(both.gear)) == (["crosscheck"], 20, ["pinion", "wheel"])
+    assert both.title == "Root stress and compliance of pinion and wheel"
+    three = fegear.Gear(17, "3 mm", name="third", face_width="10 mm")
+    assert fegear.root_stress((PINION, WHEEL, three)).case.title.endswith("of pinion, wheel and third")
+    assert fegear.root_stress(PINION, positions=3).case.stiffness.positions == 3
+    for wrong, words in (
+        ([], "must be gears"), ([PINION, "x"], "must be gears"), (3, "must be gears"),
+        ([PINION, PINION], "name of several"),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=words):
+            fegear.root_stress(wrong)
+    for key in ("torque", "load", "effects"):
+        with pytest.raises(InputError, match="is for pairs"):
+            fegear.root_stress(PINION, **{key: {"relief": True} if key == "effects" else "1 kN"})
+
+
+def test_reliefs_are_designed_for_the_pair_under_its_load(pair, asked):
+    case = fegear.relief(pair, load="1 kN", design={"grind": ["linear"]}).case
+    assert (case.results, case.design.pair, case.design.grind) == (["relief"], "I", ["linear"])
+    assert case.pair["I"].load == 1000.0
+
+
+def test_two_gears_turn_between_steady_torques_where_no_train_is_given(pair, monkeypatch):
+    @dataclass(frozen=True)
+    class Plan:
+        remarks: tuple = ("first",)
+
+    @dataclass(frozen=True)
+    class Found:
+        plan: Plan = field(default_factory=Plan)
+
+    documents = []
+    monkeypatch.setattr(questions, "ask_of_pair", lambda *given, **how: documents.append(given[2]) or Found())
+    found = fegear.dynamic_factor(pair, torque="90 N*m", speeds="9000 rpm")
+    (document,) = documents
+    assert document["train"] == {
+        "body": {"driver": {"gears": ["pinion"]}, "driven": {"gears": ["wheel"]}},
+        "mesh": {"I": {"driver": "driver", "driven": "driven", "damping_ratio": 0.1}},
+        "torque": {"driver": "90 N*m"}, "balance": "driven",
+    }  # fmt: skip
+    assert document["dynamics"] == {"speeds": ["9000 rpm"]}
+    assert found.plan.remarks[0] == "first"
+    assert found.plan.remarks[1].endswith("No damping_ratio was given; assumed default: 0.1 in the mesh.")
+    told = fegear.dynamic_factor(pair, torque="90 N*m", speeds=["1 rpm", "2 rpm"], damping_ratio=0.0,
+                                 dynamics={"direction": "up"})  # fmt: skip
+    assert documents[1]["train"]["mesh"]["I"]["damping_ratio"] == 0.0
+    assert documents[1]["dynamics"] == {"speeds": ["1 rpm", "2 rpm"], "direction": "up"}
+    assert told.plan.remarks[1].endswith("without shafts.")
+    own = fegear.dynamic_factor(pair, torque="90 N*m", speeds={"start": "1 rpm"}, train={"balance": "x"})
+    assert (documents[2]["train"], documents[2]["dynamics"]) == ({"balance": "x"}, {"speeds": {"start": "1 rpm"}})
+    assert own.plan.remarks == ("first",)
+
+
+# ---- pairs with a designed relief ------------------------------------------------------------------------------------
+class Column:
+    def __init__(self, *values):
+        self.si = np.array(values)
+
+
+class Table(dict):
+    def column(self, key):
+        return Column(*self[key])
+
+
+def design_of(pair):
+    """What a design holds, of the pair's own case."""
+    tables = {
+        "relief_I_pinion": Table(roll_angle=[0.3, 0.5], relief=[0.0, 12e-6]),
+        "relief_I_wheel": Table(roll_angle=[0.2, 0.4], relief=[0.0, 8e-6]),
+        "grindable_I": Table(
+            shape=np.array(["linear", "linear", "parabolic", "parabolic"]),
+            gear=np.array(["driver", "driven", "driver", "driven"]), amount=[10e-6, 20e-6, 30e-6, 40e-6],
+            start_roll_angle=[0.41, 0.42, 0.43, 0.44],
+        ),
+    }  # fmt: skip
+
+    class Design(Results):
+        def __init__(self):
+            pass
+
+        scene = SimpleNamespace(case=SimpleNamespace(pair={"I": SimpleNamespace(driver="pinion", driven="wheel")}))
+
+    Design.tables = tables
+    return Design()
+
+
+def test_a_pair_takes_the_relief_of_its_design_and_keeps_its_names_and_solutions(pair, monkeypatch):
+    monkeypatch.setattr("fegear.workbench.pair.table_names", lambda scene, name: {
+        "driver": "I_pinion", "driven": "I_wheel",
+    })  # fmt: skip
+    found = design_of(pair)
+    designed = pair.relieved(found)
+    assert designed.names == ("pinion", "wheel")
+    assert designed.driver.keys["relief"] == {"table": {"roll_angles": [0.3, 0.5], "removals": [0.0, 12e-6]}}
+    assert designed.driven.keys["relief"]["table"]["removals"] == [0.0, 8e-6]
+    assert designed.known is pair.known
+    assert designed.keys["compliance"] == {"source": "cornell"}
+    ground = pair.relieved(found, "parabolic")
+    assert ground.driver.keys["relief"]["tip"] == {
+        "amount": pytest.approx(30e-6), "start_roll_angle": pytest.approx(0.43), "shape": "parabolic",
+    }  # fmt: skip
+    assert ground.driven.keys["relief"]["tip"]["amount"] == pytest.approx(40e-6)
+    with pytest.raises(InputError, match='choose from "designed", "linear", "parabolic"'):
+        pair.relieved(found, "cubic")
+    for wrong, shape in ((1, "designed"), (found, 3)):
+        with pytest.raises(InputError):
+            pair.relieved(wrong, shape)
+
+
+def test_pairs_are_alike_where_they_are_described_alike(pair):
+    same = Pair(PINION, WHEEL, compliance="cornell")
+    assert pair == same
+    assert hash(pair) == hash(same)
+    assert pair != Pair(PINION, WHEEL, compliance="weber-banaschek")
+    assert pair != Pair(PINION, WHEEL, compliance="cornell", name="II")
+    assert pair != Pair(WHEEL, PINION, compliance="cornell")
+    assert pair != Pair(PINION, WHEEL, compliance="cornell", load_distribution={"positions": 12})
+    assert pair != "I"
+    assert (pair.is_spur, pair.is_wide) == (True, False)
+    assert Pair(PINION, WHEEL, width="slices").is_wide
+    assert "compliance" not in Pair(PINION, WHEEL, width="slices").document()["pair"]["I"]
+    assert pair.document(load="1 kN")["pair"]["I"]["load"] == "1 kN"
+    with pytest.raises(InputError, match="is what tooth contact analysis starts from"):
+        _ = pair.flanks
