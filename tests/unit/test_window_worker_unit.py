@@ -1,0 +1,191 @@
+"""The computing process of the window by itself: when it gives way, waits, tidies up, and what it says of faults."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.engine.stage import Task
+from fegear.engine.value import Value
+from fegear.window import glance, worker
+from fegear.window.glance import PICTURES, USUAL, USUAL_SET, USUAL_WIDE, keys_of, numbers_of
+from fegear.window.job_queue import Asked, Compute, Unwanted
+from fegear.window.worker import Worker, scene_of
+
+TEXT = """
+results = ["geometry"]
+[gear.a]
+teeth = 20
+module = "3 mm"
+[accuracy]
+tolerance = 1e-3
+"""
+
+
+def asked(**more):
+    return Asked(TEXT, "c", ".", **more)
+
+
+def test_tolerances_are_loosened_within_what_has_a_meaning():
+    assert scene_of(asked()).case.accuracy.tolerance == 1e-3
+    assert scene_of(asked(loosened=10.0)).case.accuracy.tolerance == pytest.approx(1e-2)
+    assert scene_of(asked(loosened=1e4)).case.accuracy.tolerance == 0.5
+    assert scene_of(asked(loosened=1e-9)).case.accuracy.tolerance == 1e-6
+    assert (scene_of(asked()).estimates, scene_of(asked(moving=True)).estimates) == (True, False)
+    assert scene_of(asked(loosened=0.1)).text == TEXT
+
+
+@pytest.fixture
+def working(tmp_path, monkeypatch):
+    """A process with an inbox that is played, and what it says."""
+    said, waits = [], []
+    inbox = SimpleNamespace(
+        say=lambda one: said.append((one.number, one.what, one.content)), look=lambda: None, wait=waits.append,
+        watch=lambda unwanted, within=None: None, given_up=False,
+    )  # fmt: skip
+    monkeypatch.setattr(worker, "Inbox", lambda connection: inbox)
+    made = Worker(None, tmp_path)
+    made.said, made.waits, made.inbox = said, waits, inbox
+    return made
+
+
+def test_what_is_dragged_for_is_finished_first_for_a_second_and_a_half(working, monkeypatch):
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(worker.time, "monotonic", lambda: clock.now)
+    working._begun = 100.0
+
+    def gives_way(of, to, wait_before=0):
+        working._asked, working._wait_before = asked(moving=of), wait_before
+        return working._gives_way(Compute(2, asked(moving=to)))
+
+    assert gives_way(False, False)
+    assert gives_way(False, True)
+    assert gives_way(True, False)
+    assert not gives_way(True, True)
+    assert gives_way(True, True, wait_before=-1)  # the answer is there
+    clock.now = 101.5
+    assert not gives_way(True, True)
+    clock.now = 101.6
+    assert gives_way(True, True)
+    working._asked = None
+    assert working._gives_way(Compute(2, asked(moving=True)))
+
+
+def test_faults_are_said_in_a_sentence_and_what_may_be_half_done_is_forgotten(working, monkeypatch, capsys):
+    begun = []
+    monkeypatch.setattr(working, "_begin_anew", lambda: begun.append(1))
+    for problem, what, words, key, anew in (
+        (Unwanted(), "dropped", None, None, 0), (MemoryError(), "refused", "Out of memory", "", 1),
+        (InputError("gear.a", "1", "is wrong"), "refused", "gear.a = 1: is wrong", "gear.a", 1),
+        (ZeroDivisionError("x"), "refused", "A fault of fegear, not of the case (ZeroDivisionError: x)", "", 2),
+    ):  # fmt: skip
+
+        def fail(job, problem=problem):
+            raise problem
+
+        monkeypatch.setattr(working, "_do", fail)
+        monkeypatch.setattr(Worker, "_do", fail)
+        working.answer(Compute(7, asked()))
+        number, said, content = working.said[-1]
+        assert (number, said) == (7, what)
+        if words:
+            assert content["sentence"].startswith(words)
+            assert content["key"] == key
+        assert len(begun) == anew
+    assert "ZeroDivisionError" in capsys.readouterr().err
+    working.inbox.given_up = True
+    working.answer(Compute(8, asked()))
+    assert working.said[-1][:2] == (8, "dropped")
+
+
+def test_what_is_kept_is_bounded_at_rest_and_after_every_eighth_answer_that_moves(working, monkeypatch):
+    shrunk, given = [], []
+    monkeypatch.setattr(working, "_cache", SimpleNamespace(shrink=lambda most: shrunk.append(most) or True))
+    monkeypatch.setattr(worker, "_give_back", lambda: given.append(1))
+    for _ in range(7):
+        working._tidy(moving=True)
+    assert shrunk == []
+    working._tidy(moving=True)
+    assert (shrunk, given) == ([120_000_000], [1])
+    working._tidy(moving=True)
+    working._tidy(moving=False)
+    assert len(shrunk) == 2
+    for _ in range(7):
+        working._tidy(moving=True)
+    assert len(shrunk) == 2
+    # Where nobody waits it is done before its turn.
+    working._asked = asked(moving=True)
+    working._pause()
+    assert (len(shrunk), working._wait_before, working.waits) == (3, -1, [0.2])
+
+
+def test_what_comes_behind_an_answer_is_told_once_and_by_kind(working):
+    told = []
+    working._later = [(kind, lambda kind=kind: told.append(kind)) for kind in ("hands", "load_now", "hands")]
+    working._tell_later("load_now")
+    assert told == ["load_now"]
+    working._tell_later()
+    working._tell_later()
+    assert told == ["load_now", "hands", "hands"]
+
+
+def test_progress_is_told_to_who_waits_and_not_to_who_moves(working):
+    working._number, working._asked = 3, asked()
+    working.begin("Gear a", 2, 5)
+    assert working.said == [(3, "begin", {"title": "Gear a", "step": 2, "count": 5})]
+    working._asked = asked(moving=True)
+    working.begin("Gear a", 2, 5)
+    assert len(working.said) == 1
+    working._wait_before = 4
+    working.begin("Gear b", 4, 5)
+    assert working.waits == [0.2]  # what nobody waits for does not begin while a value moves
+    working._wait_before = 4
+    working.begin("Gear b", 3, 5)
+    assert len(working.waits) == 1
+
+
+def test_a_figure_waits_while_a_value_moves_where_nobody_sees_it(working):
+    task = Task("transmission-error", "I")
+    working._sent._figures[str(task), "transmission_error_I"] = "x"
+    working._sent._figures[str(task), "other"] = "x"
+    working._asked = asked(moving=True, pictures=("te",))
+    assert not working._waits(task, "transmission_error_I")  # a small picture
+    assert working._waits(task, "other")
+    assert not working._waits(task, "never sent")
+    for seen in (asked(moving=True), asked(pictures=("te",)), asked(moving=True, pictures=("te",), sight=(str(task),))):
+        working._asked = seen
+        assert not working._waits(task, "other")
+
+
+# ---- at a glance -----------------------------------------------------------------------------------------------------
+def test_small_pictures_are_of_figures_by_their_keys():
+    assert keys_of(("te", "pressure", "nothing")) == {"transmission_error_", "load_sharing_"}
+    assert keys_of(()) == {PICTURES[one].key for one in (*USUAL, *USUAL_WIDE, *USUAL_SET)}
+    assert [PICTURES[one].panel for one in ("te", "stiffness", "pressure", "set-te")] == [1, 2, 2, 2]
+
+
+def test_the_strip_has_numbers_with_the_digits_of_their_errors():
+    found = numbers_of((
+        Value("I.te_peak_to_peak", 1.23456e-6, "um", 2e-8), Value("I.driver.S_F", 1.23456), Value("I.something", 1.0),
+        Value("I.mesh_stiffness_mean", 2e8, "N/um", 0.0),
+    ))  # fmt: skip
+    assert list(found) == ["I.te_peak_to_peak", "I.driver.S_F", "I.mesh_stiffness_mean"]
+    te, safety = found["I.te_peak_to_peak"], found["I.driver.S_F"]
+    assert (te["text"], te["error"], te["unit"], te["subject"], te["name"]) == (
+        "1.235", "0.020", "µm", "I", "te_peak_to_peak",
+    )  # fmt: skip
+    assert (safety["text"], safety["error"], safety["label"]) == ("1.235", "", "S_F, driver")
+    assert found["I.mesh_stiffness_mean"]["error"] == ""
+
+
+def test_what_a_case_cannot_have_leaves_its_place_empty(monkeypatch):
+    def make_plan(scene, stages, tasks):
+        if "impossible" in tasks:
+            raise InputError("x", "y", "is not to be had")
+        return tasks
+
+    monkeypatch.setattr(glance, "make_plan", make_plan)
+    assert glance.plan_with(None, ["a", "b"], ["c"]) == ["a", "b", "c"]
+    assert glance.plan_with(None, ["a", "impossible", "b"], ["c"]) == ["a", "b", "c"]
+    with pytest.raises(InputError, match="is not to be had"):
+        glance.plan_with(None, ["a"], ["impossible"])
