@@ -28,6 +28,8 @@ RIG = {
 }  # fmt: skip
 PAIR = {"te-mean": "transmission error, mean", "te-peak-to-peak": "peak to peak", "face-load-factor": "K_Hbeta"}
 TOLERANCES = ("0.1", "0.01", "0.001", "0.0001", "1e-05")
+#: What stands in a table where there is no number.
+NONE = ("", "nan")
 PICTURES = (("cost.png", "cost_nasa_four_square.png"), ("cost_knobs.png", "cost_knobs.png"))
 
 
@@ -60,9 +62,9 @@ def errors(folder: Path) -> str:
     found: dict[str, dict[str, str]] = {}
     for row in rows(folder, "cost"):
         known = row["family"], row["configuration"]
-        if row["quantity"] in RIG and row["error"] != "nan" and known[0] in ("compliance-formula", "stress-formula"):
+        if row["quantity"] in RIG and row["error"] not in NONE and known[0] in ("compliance-formula", "stress-formula"):
             name = known[1]
-        elif row["quantity"] in RIG and row["error"] != "nan" and re.match(r"sector of|tolerance", known[1]):
+        elif row["quantity"] in RIG and row["error"] not in NONE and re.match(r"sector of|tolerance", known[1]):
             name = known[1].partition(",")[0]
         else:
             continue
@@ -86,7 +88,7 @@ def cheapest(folder: Path) -> str:
     found: dict[str, dict[str, str]] = {}
     for row in rows(folder, "cost_cheapest"):
         short = re.sub(r"^whole gear, |, compliance$", "", row["configuration"])
-        reached = row["seconds [s]"] != "nan"
+        reached = row["seconds [s]"] not in NONE
         cell = f"{short}: {seconds(row['seconds [s]'])} s" if reached else row["configuration"]
         found.setdefault(row["quantity"], {})[row["tolerance"]] = cell
     body = [[quantity, *(one.get(t, "") for t in TOLERANCES)] for quantity, one in found.items()]
@@ -98,8 +100,10 @@ def orders(folder: Path) -> str:
     found: dict[str, dict[str, str]] = {}
     quantities = list(dict.fromkeys(row["quantity"] for row in rows(folder, "cost_orders")))
     for row in rows(folder, "cost_orders"):
-        used = f"{float(row['order']):.1f} ({row['configurations_used']} of {row['configurations']})"
-        found.setdefault(row["knob"], {})[row["quantity"]] = "none" if row["order"] == "nan" else used
+        used = "none" if row["order"] in NONE else f"{float(row['order']):.1f}"
+        if used != "none":
+            used += f" ({row['configurations_used']} of {row['configurations']})"
+        found.setdefault(row["knob"], {})[row["quantity"]] = used
     body = [[knob, *(one.get(q, "") for q in quantities)] for knob, one in found.items()]
     return table(["setting", *quantities], body)
 

@@ -220,7 +220,6 @@ def test_the_cost_study_varies_what_the_solid_depends_on(monkeypatch, factors, w
     finest = {"_FACTORS": (*factors, 1.0), "_WAVES": (*waves, 2.5)} if len(factors) == 2 else {}
     for name, values in finest.items():
         monkeypatch.setattr(knobs, name, values)
-        monkeypatch.setattr(knobs, "_OF_SLICES", np.array([*factors, 1.0]))
     face = ["gear.a.face_width=5 mm"] if finest else []
     with one_thread():
         found = solid_knobs(asked(read_scene(CASE, ["stiffness.face_positions=3", "stiffness.positions=3", *face])))
