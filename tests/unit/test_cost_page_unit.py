@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
-import cost_study  # noqa: E402
+import cost_study
 
 
 def written(folder, name, *lines):
