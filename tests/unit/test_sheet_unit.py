@@ -224,8 +224,9 @@ def test_maps_level_lines_and_panels_for_each() -> None:
         ),
         each=lambda seen: seen.data, title="{key}",
     )  # fmt: skip
-    (figure,) = Chart("f", "F", "C", (over,)).figures(seen)
+    (figure,) = Chart("f", "F", "C", (over,), columns=lambda seen: len(seen.data)).figures(seen)
     first, second = figure.panels
+    assert figure.columns == 2
     assert (first.title, second.title) == ("a", "b")
     heat, level, ends = first.items
     assert isinstance(heat, HeatMap)

@@ -200,7 +200,7 @@ class Chart:
         Objects for each of which there is such a figure; whether there is one.
     under : text
         Load or speed that all of it holds for; LOADS for the load of a pair that has one only.
-    columns : int
+    columns : int or where
         As that of `Figure`.
     """
 
@@ -212,7 +212,7 @@ class Chart:
     each: Where | None = None
     when: Where | None = None
     under: Text = ""
-    columns: int = 1
+    columns: int | Where = 1
 
     def figures(self, seen: Seen) -> Iterator[Figure]:
         """Those that there are."""
@@ -221,8 +221,9 @@ class Chart:
                 continue
             under = _only_load(one) if self.under == LOADS else one.said(self.under)
             panels = tuple(panel for over in self.panels if one.holds(over.when) for panel in _panels(one, owner, over))
+            columns = self.columns if isinstance(self.columns, int) else one.find(self.columns)
             yield Figure(
-                one.said(self.name), one.said(self.title), one.said(self.caption), panels, columns=self.columns,
+                one.said(self.name), one.said(self.title), one.said(self.caption), panels, columns=columns,
                 under=under,
             )  # fmt: skip
 

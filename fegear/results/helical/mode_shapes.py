@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.shown import shows
 from fegear.dynamics.helical_pair.modal_indices import ModeTable
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Bars, Curve
+from fegear.engine.figure.items import Curve
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.seen import Seen
 
 #: Coordinates of q as bars have them.
 _NAMES = ("y", "z", "bθ_{x}", "aθ_{y}", "aθ_{z}")
@@ -22,59 +27,81 @@ _SEEN = 0.02
 _CHORDS = 181
 
 
-def mode_shape_figures(
-    name: str, model: HelicalPairModel | ReducedPairModel, modes: ModeTable
-) -> tuple[Figure, Figure]:
-    """All motions of every flexible mode as bars; and what of it is seen along the axes, as in a drawing.
+@dataclass(frozen=True)
+class ModeMotion:
+    """Motion of both gears in one mode over q = (y, z, b theta_x, a theta_y, a theta_z), over the largest."""
 
-    Parameters
-    ----------
-    name : str
-        Of the pair.
-    model : HelicalPairModel or ReducedPairModel
-    modes : ModeTable
-    """
-    flexible = np.flatnonzero(modes.ratio > 0.0)
-    shapes = [_both(model, modes.shapes[:, r]) for r in flexible]
-    titles = [f"mode {r + 1}, Λ = {modes.ratio[r]:.5g}, Δ_{{η}} = {modes.normal[r]:.4g}" for r in flexible]
+    title: str
+    shape: Array
+
+    @property
+    @shows("", "number of the coordinate")
+    def place(self) -> Array:
+        """From 0."""
+        return np.arange(5.0)
+
+    @property
+    @shows("", "motion over the largest")
+    def driver(self) -> Array:
+        """Shape (5,)."""
+        return np.asarray(self.shape[0])
+
+    @property
+    @shows("", "motion over the largest")
+    def driven(self) -> Array:
+        """Shape (5,)."""
+        return np.asarray(self.shape[1])
+
+
+def mode_motions(model: HelicalPairModel | ReducedPairModel, modes: ModeTable) -> list[ModeMotion]:
+    """Of every flexible mode."""
+    return [
+        ModeMotion(
+            f"mode {r + 1}, Λ = {modes.ratio[r]:.5g}, Δ_{{η}} = {modes.normal[r]:.4g}", _both(model, modes.shapes[:, r])
+        )
+        for r in np.flatnonzero(modes.ratio > 0.0)
+    ]
+
+
+#: All motions of every mode as bars.
+MODE_SHAPES = Chart(
+    "mode_shapes_{name}", "Mode shapes of pair {name}",
+    "Pair {name}: motion of both gears in every mode, over the largest; rotations as lengths, b half the face width, a "
+    "the base radius.",
+    (
+        Over(
+            Axis(categories=_NAMES),
+            tuple(Line(gear, gear, gear, x="place", kind="bars") for gear in ("driver", "driven")),
+            Axis("motion over the largest", limits=(-1.1, 1.1)), title="{one.title}", each="motions",
+        ),
+    ),
+    columns=2,
+)  # fmt: skip
+
+
+def mesh_mode_shapes(seen: Seen) -> tuple[Figure, ...]:
+    """What of every mode is seen along the axes, as in a drawing."""
+    name, model, motions = seen.name, seen.data.model, seen.data.motions
     radii = (1.0, 1.0) if isinstance(model, ReducedPairModel) else (
         model.driver.base_radius, model.driven.base_radius
     )  # fmt: skip
-    across = [
-        (shape, title) for shape, title in zip(shapes, titles, strict=True) if np.abs(shape[:, [0, 4]]).max() > _SEEN
-    ]
-    bars = Figure(
-        f"mode_shapes_{name}",
-        f"Mode shapes of pair {name}",
-        f"Pair {name}: motion of both gears in every mode, over the largest; rotations as lengths, b half the face "
-        "width, a the base radius.",
-        tuple(_bars(shape, title) for shape, title in zip(shapes, titles, strict=True)),
-        columns=2,
-    )
+    across = [one for one in motions if np.abs(one.shape[:, [0, 4]]).max() > _SEEN]
     drawing = Figure(
         f"mesh_mode_shapes_{name}",
         f"Mesh mode shapes of pair {name}",
         f"Pair {name}, seen along the axes: base circles and their radii to the line of action (dotted), at rest "
         "(grey) and at one end of the swing. Motion along the axes and tilting do not show; modes of these alone are "
         "left out.",
-        tuple(_drawing(shape, title, radii) for shape, title in across or list(zip(shapes, titles, strict=True))),
+        tuple(_drawing(one.shape, one.title, radii) for one in across or motions),
         columns=2,
     )
-    return bars, drawing
+    return (drawing,)
 
 
 def _both(model: HelicalPairModel | ReducedPairModel, shape: Array) -> Array:
     """Motion of driver and driven over q, shape (2, 5), over the largest."""
     gears = np.array([shape, P @ shape]) if isinstance(model, ReducedPairModel) else shape.reshape(2, 5)
     return np.asarray(gears / np.abs(gears).max())
-
-
-def _bars(shape: Array, title: str) -> Panel:
-    place = np.arange(5)
-    return Panel(
-        Axis(categories=_NAMES), Axis("motion over the largest", limits=(-1.1, 1.1)),
-        (Bars(place, shape[0], "driver", "driver"), Bars(place, shape[1], "driven", "driven")), title=title,
-    )  # fmt: skip
 
 
 def _drawing(shape: Array, title: str, radii: tuple[float, float]) -> Panel:

@@ -1,12 +1,10 @@
-"""Stage ``mode-tracking``: modes of a helical pair and their indices over a parameter, and its response at values.
-
-Figures of modes followed over a parameter, and of the response at values of it.
-"""
+"""Stage ``mode-tracking``: modes of a helical pair and their indices over a parameter, and its response at values."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,17 +19,18 @@ from fegear.case.transmissibility import TransmissibilityPart
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 from fegear.dynamics.helical_pair.mode_following import FollowedModes, Meeting
 from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
-from fegear.dynamics.train.resolved_response import broken
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_of, repeated, stacked
+from fegear.engine.declared import axis_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.results.helical.transmissibility import LAMBDA, ends, mesh_needs, own_mesh, resolved_response
+from fegear.results.helical.drawn_curves import DrawnCurve, DrawnPanel, drawn_panels, ends
+from fegear.results.helical.transmissibility import mesh_needs, own_mesh, resolved_response
+from fegear.results.helical.transmissibility_shown import LAMBDA, mesh_forces
 
 Model = HelicalPairModel | ReducedPairModel
 
@@ -124,58 +123,15 @@ def _indices(model: Model, ratio: Array, shapes: Array) -> dict[str, Array]:
 
 
 def _response(asked: FollowedPair, model: Model, value: float) -> Response:
-    from fegear.results.helical.transmissibility import mesh_forces
-
     found, undamped = resolved_response(model, asked.part.lambda_from, asked.part.lambda_to)
     R = np.abs(next(iter(mesh_forces(found).values())))
     dynamic = np.abs(found.G_minus_a[:, 4, 0]) / model.mesh.stiffness
     return Response(value, undamped, found.ratio, dynamic, R[:, 0, 0], R[:, 4, 4])
 
 
-def _present(data: tuple[FollowedData, ...], asked: HelicalPairInputs) -> Outcome:
-    tables, figures, remarks = [], [], []
-    for one in data:
-        tables.append(_table(asked.name, one))
-        figures.append(modes_figure(asked.name, one))
-        remarks += _remarks(asked.name, one)
-        if one.responses:
-            tables.append(_response_table(asked.name, one))
-            figures.append(response_figure(asked.name, one))
-    least = min((one.modes.likeness for one in data), default=1.0)
-    settings: dict[str, object] = {"least_likeness": least, "damping_ratio": asked.part.damping_ratio}
-    return Outcome(data, tuple(tables), (), settings, tuple(remarks), tuple(figures))
-
-
-def _table(name: str, one: FollowedData) -> Table:
-    columns = [
-        Column(one.parameter, one.modes.values, PARAMETERS[one.parameter][1], "over which the modes are followed")
-    ]
-    for r in range(one.modes.ratio.shape[1]):
-        columns.append(Column(f"Lambda_{r + 1}", one.modes.ratio[:, r], "", "frequency over sqrt(K_M/m_eq)"))
-        columns.append(Column(f"frequency_{r + 1}", one.frequency[:, r] / (2.0 * math.pi), "Hz", "natural frequency"))
-        columns += [Column(f"{key}_{r + 1}", one.indices[index][:, r], "", "modal index") for index, key, _ in INDICES]
-    return Table(
-        f"modes_over_{one.parameter}_{name}", tuple(columns),
-        f"Modes of pair {name} over {one.parameter}, numbered as in the case itself",
-    )  # fmt: skip
-
-
-def _response_table(name: str, one: FollowedData) -> Table:
-    value = Column(
-        one.parameter, np.array([row.value for row in one.responses]), PARAMETERS[one.parameter][1],
-        "value of the parameter",
-    )  # fmt: skip
-    return Table(
-        f"response_over_{one.parameter}_{name}",
-        (
-            *repeated([value], [row.ratio.size for row in one.responses]),
-            *stacked([columns_of(row, table="response") for row in one.responses]),
-        ),
-        f"Response of pair {name} at values of {one.parameter}",
-    )
-
-
-def _remarks(name: str, one: FollowedData) -> list[str]:
+def _remarks(seen: Seen) -> list[str]:
+    """Where branches cross or veer."""
+    name, one = seen.name, seen.one.data
     unit = PARAMETERS[one.parameter][1]
 
     def told(meeting: Meeting) -> str:
@@ -245,54 +201,201 @@ _NONE = 1e-9
 _EVEN = 1e-6
 
 
-def modes_figure(name: str, one: FollowedData) -> Figure:
-    """Frequencies and indices of the branches."""
-    label, unit = PARAMETERS[one.parameter]
-    x = one.modes.values * UNITS[unit]
-    steps = np.diff(x)
-    log = bool(x[0] > 0.0 and np.ptp(steps) > _EVEN * steps.max())
-    axis = Axis(label, unit, log=log, limits=(float(x[0]), float(x[-1])))
-    present = np.flatnonzero(one.modes.ratio.max(axis=0) > 0.0)
+@dataclass(frozen=True)
+class ParameterValue:
+    """Values of a parameter, of one of three units."""
 
-    def panel(title: str, rows: Array) -> Panel:
-        return Panel(axis, Axis(title, zero=True), tuple(
-            Curve(x, rows[:, r], f"mode {r + 1}", f"series:{k}", markers=False, width=3.0 - 0.3 * min(k, 5))
-            for k, r in enumerate(present)
-        ))  # fmt: skip
+    plain: Array | float | None = shown("", "value of the parameter")
+    angle: Array | float | None = shown("deg", "value of the parameter")
+    stiffness: Array | float | None = shown("N/um", "value of the parameter")
 
-    panels = [panel("Λ_{r}", one.modes.ratio)]
-    panels += [panel(title, one.indices[key]) for key, _, title in INDICES if one.indices[key].max() > _NONE]
-    return Figure(
-        f"modes_over_{one.parameter}_{name}",
-        f"Modes of pair {name} over the {label}",
-        f"Pair {name}: modes followed by the continuity of their shapes, numbered by falling frequency in the case "
-        "itself. Crossings are passed straight; at veerings the shapes are exchanged. Mesh displacements along the "
-        "tooth normal and about x are over the largest; the coupling ratio is |U_ηθx| / (U_η + U_θx).",
-        tuple(panels), columns=2 if len(panels) > 1 else 1,
-    )  # fmt: skip
+    @classmethod
+    def of(cls, parameter: str, values: Array | float) -> ParameterValue:
+        """In the unit of a parameter."""
+        unit = PARAMETERS[parameter][1]
+        return cls(*(values if unit == own else None for own in ("", "deg", "N/um")))
 
 
-def response_figure(name: str, one: FollowedData) -> Figure:
-    """The conventional responses at values of the parameter."""
-    label, unit = PARAMETERS[one.parameter]
-    symbol = label.rsplit(" ", 1)[-1] if one.parameter != "bearing_stiffness" else "bearing stiffness"
-    panels = []
-    for key in ("dynamic", "line_of_action", "torsion"):
-        curves = []
-        for k, row in enumerate(one.responses):
-            x, y = broken(row.ratio, getattr(row, key), row.undamped)
-            value = f"{symbol} = {row.value * UNITS[unit]:.6g} {unit}".rstrip()
-            curves.append(Curve(x, np.where(y > 0.0, y, np.nan), value, f"series:{k}", markers=False))
-        poles = any(row.undamped.size for row in one.responses)
-        limits = ends([getattr(row, key) for row in one.responses]) if poles else None
-        panels.append(Panel(LAMBDA, axis_of(Response, key, log=True, limits=limits), tuple(curves)))
-    return Figure(
-        f"response_over_{one.parameter}_{name}",
-        f"Conventional frequency response of pair {name} by {label}",
-        f"Pair {name}: torsional response to a transmission error along the line of action, and the mesh force "
-        "transmissibility along the line of action and in torsion.",
-        tuple(panels),
+@dataclass(frozen=True)
+class Branch:
+    """One mode over the parameter."""
+
+    number: int
+    ratio: Array = shown("", "frequency over sqrt(K_M/m_eq)", name="Lambda")
+    frequency: Array = shown("Hz", "natural frequency")
+    normal: Array = shown("", "modal index", name="Delta_normal")
+    bending: Array = shown("", "modal index", name="Delta_bending")
+    coupling: Array = shown("", "modal index")
+
+
+@dataclass(frozen=True)
+class ResponseAt:
+    """Response at one value of the parameter."""
+
+    parameter: str
+    value: ParameterValue
+    response: Response
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Modes over one parameter, and the response at values of it, as they are shown."""
+
+    data: FollowedData
+
+    @property
+    def parameter(self) -> str:
+        """Key in the case."""
+        return self.data.parameter
+
+    @property
+    def label(self) -> str:
+        """In words."""
+        return PARAMETERS[self.parameter][0]
+
+    @property
+    def _scale(self) -> float:
+        return UNITS[PARAMETERS[self.parameter][1]]
+
+    @property
+    def values(self) -> ParameterValue:
+        """Over which the modes are followed."""
+        return ParameterValue.of(self.parameter, self.data.modes.values)
+
+    @property
+    def branches(self) -> list[Branch]:
+        """Every mode."""
+        one = self.data
+        return [
+            Branch(
+                r + 1, one.modes.ratio[:, r], one.frequency[:, r] / (2.0 * math.pi),
+                *(one.indices[key][:, r] for key, _, _ in INDICES),
+            )
+            for r in range(one.modes.ratio.shape[1])
+        ]  # fmt: skip
+
+    @property
+    def responses(self) -> list[ResponseAt]:
+        """At values of the parameter."""
+        return [
+            ResponseAt(self.parameter, ParameterValue.of(self.parameter, row.value), row) for row in self.data.responses
+        ]
+
+    @cached_property
+    def mode_panels(self) -> list[DrawnPanel]:
+        """Frequencies and indices of the branches."""
+        one, x = self.data, self.data.modes.values * self._scale
+        steps = np.diff(x)
+        log = bool(x[0] > 0.0 and np.ptp(steps) > _EVEN * steps.max())
+        axis = Axis(self.label, PARAMETERS[self.parameter][1], log=log, limits=(float(x[0]), float(x[-1])))
+        present = np.flatnonzero(one.modes.ratio.max(axis=0) > 0.0)
+        rows = [("Λ_{r}", one.modes.ratio)]
+        rows += [(title, one.indices[key]) for key, _, title in INDICES if one.indices[key].max() > _NONE]
+        return [
+            DrawnPanel(
+                axis, Axis(title, zero=True),
+                [DrawnCurve(f"mode {r + 1}", f"series:{k}", x, row[:, r], 3.0 - 0.3 * min(k, 5))
+                 for k, r in enumerate(present)],
+            )
+            for title, row in rows
+        ]  # fmt: skip
+
+    @property
+    def columns(self) -> int:
+        """Of the figure."""
+        return 2 if len(self.mode_panels) > 1 else 1
+
+    @property
+    def response_panels(self) -> list[DrawnPanel]:
+        """The conventional responses at values of the parameter."""
+        unit, found = PARAMETERS[self.parameter][1], self.data.responses
+        symbol = self.label.rsplit(" ", 1)[-1] if self.parameter != "bearing_stiffness" else "bearing stiffness"
+        names = [f"{symbol} = {row.value * self._scale:.6g} {unit}".rstrip() for row in found]
+        poles = any(row.undamped.size for row in found)
+        return [
+            DrawnPanel(
+                LAMBDA,
+                axis_of(Response, key, log=True, limits=ends([getattr(row, key) for row in found]) if poles else None),
+                [DrawnCurve.on_log(name, f"series:{k}", row.ratio, getattr(row, key), row.undamped)
+                 for k, (name, row) in enumerate(zip(names, found, strict=True))],
+            )
+            for key in ("dynamic", "line_of_action", "torsion")
+        ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class AllFollowed:
+    """Every parameter that modes are followed over."""
+
+    each: tuple[Followed, ...]
+
+    @property
+    def least_likeness(self) -> float:
+        """Least modal assurance between neighbouring steps."""
+        return min((one.data.modes.likeness for one in self.each), default=1.0)
+
+
+def _values(owner: str, meaning: str) -> tuple[Cell, ...]:
+    """The parameter in its unit."""
+    return tuple(
+        Cell(f"{owner}.{unit}", name="{one.parameter}", meaning=meaning) for unit in ("plain", "angle", "stiffness")
     )
+
+
+_SHEET = Sheet(
+    of=lambda data, _asked: AllFollowed(tuple(Followed(one) for one in data)),
+    tables=(
+        Each(
+            "each",
+            Rows(
+                "modes_over_{one.parameter}_{name}",
+                "Modes of pair {name} over {one.parameter}, numbered as in the case itself",
+                (
+                    *_values("values", "over which the modes are followed"),
+                    Each(
+                        "branches",
+                        *(Cell(key, name=f"{name}_{{one.number}}")
+                          for key, name in (("ratio", "Lambda"), ("frequency", "frequency"),
+                                            *((key, name) for key, name, _ in INDICES))),
+                    ),
+                ),
+            ),
+            Rows(
+                "response_over_{one.parameter}_{name}", "Response of pair {name} at values of {one.parameter}",
+                (
+                    *_values("value", "value of the parameter"),
+                    *(f"response.{key}" for key in ("ratio", "dynamic", "line_of_action", "torsion")),
+                ),
+                stacked="responses", when="responses",
+            ),
+        ),
+    ),
+    figures=(
+        Each(
+            "each",
+            Chart(
+                "modes_over_{one.parameter}_{name}", "Modes of pair {name} over the {one.label}",
+                "Pair {name}: modes followed by the continuity of their shapes, numbered by falling frequency in the "
+                "case itself. Crossings are passed straight; at veerings the shapes are exchanged. Mesh displacements "
+                "along the tooth normal and about x are over the largest; the coupling ratio is |U_ηθx| / (U_η + "
+                "U_θx).",
+                (drawn_panels("mode_panels"),), columns="columns",
+            ),
+            Chart(
+                "response_over_{one.parameter}_{name}",
+                "Conventional frequency response of pair {name} by {one.label}",
+                "Pair {name}: torsional response to a transmission error along the line of action, and the mesh force "
+                "transmissibility along the line of action and in torsion.",
+                (drawn_panels("response_panels"),), when="responses",
+            ),
+        ),
+    ),
+    remarks=(Each("each", _remarks),),
+    settings={
+        "least_likeness": "least_likeness",
+        "damping_ratio": lambda seen: seen.asked.part.damping_ratio,
+    },
+)  # fmt: skip
 
 
 MODE_TRACKING = Stage(
@@ -300,7 +403,7 @@ MODE_TRACKING = Stage(
     needs=mesh_needs,
     inputs=helical_pair_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(Citation("blankenship-singh", "modes and indices over bearing and mesh parameters", "Section 5")),
     forecast=_forecast,

@@ -18,11 +18,16 @@ from fegear.case.reading import Scene
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet import chart
+from fegear.engine.sheet.chart import Chart, Family, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
-from fegear.results.helical.drawn_forced_response import COMPONENTS, forces_figure, spectrum_figure
+from fegear.results.helical.drawn_curves import drawn_panels
+from fegear.results.helical.forced_response_shown import ShownForces
 from fegear.results.helical.transmissibility import mesh_needs, own_mesh
 from fegear.results.pair.mesh_stiffness_data import loaded_harmonics
 from fegear.results.pair.mesh_stiffness_matrix import mesh_stiffness_of
@@ -304,67 +309,65 @@ def _drawn_sizes(forces: PairForces) -> Array:
     return np.column_stack([*np.abs(forces.normal), rms(forces.normal), *bearings])
 
 
-def _present(data: PairForcesData, asked: PairForcesInputs) -> Outcome:
-    name, found = asked.name, data.asked
-    normal = rms(found.normal)
-    top = int(np.argmax(normal))
-    off = np.sum([rms(one.normal) for one in data.errors], axis=0) if data.errors else None
-
-    def error(of: Array | None, place: int) -> float | None:
-        return None if not data.known else 0.0 if of is None else float(of[place])
-
-    values = [
-        Value(f"{name}.largest_mesh_force", float(normal[top]), "N", error(off, top),
-              "root mean square along the tooth normal"),
-        Value(f"{name}.largest_mesh_force_speed", float(found.speed[top]), "rpm", None, "driver's speed of that"),
-    ]  # fmt: skip
-    for key in ("driver", "driven"):
-        radial, at_top = rms(getattr(found, f"bearing_{key}")[:, :, 0]), None
-        if data.errors:
-            at_top = np.sum([rms(getattr(one, f"bearing_{key}")[:, :, 0]) for one in data.errors], axis=0)
-        place = int(np.argmax(radial))
-        values.append(Value(f"{name}.largest_bearing_force_{key}", float(radial[place]), "N", error(at_top, place),
-                            "root mean square along the line of action"))  # fmt: skip
-    figures = [spectrum_figure(name, data.spectrum)]
-    if found.speed.size > 1:
-        figures.insert(0, forces_figure(name, data.drawn, data.undamped, asked.teeth))
-    settings: dict[str, object] = {"lines": len(found.lines), "speeds": int(found.speed.size)}
-    tables = (_sums_table(name, found, asked.teeth, off), _spectrum_table(name, found))
-    return Outcome(data, tables, tuple(values), settings, (), tuple(figures))
+def _components(where: str, meaning: str) -> Each:
+    """Forces and moments of mesh and bearings."""
+    words = {"name": "{one.name}", "meaning": meaning}
+    return Each(where, Cell("force", **words), Cell("moment", **words))
 
 
-def _sums_table(name: str, found: PairForces, teeth: int, off: Array | None) -> Table:
-    columns = [Column("speed", found.speed, "rpm", "of the driver")]
-    if teeth:
-        columns.append(Column("mesh_frequency", teeth * found.speed / (2.0 * math.pi), "Hz", "teeth times speed"))
-    columns.append(Column("mesh_normal", rms(found.normal), "N", "root mean square along the tooth normal"))
-    for where in ("mesh", "bearing_driver", "bearing_driven"):
-        columns += [
-            Column(f"{where}_{key}", rms(getattr(found, where)[:, :, k]), unit, "root mean square over time")
-            for k, (key, _, unit) in enumerate(COMPONENTS)
-        ]
-    if off is not None:
-        columns.append(Column("mesh_normal_error", off, "N", "by the estimated errors of the transmission error"))
-    return Table(f"pair_forces_{name}", tuple(columns), f"Mesh and bearing forces of pair {name} over speed")
-
-
-def _spectrum_table(name: str, found: PairForces) -> Table:
-    count = found.speed.size
-    order = np.array([line.order for line in found.lines])
-    source = np.array([line.source for line in found.lines], dtype=str)
-    columns = [
-        Column("speed", np.tile(found.speed, order.size), "rpm", "of the driver"),
-        Column("order", np.repeat(order, count), "", "frequency over the driver's speed; 0 where it does not follow"),
-        Column("source", np.repeat(source, count), "", "what excites the line"),
-        Column("frequency", found.frequency.ravel() / (2.0 * math.pi), "Hz", "of the line"),
-        Column("mesh_normal", np.abs(found.normal).ravel(), "N", "along the tooth normal, 0-peak"),
-    ]
-    for where in ("mesh", "bearing_driver", "bearing_driven"):
-        columns += [
-            Column(f"{where}_{key}", np.abs(getattr(found, where)[:, :, k]).ravel(), unit, "0-peak")
-            for k, (key, _, unit) in enumerate(COMPONENTS)
-        ]
-    return Table(f"pair_force_spectrum_{name}", tuple(columns), f"Lines of the mesh and bearing forces of pair {name}")
+_SHEET = Sheet(
+    of=lambda data, asked: ShownForces(data, asked.teeth),
+    tables=(
+        Rows(
+            "pair_forces_{name}", "Mesh and bearing forces of pair {name} over speed",
+            (
+                "speed", "mesh_frequency", "mesh_normal",
+                _components("over_speed.components", "root mean square over time"), "mesh_normal_error",
+            ),
+            of="over_speed",
+        ),
+        Rows(
+            "pair_force_spectrum_{name}", "Lines of the mesh and bearing forces of pair {name}",
+            ("speed", "order", "source", "frequency", "mesh_normal", _components("lines.components", "0-peak")),
+            of="lines",
+        ),
+    ),
+    values=(
+        Number("largest.normal", "largest.error"),
+        Number("largest.speed"),
+        Number("radial", "error", name="largest_bearing_force_{key}", each="bearings"),
+    ),
+    figures=(
+        Chart(
+            "pair_forces_{name}", "Mesh and bearing forces of pair {name}",
+            "Pair {name}: root mean square over time of the force along the tooth normal, by its lines, and of what "
+            "the bearings exert on both gears.",
+            (drawn_panels("force_panels"),), when="several",
+        ),
+        Chart(
+            "pair_force_spectrum_{name}", "Spectrum of the forces in pair {name}",
+            "Pair {name} at {d.spectrum_speed:.6g} of the driver: lines of the force along the tooth normal and of the "
+            "bearing forces along the line of action and the axis.",
+            (
+                Over(
+                    Axis("frequency", "kHz", zero=True),
+                    (
+                        chart.Line(
+                            "size", x="frequency", kind="stems", look=lambda seen: {"notes": seen.one.notes},
+                            each=Family("rows", "{one.label}", "{one.role}"),
+                        ),
+                    ),
+                    Axis("force, 0-peak", "N", log=True), title="{one.title}", each="spectrum_panels",
+                ),
+            ),
+            under="{d.spectrum_speed:.6g}",
+        ),
+    ),
+    settings={
+        "lines": lambda seen: len(seen.data.data.asked.lines),
+        "speeds": lambda seen: int(seen.data.data.asked.speed.size),
+    },
+)  # fmt: skip
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -389,7 +392,7 @@ PAIR_FORCED_RESPONSE = Stage(
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(
         Citation("blankenship-singh", "forces of transmission error and external forces", "Eqs. 9 to 11, 17, 18 and 22")
