@@ -19,7 +19,6 @@ from fegear.results.helical.drawn_curves import DrawnCurve, DrawnPanel, ends
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.results.helical.pair_forced_response import PairForcesData
 
 #: Forces and moments with their keys and units in tables, and as figures write them.
 COMPONENTS = (
@@ -33,6 +32,30 @@ _MOST_LINES, _NONE = 5, 1e-9
 
 #: Where forces act.
 _PLACES = ("mesh", "bearing_driver", "bearing_driven")
+
+
+@dataclass(frozen=True, eq=False)
+class PairForcesData:
+    """Forces at the speeds of the case, at speeds that show every peak, and at the speed of the spectrum.
+
+    Parameters
+    ----------
+    asked, drawn, spectrum : PairForces
+    undamped : ndarray
+        Speeds at which a line meets a resonance that nothing damps [rad/s].
+    errors : tuple of PairForces
+        What the estimated errors of the transmission error's harmonics make, those of each coordinate by themselves:
+        sizes without a sign would cancel for one hand and not for the other. Empty where they are unknown or nothing.
+    known : bool
+        Whether the excitation is given, or its errors are estimated.
+    """
+
+    asked: PairForces
+    drawn: PairForces
+    spectrum: PairForces
+    undamped: Array
+    errors: tuple[PairForces, ...]
+    known: bool
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.helical.drawn_curves import drawn_panels
-from fegear.results.helical.forced_response_shown import ShownForces
+from fegear.results.helical.forced_response_shown import PairForcesData, ShownForces
 from fegear.results.helical.transmissibility import mesh_needs, own_mesh
 from fegear.results.pair.mesh_stiffness_data import loaded_harmonics
 from fegear.results.pair.mesh_stiffness_matrix import mesh_stiffness_of
@@ -69,30 +69,6 @@ class PairForcesInputs:
     arm: float
     flanks: str
     name: str = field(compare=False)
-
-
-@dataclass(frozen=True, eq=False)
-class PairForcesData:
-    """Forces at the speeds of the case, at speeds that show every peak, and at the speed of the spectrum.
-
-    Parameters
-    ----------
-    asked, drawn, spectrum : PairForces
-    undamped : ndarray
-        Speeds at which a line meets a resonance that nothing damps [rad/s].
-    errors : tuple of PairForces
-        What the estimated errors of the transmission error's harmonics make, those of each coordinate by themselves:
-        sizes without a sign would cancel for one hand and not for the other. Empty where they are unknown or nothing.
-    known : bool
-        Whether the excitation is given, or its errors are estimated.
-    """
-
-    asked: PairForces
-    drawn: PairForces
-    spectrum: PairForces
-    undamped: Array
-    errors: tuple[PairForces, ...]
-    known: bool
 
 
 def _inputs(scene: Scene, name: str) -> PairForcesInputs:

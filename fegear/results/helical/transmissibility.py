@@ -13,7 +13,6 @@ from fegear.case.built.helical_pair import HelicalPairInputs, full_matrix_freque
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
-from fegear.dynamics.helical_pair.modal_indices import ModeTable, RankedMode
 from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
 from fegear.dynamics.helical_pair.transmissibility import ReducedTransmissibility, Transmissibility
 from fegear.engine.citation import Citation, citing
@@ -26,46 +25,12 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.helical.drawn_curves import drawn_panels
 from fegear.results.helical.mode_shapes import MODE_SHAPES, mesh_mode_shapes
-from fegear.results.helical.transmissibility_shown import ShownTransmissibility, mesh_forces
+from fegear.results.helical.transmissibility_shown import ShownTransmissibility, TransmissibilityData, mesh_forces
 from fegear.results.pair.mesh_stiffness_data import MeshStiffnessData
 from fegear.results.pair.mesh_stiffness_matrix import mesh_stiffness_of, needs_mesh_stiffness
 
 #: Even points from which a drawn response starts; it is refined wherever it bends.
 _DRAWN = 241
-
-
-@dataclass(frozen=True, slots=True)
-class TransmissibilityData:
-    """Modes, ranking and frequency response.
-
-    Parameters
-    ----------
-    mesh : MeshParameters
-    modes : ModeTable
-    ranking : list of RankedMode
-    response : Transmissibility or ReducedTransmissibility
-        At the frequencies of the case.
-    drawn : Transmissibility or ReducedTransmissibility
-        At frequencies that show every peak and every zero.
-    undamped : ndarray
-        Lambda of the poles among them.
-    model : HelicalPairModel or ReducedPairModel
-    mesh_error : ndarray, shape (3,)
-        Estimated errors of K_M [N/m], kappa and mu; zero where the case gives them.
-    full : ndarray
-        Natural frequencies [rad/s] with the whole mesh stiffness matrix, each gear tilting about its own axis; empty
-        where the mesh is not a pair's.
-    """
-
-    mesh: MeshParameters
-    modes: ModeTable
-    ranking: list[RankedMode]
-    response: Transmissibility | ReducedTransmissibility
-    drawn: Transmissibility | ReducedTransmissibility
-    undamped: NDArray[np.float64]
-    model: HelicalPairModel | ReducedPairModel
-    mesh_error: NDArray[np.float64]
-    full: NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,10 +19,10 @@ from fegear.results.helical.drawn_curves import DrawnCurve, DrawnPanel, ends
 from fegear.results.helical.mode_shapes import ModeMotion, mode_motions
 
 if TYPE_CHECKING:
-    from fegear.dynamics.helical_pair.modal_indices import ModeTable
+    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+    from fegear.dynamics.helical_pair.modal_indices import ModeTable, RankedMode
     from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
     from fegear.dynamics.helical_pair.transmissibility import ReducedTransmissibility, Transmissibility
-    from fegear.results.helical.transmissibility import TransmissibilityData
 
     Response = Transmissibility | ReducedTransmissibility
 
@@ -43,6 +43,40 @@ def mesh_forces(response: Response) -> dict[str, Complex]:
     """The matrices R of either model, by name."""
     keys = ("R",) if hasattr(response, "R") else ("R_ii", "R_ij")
     return {key: getattr(response, key) for key in keys}
+
+
+@dataclass(frozen=True, slots=True)
+class TransmissibilityData:
+    """Modes, ranking and frequency response.
+
+    Parameters
+    ----------
+    mesh : MeshParameters
+    modes : ModeTable
+    ranking : list of RankedMode
+    response : Transmissibility or ReducedTransmissibility
+        At the frequencies of the case.
+    drawn : Transmissibility or ReducedTransmissibility
+        At frequencies that show every peak and every zero.
+    undamped : ndarray
+        Lambda of the poles among them.
+    model : HelicalPairModel or ReducedPairModel
+    mesh_error : ndarray, shape (3,)
+        Estimated errors of K_M [N/m], kappa and mu; zero where the case gives them.
+    full : ndarray
+        Natural frequencies [rad/s] with the whole mesh stiffness matrix, each gear tilting about its own axis; empty
+        where the mesh is not a pair's.
+    """
+
+    mesh: MeshParameters
+    modes: ModeTable
+    ranking: list[RankedMode]
+    response: Transmissibility | ReducedTransmissibility
+    drawn: Transmissibility | ReducedTransmissibility
+    undamped: NDArray[np.float64]
+    model: HelicalPairModel | ReducedPairModel
+    mesh_error: NDArray[np.float64]
+    full: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
