@@ -67,7 +67,7 @@ if not TYPE_CHECKING:  # type checkers know the names from their imports, and fi
             import warnings
 
             new, since = _RENAMED[name]
-            warnings.warn(f"fegear.{name} is called fegear.{new} since {since}", DeprecationWarning, stacklevel=2)
+            warnings.warn(f"fegear.{name} was renamed fegear.{new} in {since}", DeprecationWarning, stacklevel=2)
             return __getattr__(new)
         if name not in _HOMES:
             raise AttributeError(f"module 'fegear' has no attribute {name!r}; it has {', '.join(sorted(_HOMES))}")

@@ -25,7 +25,7 @@ def main() -> None:
     except KeyboardInterrupt:
         from fegear.base.streams import complain
 
-        complain("fegear: interrupted; results of earlier runs are as they were.")
+        complain("fegear: interrupted; results of earlier runs are unchanged.")
         raise SystemExit(130) from None
     finally:
         gc.freeze()  # the process ends: its memory goes back without another search for cycles

@@ -81,27 +81,29 @@ def _options(
 #: The commands in the order of ``fegear --help``, and what it says of each.
 COMMANDS = (
     (new, "Write a commented case to start from."),
-    (import_, "A case from a REXS model of a gearbox."),
-    (migrate, "Write a case anew where keys have other names now."),
-    (open, "The live workbench: change a case and see the gears answer."),
-    (results, "What a case can ask for."),
-    (run, "Compute a case: tables, pictures, report."),
-    (plan, "What a run would compute, why, and how long it takes."),
+    (import_, "Create a case from a REXS gearbox model."),
+    (migrate, "Update a case file to the current key names."),
+    (open, "Open the interactive workbench in the browser."),
+    (results, "List the available results."),
+    (run, "Compute a case: tables, figures, report."),
+    (plan, "Show the calculation plan and the estimated time."),
     (compare, "Compare two runs or two cases."),
-    (sweep, "A case over a grid of values."),
-    (effects, "What each effect changes in a case."),
-    (cost, "What accuracy costs in time."),
-    (check, "Spur gears solved whole by scikit-fem alone, compared with the stated errors."),
-    (verify, "Printed numbers, other programs and independent code, compared here and now."),
-    (export, "Drawings and meshes for other programs."),
-    (schema, "What editors need to complete and check case files."),
+    (sweep, "Parameter study over a grid of values."),
+    (effects, "Influence of each effect on the results."),
+    (cost, "Accuracy versus computing time."),
+    (check, "Independent FE solution (scikit-fem) of the spur gears, compared with the estimated errors."),
+    (verify, "Run the verification against published values, other programs and independent code."),
+    (export, "Export drawings, solids and meshes."),
+    (schema, "Write the JSON schema for editors."),
 )
 
 for _command, _short in COMMANDS:
     app.command(cls=Command, short_help=_short)(_command)
 
 
-_NO_MEMORY = "out of memory; results of earlier runs are as they were. Ask for less at once, or allow more."
+_NO_MEMORY = (
+    "out of memory; results of earlier runs are unchanged. Reduce the problem size or increase the memory limit."
+)
 
 
 def main() -> None:
@@ -117,7 +119,7 @@ def main() -> None:
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
     except _Stopped as request:
-        leave(f"stopped by {request.name}; results of earlier runs are as they were.", 128 + request.number)
+        leave(f"stopped by {request.name}; results of earlier runs are unchanged.", 128 + request.number)
     except FegearError as error:
         leave(str(error), 2)
     except MemoryError:
@@ -132,7 +134,7 @@ def main() -> None:
             leave(_NO_MEMORY, 2)
         if error.errno not in NO_ROOM:
             if _nowhere():
-                leave("the folder that it was started in does not exist any more; change into another one.", 2)
+                leave("the current folder no longer exists; change to another one.", 2)
             raise
         where = f" to {error.filename}" if error.filename else ""
         leave(f"cannot write{where} ({error.strerror}); existing output folders are intact.", 2)

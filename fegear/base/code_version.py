@@ -60,7 +60,7 @@ def _places(root: Path) -> Mapping[str, Path]:
     # The top loads whatever is asked of it, and is nothing that results are made by.
     found |= {place.stem: place for place in sorted(root.glob("*.py")) if place.stem != "__init__"}
     if not found:
-        raise RuntimeError(f"{root} has no source code of fegear, from which the version of results is made")
+        raise RuntimeError(f"{root} contains no fegear source code (required for the version of results)")
     return MappingProxyType(found)
 
 

@@ -79,8 +79,8 @@ def added(group: Group, kind: type[T], known: Mapping[str, object]) -> Added[T]:
         name = point.name
         whose[name] = f"{name} of {point.dist.name} {point.dist.version}" if point.dist else name
         if name in known or names.count(name) > 1:
-            rule = "has a name that is taken" if name in known else "has the name of another one"
-            broken[name] = InputError(f"fegear.{group}", whose[name], rule, "give the entry point another name")
+            rule = "has a name that is already used" if name in known else "has the name of another one"
+            broken[name] = InputError(f"fegear.{group}", whose[name], rule, "rename the entry point")
             continue
         try:
             with held_to_words(group, whose[name], "cannot be imported"):
@@ -91,7 +91,7 @@ def added(group: Group, kind: type[T], known: Mapping[str, object]) -> Added[T]:
         if isinstance(one, kind):
             found[name] = one
         else:
-            rule = f"is a {type(one).__name__}, and must be a {kind.__module__}.{kind.__qualname__}"
+            rule = f"is a {type(one).__name__}; must be a {kind.__module__}.{kind.__qualname__}"
             broken[name] = InputError(f"fegear.{group}", whose[name], rule, _REMEDY)
     return Added(found, whose, broken)
 

@@ -6,15 +6,15 @@ from importlib.util import find_spec
 
 #: Extras of pyproject.toml by name: their library, and what it is needed for.
 EXTRAS = {
-    "motion": ("numba", "motion over time is computed by machine code that numba makes"),
-    "space": ("pyvista", "pictures in space are drawn by pyvista"),
+    "motion": ("numba", "motion in the time domain requires numba"),
+    "space": ("pyvista", "3D figures require pyvista"),
 }
 
 
 def install(extra: str) -> str:
     """What is missing, and the line that installs it."""
     library, why = EXTRAS[extra]
-    return f"{why}, and {library} is not installed; install it with: pip install 'fegear[{extra}]'"
+    return f"{why}; {library} is not installed. Install it with: pip install 'fegear[{extra}]'"
 
 
 def absent(extra: str) -> bool:

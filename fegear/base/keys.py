@@ -111,7 +111,7 @@ def function_name(function: Callable[..., object]) -> object:
         return [function_name(function.func), function.args, function.keywords]
     name = f"{function.__module__}.{function.__qualname__}"
     if "<" in name:
-        raise ValueError(f"{name} is no function of a module, so that other processes cannot import it")
+        raise ValueError(f"{name} is not a module-level function and cannot be imported by other processes")
     return name if name.startswith("fegear.") else [name, _foreign_code(function.__module__)]
 
 

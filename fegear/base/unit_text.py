@@ -76,7 +76,7 @@ def split(text: str) -> tuple[float, str]:
         raise _unreadable(stripped, error) from None
     if not blank and unit.startswith("/") and len(number) > 1 and number.endswith("1"):
         raise UnreadableError(
-            f"can be read as {number} {unit} and as {number[:-1]} 1{unit}", f'write "{number} / {unit.strip("/ ")}"'
+            f"is ambiguous: {number} {unit} or {number[:-1]} 1{unit}", f'write "{number} / {unit.strip("/ ")}"'
         )
     return float(number), name
 
@@ -97,9 +97,7 @@ def canonical(unit: str) -> str:
         text = f"1{text}"
     if _UNIT.fullmatch(text) is None:
         if _BELOW_THE_LINE.fullmatch(text):
-            raise UnreadableError(
-                f"leaves open what stands below the line in {shown(unit)}", "put it in parentheses: N/(mm*um)"
-            )
+            raise UnreadableError(f"is ambiguous: denominator unclear in {shown(unit)}", "use parentheses: N/(mm*um)")
         raise UnreadableError("is not a number and a unit")
     alone = re.fullmatch(r"([A-Za-z]+)\^-1", text)
     return f"1/{alone[1]}" if alone else text
@@ -116,16 +114,16 @@ def _unreadable(text: str, why: UnreadableError | None = None) -> UnreadableErro
         whole, decimals, unit = match.groups(default="")
         remedy = f'write "{whole or "0"}.{decimals} {unit}"'
         if whole.strip("+-0") and len(decimals) == 3 and len(whole.strip("+-")) <= 3:
-            remedy += f', or "{whole}{decimals} {unit}" if the comma parts thousands'
-        return UnreadableError("has a comma in its number", remedy)
+            remedy += f', or "{whole}{decimals} {unit}" if the comma separates thousands'
+        return UnreadableError("contains a comma", remedy)
     if match := _THOUSANDS.fullmatch(text):
         plain = re.sub(r"[^-+0-9.]", "", match[1])
-        return UnreadableError("has its thousands parted", f'write "{plain} {match[2]}"')
+        return UnreadableError("contains thousands separators", f'write "{plain} {match[2]}"')
     if match := _FRACTION.fullmatch(text):
         whole, above, below, unit = match.groups()
         if int(below):
             value = int(whole or 0) + int(above) / int(below)
-            return UnreadableError("has a fraction for a number", f'write "{value:.9g} {unit}"')
+            return UnreadableError("contains a fraction", f'write "{value:.9g} {unit}"')
     if "," in text:
-        return UnreadableError("has a comma in its number", "write the decimal point as a point, nothing for thousands")
-    return why or UnreadableError("does not begin with a number")
+        return UnreadableError("contains a comma", "use a decimal point and no thousands separator")
+    return why or UnreadableError("must begin with a number")

@@ -163,11 +163,11 @@ def _celsius(number: float, unit: str) -> float:
         raise UnreadableError("has no unit, but a temperature needs one", _choices("temperature"))
     if unit not in TEMPERATURES:
         rule = "has an unknown unit" if unit not in UNITS else "is not a temperature"
-        raise UnreadableError(rule, 'write degC, degF or K: "60 degC"')
+        raise UnreadableError(rule, 'use degC, degF or K: "60 degC"')
     size, zero = TEMPERATURES[unit]
     value = number * size + zero
     if value < -273.15:
-        raise UnreadableError("lies below absolute zero", "check the number and its unit")
+        raise UnreadableError("is below absolute zero", "check the number and its unit")
     return value
 
 
@@ -178,7 +178,7 @@ def _kind(dimension: str) -> str:
 
 def _choices(dimension: str) -> str:
     some = ", ".join(list(EVERYDAY[dimension])[:4])
-    return f'{_kind(dimension)} is expected, e.g. in {some}; write for example "{DIMENSIONS[dimension].example}"'
+    return f'{_kind(dimension)} is expected, e.g. in {some}; for example "{DIMENSIONS[dimension].example}"'
 
 
 def unit_size(unit: str, dimension: str, key: str = "unit") -> float:
@@ -226,11 +226,11 @@ def to_si(text: object, dimension: str, key: str = "value") -> float:
     InputError
         If the text is no number with a unit, or the unit has the wrong dimension.
     """
-    kind, remedy = _kind(dimension), f'write for example "{DIMENSIONS[dimension].example}"'
+    kind, remedy = _kind(dimension), f'for example "{DIMENSIONS[dimension].example}"'
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise InputError(key, shown(text), f"must be {kind} with its unit", remedy)
     if isinstance(text, (int, float)):
-        raise InputError(key, shown(text), f"is a bare number, but {kind} needs a unit", remedy)
+        raise InputError(key, shown(text), f"has no unit; {kind} requires one", remedy)
     try:
         number, unit = split(text)
         value = _celsius(number, unit) if dimension == "temperature" else number * _size(unit, dimension)

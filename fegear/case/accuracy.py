@@ -11,7 +11,7 @@ from fegear.case.part import Number, Part, refuse
 
 def _tolerance(value: float) -> float:
     if not 1e-6 <= value <= 0.5:
-        raise refuse("must lie between 1e-6 and 0.5 (a relative error)", "1e-3 is the default", value=value)
+        raise refuse("must be a relative error between 1e-6 and 0.5", "1e-3 is the default", value=value)
     return value
 
 
@@ -24,62 +24,63 @@ class AccuracyPart(Part):
 
     tolerance: Annotated[Number, AfterValidator(_tolerance)] = Field(
         default=1e-3,
-        description="Relative error, 1e-6 to 0.5, to which compliances and root stresses are solved; finer settings "
-        "are tried while the estimate misses it, and remarks say where it still does.",
+        description="Target relative error of compliances and root stresses, 1e-6 to 0.5. The mesh is refined until "
+        "the estimated error meets it; otherwise a note is issued.",
     )
     solver: Literal["condensed", "scikit-fem"] = Field(
         default="condensed",
-        description="What assembles a tooth's sector and eliminates its inner unknowns: `condensed` (nested "
-        "dissection) or `scikit-fem` (its own asm, condense and solve). The numbers agree to round-off; `scikit-fem` "
-        "takes several times as long.",
+        description="Solver of the tooth sector: `condensed` (nested dissection) or `scikit-fem` (its own asm, "
+        "condense and solve). Results agree to round-off; `scikit-fem` takes several times as long.",
     )
     order: Annotated[int, Field(ge=2, le=4)] | None = Field(
-        default=None, description="Polynomial order of the elements, 2 to 4; without it by the tolerance."
+        default=None, description="Polynomial order of the elements, 2 to 4. Default: chosen from the tolerance."
     )
     root_edge_length: EdgeLength | None = Field(
-        default=None, description="Longest edge along the fillet, in modules; without it by the tolerance."
+        default=None, description="Maximum edge length along the fillet, in modules. Default: from the tolerance."
     )
     root_fraction: Annotated[Number, Field(ge=1e-4, le=2.0)] | None = Field(
         default=None,
-        description="Longest edge along a fillet as a fraction of its radius of curvature; without it by the "
+        description="Maximum edge length along a fillet relative to its radius of curvature. Default: from the "
         "tolerance.",
     )
     flank_edge_length: EdgeLength | None = Field(
-        default=None, description="Edges along the flank, in modules; without it by the tolerance."
+        default=None, description="Edge length along the flank, in modules. Default: from the tolerance."
     )
     tip_edge_length: EdgeLength | None = Field(
-        default=None, description="Edges at the tip, in modules; without it by the tolerance."
+        default=None, description="Edge length at the tip, in modules. Default: from the tolerance."
     )
     junction_edge_length: EdgeLength | None = Field(
-        default=None, description="Edges where flank and fillet meet, in modules; without it by the tolerance."
+        default=None,
+        description="Edge length at the transition from flank to fillet, in modules. Default: from the tolerance.",
     )
     back_edge_length: EdgeLength | None = Field(
-        default=None, description="Edges on the unloaded flank, in modules; without it by the tolerance."
+        default=None, description="Edge length on the unloaded flank, in modules. Default: from the tolerance."
     )
     growth: EdgeLength | None = Field(
-        default=None, description="How fast edges grow away from the fillet; without it by the tolerance."
+        default=None, description="Growth rate of edge lengths away from the fillet. Default: from the tolerance."
     )
     tip_growth: EdgeLength | None = Field(
-        default=None, description="How fast edges grow away from the tip corner; without it by the tolerance."
+        default=None, description="Growth rate of edge lengths away from the tip corner. Default: from the tolerance."
     )
     side_growth: EdgeLength | None = Field(
-        default=None, description="How fast edges grow away from the outline; without it by the tolerance."
+        default=None,
+        description="Growth rate of edge lengths away from the tooth outline. Default: from the tolerance.",
     )
     body_fraction: Annotated[Number, Field(ge=1e-3, le=10.0)] | None = Field(
         default=None,
-        description="Largest edge in the body as a fraction of the sector's width; without it by the tolerance.",
+        description="Maximum edge length in the body relative to the sector width. Default: from the tolerance.",
     )
     rim_fraction: Annotated[Number, Field(ge=1e-3, le=1.0)] | None = Field(
         default=None,
-        description="Largest edge in the body as a fraction of the rim's thickness; without it by the tolerance.",
+        description="Maximum edge length in the body relative to the rim thickness. Default: from the tolerance.",
     )
     corner_distance: Annotated[Number, Field(gt=0.0, le=0.5)] | None = Field(
         default=None,
-        description="Nearer to a corner of the flank the exact wedge gives c_0, and no pressure on the mesh is "
-        "narrower; in modules, without it 0.006.",
+        description="Distance from a flank corner below which c_0 is extrapolated with the wedge solution [modules]. "
+        "Default: 0.006.",
     )
     patch_half_width: Annotated[Number, Field(gt=0.0, le=0.5)] | None = Field(
         default=None,
-        description="Half-width of the wider of the two pressures that load the mesh, in modules; without it by the "
-        "tolerance.",
+        description="Half-width of the wider of the two pressure patches applied to the mesh, in modules. Default: "
+        "from the tolerance.",
     )

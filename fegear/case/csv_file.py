@@ -46,8 +46,8 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
     for number, row in rows:
         if len(row) != len(heads):
             raise InputError(
-                key, f'"{path.name}"', f"has {len(row)} entries in line {number} under {len(heads)} heads",
-                "decimal commas? write points",
+                key, f'"{path.name}"', f"has {len(row)} entries in line {number} but {len(heads)} column heads",
+                "use decimal points, not commas",
             )  # fmt: skip
     columns: dict[str, NDArray[np.float64]] = {}
     for i, head in enumerate(heads):
@@ -56,9 +56,11 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
             continue
         name = match["name"]
         if name in columns:
-            raise InputError(key, f'"{path.name}"', f"has two columns {name}", "leave one of them out")
+            raise InputError(key, f'"{path.name}"', f"has two columns {name}", "remove one of them")
         if not dimensions[name] and match["unit"]:
-            raise InputError(key, f'"{path.name}"', f"has a unit over column {name}, a plain number", "leave it out")
+            raise InputError(
+                key, f'"{path.name}"', f"has a unit in the head of column {name}, which is dimensionless", "remove it"
+            )
         dimension = dimensions[name]
         scale = unit_size(match["unit"] or "", dimension, f"{key}, column {name}") if dimension else 1.0
         columns[name] = scale * np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
@@ -69,17 +71,17 @@ def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
     """Heads and rows with the numbers of their lines, the last entry of each without the empty one behind a comma."""
     every = read_text(path, key).splitlines()
     if len(every) > _MOST_LINES:
-        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "drop every second")
+        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "use every second point")
     lines = [(number, line) for number, line in enumerate(every, start=1) if line.strip()]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if len(lines) < 2:
-        raise InputError(key, f'"{path.name}"', "has no heads with numbers below them")
+        raise InputError(key, f'"{path.name}"', "must have column heads with numbers below")
     head = lines[0][1]
     parting = next((sign for sign in ",;\t" if sign in head), ",")
     try:
         rows = [(number, next(csv.reader([line], delimiter=parting, strict=True))) for number, line in lines]
     except csv.Error as error:
-        raise InputError(key, f'"{path.name}"', f"is no table that can be read ({error})") from None
+        raise InputError(key, f'"{path.name}"', f"is not a readable table ({error})") from None
     if all(not row[-1].strip() for _, row in rows):
         rows = [(number, row[:-1]) for number, row in rows]
     return rows
@@ -88,7 +90,7 @@ def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
 def _entry(text: str, path: Path, key: str, where: str) -> float:
     value = plain_number(text)
     if value is None:
-        raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is no number")
+        raise InputError(key, f'"{path.name}"', f"contains {shown(text)} in {where}: not a number")
     if not math.isfinite(value):
         raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
     return value

@@ -36,25 +36,23 @@ class ChartPart(Part):
     """``chart = { amounts | amounts_over_delta, lengths, loads, shape }``: equal tip reliefs on both gears."""
 
     amounts: Annotated[list[PositiveLength], Field(min_length=1)] | None = Field(
-        default=None, description="Amounts of tip relief; give these or `amounts_over_delta`."
+        default=None, description="Amounts of tip relief; alternatively `amounts_over_delta`."
     )
     amounts_over_delta: Positive | None = Field(
-        default=None, description="Amounts of tip relief in units of Welbourn's Delta; without both up to 1.6 Delta."
+        default=None, description="Amounts of tip relief in units of Welbourn's Delta. Default: up to 1.6 Delta."
     )
     lengths: Positive | None = Field(
-        default=None, description="Lengths in L_n of TM-89901, 1 from tip to HPSTC; without it up to 1.3."
+        default=None, description="Normalised lengths L_n of TM-89901 (1: from tip to HPSTC). Default: up to 1.3."
     )
     loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
-        default=None, description="Loads; without it those of the pair."
+        default=None, description="Loads. Default: those of the pair."
     )
-    shape: Shape = Field(
-        default="linear", description="How the removal grows from the start: straight, or as a parabola."
-    )
+    shape: Shape = Field(default="linear", description="Shape of the relief from its start: linear or parabolic.")
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:
         if self.amounts and self.amounts_over_delta:
-            raise refuse("contradicts amounts", "give either", key="amounts_over_delta")
+            raise refuse("contradicts amounts", "specify only one", key="amounts_over_delta")
         amounts = self.amounts or self.amounts_over_delta
         counts = [len(values) for values in (amounts, self.lengths, self.loads) if values]
         refuse_more(100_000, "candidates", *counts)
@@ -65,10 +63,10 @@ class RobustnessPart(Part):
     """``robustness = { load_factors, spacing_errors, relief_errors }``: deviations whose combinations are tried."""
 
     load_factors: Positive = Field(
-        default_factory=lambda: [0.7, 0.85, 1.0, 1.15, 1.3], description="Loads over the design load."
+        default_factory=lambda: [0.7, 0.85, 1.0, 1.15, 1.3], description="Load factors (load over design load)."
     )
     spacing_errors: Annotated[list[Length], Field(min_length=1)] = Field(
-        default_factory=lambda: [0.0], description="Spacing errors."
+        default_factory=lambda: [0.0], description="Pitch deviations (spacing errors)."
     )
     relief_errors: Annotated[list[Annotated[Number, Field(gt=-1.0)]], Field(min_length=1)] = Field(
         default_factory=lambda: [-0.2, 0.0, 0.2], description="Relative errors of the amount of relief."
@@ -84,26 +82,27 @@ class RobustnessPart(Part):
 class AllowablePart(Part):
     """``allowable = { root_tension, hertz_pressure }``: stresses that `peak = "least-stress"` weighs by."""
 
-    root_tension: PositivePressure = Field(description="Root tension that may not be exceeded.")
-    hertz_pressure: PositivePressure = Field(description="Hertzian pressure that may not be exceeded.")
+    root_tension: PositivePressure = Field(description="Permissible root stress (tension side).")
+    hertz_pressure: PositivePressure = Field(description="Permissible Hertzian pressure.")
 
 
 class FilmPart(Part):
     """``film = { x, thickness }``: the layer of oil between the flanks at the design load."""
 
     x: Annotated[list[Length], Field(min_length=1)] = Field(
-        description="Places on the line of action from the pitch point, rising; straight between them, level beyond."
+        description="Positions on the line of action from the pitch point, increasing; linear interpolation, "
+        "constant beyond the ends."
     )
     thickness: Annotated[list[LengthOrZero], Field(min_length=1)] = Field(
-        description="Thickness of the film at each place, such as the `film_thickness` of `flank-surface`."
+        description="Film thickness at each position, such as `film_thickness` of `flank-surface`."
     )
 
     @model_validator(mode="after")
     def _matching(self) -> Self:
         if len(self.thickness) != len(self.x):
-            raise refuse(f"must have one value for each of the {len(self.x)} places of x", key="thickness")
+            raise refuse(f"must have one value for each of the {len(self.x)} values of x", key="thickness")
         if any(b <= a for a, b in pairwise(self.x)):
-            raise refuse("must rise from place to place", "sort the places, each of them once", key="x")
+            raise refuse("must be strictly increasing", "sort the values and remove duplicates", key="x")
         return self
 
 
@@ -111,24 +110,24 @@ class FilmPart(Part):
 ZoneLength = Annotated[
     PositiveLength | None,
     Field(
-        description="Length of the design zone on the line of action; without it and `contact_ratio` the whole path of "
-        "contact."
+        description="Length of the design zone on the line of action. Default: from `contact_ratio`, otherwise the "
+        "full path of contact."
     ),
 ]
 ZoneRatio = Annotated[
-    PositiveNumber | None, Field(description="Length of the design zone in base pitches; give this or `length`.")
+    PositiveNumber | None, Field(description="Length of the design zone in base pitches; alternatively `length`.")
 ]
 ZoneCentre = Annotated[
     Length | None,
-    Field(description="Middle of the design zone, from the pitch point; without it the middle of the path."),
+    Field(description="Middle of the design zone, from the pitch point. Default: middle of the path of contact."),
 ]
 
 
 class DesignPart(Part):
     """Which pair is to be relieved, for which load, and how its teeth are to share it."""
 
-    pair: str | None = Field(default=None, description="Which pair; without it the only one.")
-    load: PositiveForce | None = Field(default=None, description="Design load; without it the pair's nominal load.")
+    pair: str | None = Field(default=None, description="Pair. Default: the only pair.")
+    load: PositiveForce | None = Field(default=None, description="Design load. Default: nominal load of the pair.")
     length: ZoneLength = None
     contact_ratio: ZoneRatio = None
     centre: ZoneCentre = None
@@ -136,54 +135,56 @@ class DesignPart(Part):
         default="sinusoidal", description="Family of the loading ramps: sinusoidal (4.12) or polynomial (4.14)."
     )
     slope: Annotated[Number, Field(ge=0.0)] = Field(
-        default=1.0, description="Slope s of the load at contact initiation; 1 is a straight line."
+        default=1.0, description="Slope s of the load at contact initiation; 1: linear ramp."
     )
-    exponent: int | None = Field(default=None, description="Odd exponent r of the polynomial family; without it 7.")
+    exponent: int | None = Field(default=None, description="Odd exponent r of the polynomial family. Default: 7.")
     inner_slope: Annotated[Number, Field(ge=0.0)] = Field(
         default=1.0, description="Slope s of the inner ramps, for contact ratios above 2."
     )
     peak: PositiveNumber | Literal["least-root-stress", "least-stress"] | None = Field(
         default=None,
-        description="Largest load of a tooth pair over the design load (F), for contact ratios above 2, or "
-        "`least-root-stress`, or `least-stress` for root tension and Hertzian pressure together; without it the middle "
-        "of its range.",
+        description="Peak tooth pair load relative to the design load (F), for contact ratios above 2; or "
+        "`least-root-stress`, or `least-stress` (root stress and Hertzian pressure). Default: middle of "
+        "the range.",
     )
     allowable: AllowablePart | None = Field(
         default=None,
-        description='With `peak = "least-stress"`: the larger share of these stresses is made least.',
+        description='Permissible stresses for `peak = "least-stress"`: the higher utilisation is minimised.',
     )
     film: FilmPart | None = Field(
         default=None,
-        description="Layer of oil between the flanks, half of which each relief makes up for; without it none.",
+        description="Oil film thickness; each gear's relief compensates half of it. Default: none.",
     )
     grind: list[Shape] = Field(
-        default_factory=_both_shapes, description="Shapes of tip relief that a shop can grind; an empty list for none."
+        default_factory=_both_shapes, description="Shapes of grindable tip relief; empty list: none."
     )
     roll_angles: Annotated[list[Angle], Field(min_length=1), at_most(10_000, "roll angles")] | None = Field(
         default=None,
-        description="Roll angles on the active profile at which `relief_points_<pair>_<gear>` gives load, deflection "
-        "and relief.",
+        description="Roll angles on the active profile in the table `relief_points_<pair>_<gear>` (load, deflection, "
+        "relief).",
     )
     metric: Literal["effective_error", "peak_to_peak"] = Field(
-        default="peak_to_peak", description="What the chart is judged by: peak to peak, or the effective error A_e."
+        default="peak_to_peak",
+        description="Objective of the chart: peak-to-peak transmission error or effective error A_e.",
     )
     chart: ChartPart = Field(
         default_factory=ChartPart,
-        description="Equal tip reliefs on both gears that are tried, for `relief-chart` and `relief-curves`.",
+        description="Equal tip reliefs on both gears to evaluate, for `relief-chart` and `relief-curves`.",
     )
     robustness: RobustnessPart = Field(
-        default_factory=RobustnessPart, description="Deviations whose combinations are tried, for `robustness`."
+        default_factory=RobustnessPart, description="Deviations to combine, for `robustness`."
     )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
         if self.length is not None and self.contact_ratio is not None:
-            raise refuse("contradicts length", "give either length or contact_ratio", key="contact_ratio")
+            raise refuse("contradicts length", "specify either length or contact_ratio", key="contact_ratio")
         if (self.peak == "least-stress") != (self.allowable is not None):
             remedy = (
-                'give peak = "least-stress" and allowable = { root_tension = "430 MPa", hertz_pressure = "1200 MPa" }'
+                'specify peak = "least-stress" and allowable = { root_tension = "430 MPa", hertz_pressure = "1200 '
+                'MPa" }'
             )
-            raise refuse('goes with peak = "least-stress", and that with it', remedy, key="allowable")
+            raise refuse('requires peak = "least-stress", and vice versa', remedy, key="allowable")
         if self.exponent is not None and self.family != "polynomial":
-            raise refuse('has a meaning only with family = "polynomial"', key="exponent")
+            raise refuse('requires family = "polynomial"', key="exponent")
         return self

@@ -24,7 +24,7 @@ class DeviationsPart(Part):
         default=None, description="Helix slope deviation f_Hbeta over the face width."
     )
     profile_slope: LengthOrZero | None = Field(
-        default=None, description="Profile slope deviation f_Halpha, for `robustness` alone: no rating asks for it."
+        default=None, description="Profile slope deviation f_Halpha, for `robustness` only (not used in the rating)."
     )
 
     @property
@@ -37,6 +37,6 @@ class DeviationsPart(Part):
         for key in ("base_pitch", "profile_form", "helix_slope", "profile_slope"):
             value = getattr(self, key)
             if value is not None and value > _LARGEST:
-                rule = f"is larger than that of any gear, {_LARGEST * 1e3:g} mm"
+                rule = f"exceeds the plausible maximum of {_LARGEST * 1e3:g} mm"
                 raise refuse(rule, "check the unit", key=key, value=f"{value * 1e3:.6g} mm")
         return self

@@ -32,12 +32,12 @@ class SpeedsPart(Part):
     model_config = spelt_also(lambda table: table["properties"]["values"])
 
     values: Annotated[list[PositiveSpeed], Field(min_length=1), at_most(100_000, "speeds")] | None = Field(
-        default=None, description="The speeds themselves; a list in place of the table says the same."
+        default=None, description="Speeds as a list (instead of the table)."
     )
-    start: PositiveSpeed | None = Field(default=None, description="Lowest speed.")
-    stop: PositiveSpeed | None = Field(default=None, description="Highest speed.")
+    start: PositiveSpeed | None = Field(default=None, description="Minimum speed.")
+    stop: PositiveSpeed | None = Field(default=None, description="Maximum speed.")
     count: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
-        default=None, description="Speeds in the range, evenly spaced."
+        default=None, description="Number of equally spaced speeds."
     )
 
     @model_validator(mode="before")
@@ -49,7 +49,7 @@ class SpeedsPart(Part):
     def _one_way(self) -> Self:
         given = [key for key in ("start", "stop", "count") if getattr(self, key) is not None]
         if self.values is not None and given:
-            raise refuse("contradicts the list of values", "give either", key=given[0])
+            raise refuse("contradicts the list of values", "specify only one", key=given[0])
         if self.values is None and len(given) < 3:
             raise refuse(
                 "is incomplete", 'write { start = "2000 rpm", stop = "16000 rpm", count = 57 }, or a list of speeds',
@@ -70,10 +70,12 @@ class SpeedsPart(Part):
 class FrequenciesPart(Part):
     """``frequencies = { start, stop, count, spacing }``."""
 
-    start: Frequency = Field(default=10.0, description="Lowest frequency.")
-    stop: Frequency = Field(default=10_000.0, description="Highest frequency.")
-    count: Annotated[int, Field(ge=2, le=1_000_000)] = Field(default=1000, description="Frequencies in the range.")
-    spacing: Literal["linear", "logarithmic"] = Field(default="linear", description="How the frequencies are spaced.")
+    start: Frequency = Field(default=10.0, description="Minimum frequency.")
+    stop: Frequency = Field(default=10_000.0, description="Maximum frequency.")
+    count: Annotated[int, Field(ge=2, le=1_000_000)] = Field(default=1000, description="Number of frequencies.")
+    spacing: Literal["linear", "logarithmic"] = Field(
+        default="linear", description="Spacing of the frequencies: linear or logarithmic."
+    )
 
     @model_validator(mode="after")
     def _rising(self) -> Self:
@@ -107,35 +109,39 @@ class FrictionPart(Part):
         for key in ("viscosity", "coefficient"):
             given = getattr(self, key) is not None
             if key == needed and not given:
-                raise refuse(f'is needed by law = "{self.law}"', f"give {key}", key=key, value="(not given)")
+                raise refuse(f'is required by law = "{self.law}"', f"specify {key}", key=key, value="(not given)")
             if key != needed and given:
-                raise refuse(f'has no meaning with law = "{self.law}"', "leave it out", key=key)
+                raise refuse(f'is not used with law = "{self.law}"', "remove it", key=key)
         return self
 
 
 class UnequalReliefPart(Part):
     """``{ driver, driven, length }``: amounts of tip relief over Delta on the two gears, and L_n."""
 
-    driver: Annotated[Number, Field(ge=0.0)] = Field(description="Amount of tip relief on the driver, over Delta.")
-    driven: Annotated[Number, Field(ge=0.0)] = Field(description="Amount of tip relief on the driven gear, over Delta.")
-    length: PositiveNumber = Field(description="Length of both reliefs in L_n.")
+    driver: Annotated[Number, Field(ge=0.0)] = Field(
+        description="Amount of tip relief on the driver, in units of Welbourn's Delta."
+    )
+    driven: Annotated[Number, Field(ge=0.0)] = Field(
+        description="Amount of tip relief on the driven gear, in units of Welbourn's Delta."
+    )
+    length: PositiveNumber = Field(description="Normalised length L_n of both reliefs.")
 
 
 class DesignChartPart(Part):
     """``chart = { mesh, amounts, lengths, unequal }``: tip relief on both gears, over Delta and in L_n of TM-89901."""
 
-    mesh: str | None = Field(default=None, description="Which mesh of the train; without it the only one.")
+    mesh: str | None = Field(default=None, description="Mesh of the train. Default: the only mesh.")
     amounts: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
-        description="Amounts of tip relief over Delta, on both gears."
+        description="Amounts of tip relief in units of Welbourn's Delta, equal on both gears."
     )
     lengths: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
-        description="Lengths L_n of the reliefs, from tip (0) to HPSTC (1)."
+        description="Normalised lengths L_n of the reliefs, from 0 (tip) to 1 (HPSTC)."
     )
     shape: Literal["linear", "parabolic"] = Field(
-        default="linear", description="How the removal grows from the start: straight, or as a parabola."
+        default="linear", description="Shape of the relief from its start: linear or parabolic."
     )
     unequal: list[UnequalReliefPart] = Field(
-        default_factory=list, max_length=1000, description="Further reliefs with an amount for each gear."
+        default_factory=list, max_length=1000, description="Additional reliefs with a separate amount for each gear."
     )
 
     @model_validator(mode="after")
@@ -148,50 +154,50 @@ class DynamicsPart(Part):
     """How the train is run; speeds are those of `speed_of`, by default the first body."""
 
     speed: PositiveSpeed | None = Field(
-        default=None, description="Speed of histories and spectra; without it the only one of `speeds`."
+        default=None, description="Speed for time histories and spectra. Default: the only value of `speeds`."
     )
     speeds: Table[SpeedsPart] | None = Field(
-        default=None, description="Speeds of sweeps: a list, or a range; without it `speed`."
+        default=None, description="Speeds of sweeps, list or range. Default: `speed`."
     )
-    speed_of: str | None = Field(default=None, description="Body whose speed that is; without it the first.")
+    speed_of: str | None = Field(default=None, description="Body to which the speeds refer. Default: the first.")
     harmonics: Annotated[int, Field(ge=1, le=20_000)] = Field(
-        default=64, description="Harmonics of each mesh; tooth forces take at least 256."
+        default=64, description="Number of harmonics of each mesh; at least 256 for tooth forces."
     )
-    lines: Annotated[int, Field(ge=1, le=50)] = Field(default=3, description="Mesh harmonics in the Campbell diagram.")
+    lines: Annotated[int, Field(ge=1, le=50)] = Field(
+        default=3, description="Number of mesh harmonics in the Campbell diagram."
+    )
     frequencies: Table[FrequenciesPart] = Field(
         default_factory=FrequenciesPart, description="Frequencies of the dynamic increments."
     )
     determinants: bool = Field(
         default=False,
-        description="Include in `dynamic-increments` the determinants of a four-square rig (Mark 2.45 to 2.59) and "
-        "what they give beside the elimination.",
+        description="Include in `dynamic-increments` the determinants of a four-square rig (Mark 2.45 to 2.59), for "
+        "comparison with the elimination.",
     )
     positions: Annotated[int, Field(ge=3, le=100_000)] = Field(
-        default=201, description="Positions of one tooth pair in histories."
+        default=201, description="Number of roll positions of one tooth pair in histories."
     )
     direction: Literal["up", "down", "static", "rest"] = Field(
         default="down",
-        description="Whether each speed of a sweep starts from the motion of the one before (`down`, `up`) or afresh "
-        "(`static`, `rest`).",
+        description="Initial state at each speed: previous solution (`down`, `up`), static state or rest.",
     )
     tolerance: Annotated[Number, Field(gt=1e-12, le=1e-2)] = Field(
-        default=5e-4, description="Relative error of the dynamic factor where the motion repeats."
+        default=5e-4, description="Relative error of the dynamic factor for periodic motion."
     )
     method: Literal["shooting", "averaging"] = Field(
         default="shooting",
-        description="How a steady motion is found: Newton's method on the state after a period, or the iteration of "
-        "TM-100180, from the average of a period's start and end. Default: shooting.",
+        description="Method for the steady-state motion: Newton's method on the state after one period, or the "
+        "iteration of TM-100180 (average of the states at start and end of a period). Default: shooting.",
     )
     friction: Table[FrictionPart] = Field(
-        default_factory=FrictionPart, description="Friction between the teeth; it needs the effect `friction`."
+        default_factory=FrictionPart, description="Tooth friction; active with the effect `friction`."
     )
     loss_taken_by: str | None = Field(
         default=None,
-        description="Body whose torque makes up for the friction loss; without it that of `balance`, else of the "
-        "last torque.",
+        description="Body whose torque compensates the friction loss. Default: `balance`, else the last torque.",
     )
     chart: Table[DesignChartPart] | None = Field(
-        default=None, description="Tip reliefs that are tried, for `design-chart`."
+        default=None, description="Tip reliefs to evaluate, for `design-chart`."
     )
 
     @property

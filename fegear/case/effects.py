@@ -84,48 +84,47 @@ class EffectsPart(Part):
 
     start: Literal["none", "described"] = Field(
         default="none",
-        description="Effects before those named here: none, or those that the described gears and pairs call for, as "
-        "questions from Python start.",
+        description="Initial state of all effects: `none`, or those required by the gears and pairs described (as in "
+        "Python). Effects set here take precedence.",
     )
     corner_contact: Annotated[bool, Effect("no `friction`", ("corner searches", "corner contacts"), _always)] = Field(
-        default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
+        default=False, description="Corner contact: contact outside the path of contact due to tooth deflection."
     )
     neighbour_coupling: Annotated[
         bool,
         Effect(
-            'compliance source "fe" of plane teeth', ("neighbours",),
+            'plane (2D) teeth with compliance source "fe"', ("neighbours",),
             lambda pair: pair.pair.get("compliance", {}).get("source", "fe") == "fe",
         ),
-    ] = Field(default=False, description="Whether a loaded tooth bends its neighbours through the body.")  # fmt: skip
+    ] = Field(default=False, description="Coupling of neighbouring teeth through the gear body.")  # fmt: skip
     hertz: Annotated[
         Literal["load-dependent", "linear", "none"],
         Effect(
-            "a source with a contact of its own: no table",
+            "a compliance source other than a table",
             ("nonlinear steps",),
             _always,
             on="load-dependent",
-            words="contacts that widen with load",
+            words="load-dependent contact width",
         ),
     ] = Field(
         default="none",
-        description="Contact deformation: as it grows with the load, linearised at the nominal load, or neglected.",
+        description="Hertzian contact deformation: load-dependent, linearised at nominal load, or none.",
     )
     relief: Annotated[
         bool,
         Effect(
-            "`relief` on a gear; for pairs with a width also `lead`, `bias`, `topography`, and `modification` of the "
-            "pair",
+            "`relief` on a gear; for 3D pairs also `lead`, `bias`, `topography`, and `modification` of the pair",
             ("reliefs",),
             lambda pair: pair.has("relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())),
             of="flanks",
         ),
-    ] = Field(default=False, description="Whether profile and flank modifications count.")
+    ] = Field(default=False, description="Include profile and flank line modifications.")
     spacing_errors: Annotated[
         bool,
         Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors"), of="flanks"),
-    ] = Field(default=False, description="Whether spacing errors of the teeth count.")
+    ] = Field(default=False, description="Include pitch deviations (`spacing_errors`).")
     contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _moving, of="motion")] = Field(
-        default=False, description="Loss of contact and impacts in motion."
+        default=False, description="Loss of contact, backlash and impacts in the time domain."
     )
     friction: Annotated[
         bool,
@@ -137,24 +136,24 @@ class EffectsPart(Part):
     parametric: Annotated[
         bool,
         Effect(
-            "results in time", ("springs in time",), _moving, of="motion", words="stiffness that varies in time"
+            "results in time", ("springs in time",), _moving, of="motion", words="time-varying stiffness"
         ),
-    ] = Field(default=False, description="Whether the mesh stiffness varies in time.")  # fmt: skip
+    ] = Field(default=False, description="Include the time-varying mesh stiffness (parametric "
+                                         "excitation).")  # fmt: skip
     torque_ripple: Annotated[
         bool,
         Effect("`train.torque_ripple`", ("ripple lines",), lambda pair: pair.rippling, of="motion"),
-    ] = Field(default=False, description="Torques of the train that fluctuate, next to the excitation by its meshes.")
+    ] = Field(default=False, description="Torque ripple of the train, in addition to mesh excitation.")
     misalignment: Annotated[
         bool,
         Effect(
-            "`misalignment` of a helical pair or of one with a width, `line_error` of one with a width, or shafts that "
-            "carry both its gears",
+            "`misalignment` of a helical or 3D pair, `line_error` of a 3D pair, or shafts for both gears",
             ("misaligned flanks",),
             lambda pair: pair.wide and (pair.carried or pair.has("misalignment", "line_error")),
             of="flanks",
             plane=False,
         ),
-    ] = Field(default=False, description="Whether misalignment and line errors of a pair count.")
+    ] = Field(default=False, description="Include misalignment and line errors of pairs.")
 
     def is_on(self, name: str) -> bool:
         """Whether an effect is switched on."""

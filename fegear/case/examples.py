@@ -28,7 +28,7 @@ def folder() -> Path:
     for place in (package / "examples", package.parent / "cases"):
         if place.is_dir():
             return place
-    raise FegearError("the examples are not there; install fegear anew.")
+    raise FegearError("the examples are missing; reinstall fegear.")
 
 
 def names() -> list[str]:
@@ -47,7 +47,7 @@ def example(name: str) -> tuple[str, dict[str, bytes]]:
     """
     known = names()
     if name not in known:
-        raise InputError("--example", shown(name), "is no example", nearest(name, known))
+        raise InputError("--example", shown(name), "is not an example", nearest(name, known))
     path = folder() / f"{name}.toml"
     # Cases of papers lie a folder deeper than what they name, and meshes beside all cases: a copy has both below it.
     text = path.read_text("utf-8").replace('"../data/', '"data/').replace('"../meshes/', '"meshes/')

@@ -39,19 +39,17 @@ class FlankGridPart(Part):
     tip_lengths: list[PositiveLength] = Field(
         default_factory=list, description="Lengths of tip relief along the line of action."
     )
-    crownings: list[Length] = Field(default_factory=list, description="Amounts of lead crowning.")
-    end_amounts: list[Length] = Field(default_factory=list, description="Amounts of relief at the ends of the face.")
-    end_lengths: list[PositiveLength] = Field(
-        default_factory=list, description="Lengths of relief at the ends of the face."
-    )
-    slopes: list[Length] = Field(default_factory=list, description="Helix slopes over the face.")
-    biases: list[Length] = Field(default_factory=list, description="Amounts of bias.")
+    crownings: list[Length] = Field(default_factory=list, description="Amounts of lead crowning C_beta.")
+    end_amounts: list[Length] = Field(default_factory=list, description="Amounts of end relief.")
+    end_lengths: list[PositiveLength] = Field(default_factory=list, description="Lengths of end relief.")
+    slopes: list[Length] = Field(default_factory=list, description="Helix slope modifications over the face width.")
+    biases: list[Length] = Field(default_factory=list, description="Amounts of flank twist (bias).")
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
         for amounts, lengths in (("tip_amounts", "tip_lengths"), ("end_amounts", "end_lengths")):
             if bool(getattr(self, amounts)) != bool(getattr(self, lengths)):
-                raise refuse(f"needs {lengths} with it, and these need it", "give both or neither", key=amounts)
+                raise refuse(f"requires {lengths}, and vice versa", "specify both or neither", key=amounts)
         tips = 1 + len(self.tip_amounts) * len(self.tip_lengths)
         ends = 1 + len(self.end_amounts) * len(self.end_lengths)
         others = [1 + len(values) for values in (self.crownings, self.slopes, self.biases)]
@@ -62,9 +60,9 @@ class FlankGridPart(Part):
 class ScatterPart(Part):
     """``scatter = { over_face, levels }``: standard deviation of the misalignment, and levels that stand for it."""
 
-    over_face: LengthOrZero = Field(description="Standard deviation of the misalignment over the face.")
+    over_face: LengthOrZero = Field(description="Standard deviation of the misalignment over the face width.")
     levels: Annotated[int, Field(ge=2, le=9)] = Field(
-        default=3, description="Levels (of Gauss and Hermite) that stand for the scatter."
+        default=3, description="Number of Gauss-Hermite points for the scatter."
     )
 
 
@@ -73,10 +71,11 @@ class FlankMapPart(Part):
 
     over_face: Annotated[list[Length], Field(min_length=1)] | None = Field(
         default=None,
-        description="Misalignments that are mapped; without it to two deviations of the scatter, or 10 um.",
+        description="Misalignments of the map. Default: up to two standard deviations of the scatter, or 10 um.",
     )
     load_factors: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
-        default_factory=lambda: [0.25, 0.5, 0.75, 1.0, 1.25], description="Loads over the design load that are mapped."
+        default_factory=lambda: [0.25, 0.5, 0.75, 1.0, 1.25],
+        description="Load factors of the map (load over design load).",
     )
 
     @model_validator(mode="after")
@@ -88,12 +87,12 @@ class FlankMapPart(Part):
 class FlankDesignPart(Part):
     """Which pair's flanks are to be relieved, for which load, how teeth are to share it, and what can be ground."""
 
-    pair: str | None = Field(default=None, description="Which pair; without it the only one with a width.")
-    load: PositiveForce | None = Field(default=None, description="Design load; without it the pair's nominal load.")
+    pair: str | None = Field(default=None, description="Pair. Default: the only 3D pair.")
+    load: PositiveForce | None = Field(default=None, description="Design load. Default: nominal load of the pair.")
     loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
         default=None,
-        description="Loads over which the reliefs to grind are chosen: the worst of them counts, each transmission "
-        "error in proportion to its load; without it the design load.",
+        description="Loads for choosing the grindable reliefs: the maximum transmission error relative to its load "
+        "is minimised. Default: the design load.",
     )
     length: ZoneLength = None
     contact_ratio: ZoneRatio = None
@@ -102,35 +101,34 @@ class FlankDesignPart(Part):
         default=0.0, description="Slope s of the load at contact initiation."
     )
     end_length: LengthOrZero = Field(
-        default=0.0, description="Length at both ends of the face over which the design load falls to nothing."
+        default=0.0, description="Length at both face ends over which the design load decreases to zero."
     )
     gear: Literal["driver", "driven", "both"] = Field(
-        default="driver", description="Which gear gets the exact topography, or both by halves."
+        default="driver", description="Gear that receives the ideal topography, or `both` (one half each)."
     )
     positions: Annotated[int, Field(ge=8, le=256)] = Field(
-        default=24, description="Roll positions over one base pitch that the design stands on."
+        default=24, description="Number of mesh positions over one base pitch used in the design."
     )
     families: Annotated[list[Family], Field(min_length=1)] = Field(
         default_factory=_all_families,
-        description="What can be ground: tip reliefs, crowning and end relief, helix slope, bias.",
+        description="Grindable modifications: tip reliefs, crowning and end relief, helix slope, bias.",
     )
     grid: FlankGridPart | None = Field(
         default=None,
-        description="Reliefs to grind that are tried, all combinations; without it they follow from the depth of the "
-        "exact topography.",
+        description="Grindable reliefs to evaluate (all combinations). Default: from the depth of the ideal "
+        "topography.",
     )
     largest_face_load_factor: Annotated[Number, Field(gt=1.0)] | None = Field(
         default=None,
-        description="K_Hbeta that the reliefs to grind must keep to, at all loads and every level of the scatter; "
-        "without it there is no limit.",
+        description="Maximum K_Hbeta for all loads and misalignments. Default: no limit.",
     )
-    scatter: ScatterPart | None = Field(default=None, description="How much the misalignment scatters.")
+    scatter: ScatterPart | None = Field(default=None, description="Scatter of the misalignment.")
     map: FlankMapPart = Field(
-        default_factory=FlankMapPart, description="Misalignments and loads over which the chosen relief is mapped."
+        default_factory=FlankMapPart, description="Misalignments and loads of the map of the chosen relief."
     )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
         if self.length is not None and self.contact_ratio is not None:
-            raise refuse("contradicts length", "give either length or contact_ratio", key="contact_ratio")
+            raise refuse("contradicts length", "specify either length or contact_ratio", key="contact_ratio")
         return self

@@ -60,12 +60,12 @@ class MaterialPart(Part):
 
 #: Keys of gears that an internal one has not, and what it has instead.
 _EXTERNAL_ONLY = {
-    "rack": "describe its cutter",
-    "bore_radius": "write outer_radius or rim_thickness, for its body is held outside the teeth",
-    "web_thickness": "leave it out",
+    "rack": "specify its cutter",
+    "bore_radius": "set outer_radius or rim_thickness: the body of an internal gear is fixed at its outside",
+    "web_thickness": "remove it",
     "body": "write outer_radius or rim_thickness",
-    "tooth_mesh": "leave it out: its mesh is generated",
-    "tooth_mesh_fillet": "leave it out",
+    "tooth_mesh": "remove it: its mesh is generated",
+    "tooth_mesh_fillet": "remove it",
 }
 
 
@@ -73,129 +73,122 @@ class GearPart(Part):
     """One gear: tooth, size, body and material."""
 
     teeth: int = Field(description="Number of teeth, 5 to 1000.")
-    module: PositiveLength | None = Field(
-        default=None, description="Module, the pitch diameter over the number of teeth; give this or `diametral_pitch`."
-    )
+    module: PositiveLength | None = Field(default=None, description="Module m; alternatively `diametral_pitch`.")
     diametral_pitch: PositiveInverseLength | None = Field(
-        default=None, description="Diametral pitch, teeth per length of pitch diameter; give this or `module`."
+        default=None, description="Diametral pitch, teeth per length of reference diameter; alternatively `module`."
     )
     pressure_angle: Angle = Field(default=math.radians(20.0), description="Pressure angle of the basic rack.")
-    profile_shift: Number = Field(
-        default=0.0, description="Profile shift coefficient x: how far the rack is moved outward, in modules."
-    )
+    profile_shift: Number = Field(default=0.0, description="Profile shift coefficient x.")
     rack: Table[RackPart] = Field(
         default_factory=RackPart,
-        description="The basic rack that cuts the gear: a profile of ISO 53 by name, or a table in modules; without "
-        "it ISO 53 C.",
+        description="Basic rack (tool): profile of ISO 53 by name, or a table in modules. Default: ISO 53 C.",
     )
     thickness_allowance: LengthOrZero = Field(
-        default=0.0, description="Reduction of the tooth thickness at the pitch circle, cut by feeding the rack deeper."
+        default=0.0,
+        description="Tooth thickness allowance: reduction of the tooth thickness at the reference "
+        "circle, made by tool infeed.",
     )
     tip_diameter: PositiveLength | None = Field(
         default=None,
-        description="Diameter of the tip circle; without it the pitch diameter plus 2 (x + addendum) modules.",
+        description="Tip diameter. Default: reference diameter + 2 m (x + h_aP*).",
     )
-    tip_radius_rounding: LengthOrZero = Field(
-        default=0.0, description="Radius that rounds the edge between flank and tip circle; zero leaves it sharp."
-    )
-    tip_chamfer: LengthOrZero = Field(
-        default=0.0, description="Height of the chamfer between flank and tip circle; zero leaves the edge sharp."
-    )
+    tip_radius_rounding: LengthOrZero = Field(default=0.0, description="Tip rounding radius; 0: sharp tip edge.")
+    tip_chamfer: LengthOrZero = Field(default=0.0, description="Height of the tip chamfer; 0: none.")
     bore_radius: PositiveLength | None = Field(
         default=None,
-        description="Radius at which the body is held fast, inside the root circle; without it half the root radius.",
+        description="Radius at which the gear body is fixed, inside the root circle. Default: half the root radius.",
     )
     internal: bool = Field(
         default=False,
-        description="Whether the gear is a ring gear, whose teeth point toward its centre; it wants a `cutter`. A "
-        "positive `profile_shift` moves its teeth toward their tips (ISO 21771), so that its diameters shrink.",
+        description="Internal gear (ring gear); requires `cutter`. Sign of profile shift as in ISO 21771: positive "
+        "shift moves the profile towards the tooth tip (smaller diameters).",
     )
     cutter: Table[CutterPart] | None = Field(
-        default=None, description="The pinion-type cutter that cuts an internal gear, in the place of `rack`."
+        default=None, description="Pinion-type cutter of an internal gear, instead of `rack`."
     )
     outer_radius: PositiveLength | None = Field(
         default=None,
-        description="Radius at which an internal gear is held fast, outside its root circle; give this or "
+        description="Radius at which an internal gear is fixed, outside its root circle; alternatively "
         "`rim_thickness`.",
     )
     rim_thickness: PositiveLength | None = Field(
         default=None,
-        description="Rim s_R below the root circle, for Y_B, C_R and K_B of the ratings; without it what `bore_radius` "
-        f"leaves, or none. Internal gears: the held rim outside it, without it {USUAL_RING_RIM:g} modules.",
+        description="Rim thickness s_R for Y_B, C_R (ISO 6336) and K_B (AGMA 2101). Default: from `bore_radius`, "
+        f"otherwise solid. Internal gears: rim up to the fixed outer circle, default {USUAL_RING_RIM:g} "
+        "modules.",
     )
     web_thickness: PositiveLength | None = Field(
         default=None,
-        description="Thickness b_s of the web that carries the rim, for C_R of ISO 6336-1, at most twice the face; "
-        "`bore_radius` is then the inside of the rim. Without it the body is a disc as wide as the face.",
+        description="Web thickness b_s for C_R (ISO 6336-1), at most twice the face width; `bore_radius` is then the "
+        "inner radius of the rim. Default: solid disc.",
     )
     body: Table[GearBodyPart] | None = Field(
         default=None,
-        description="Rim, web and hub of a gear that is solved with its width, its bore held over the hub; without it "
-        "the body is a disc as wide as the face.",
+        description="Rim, web and hub of a 3D gear, its bore fixed over the hub. Default: solid disc of full face "
+        "width.",
     )
     rim_support: Table[RimSupportPart] | None = Field(
         default=None,
-        description="What carries the rim of an internal gear: pins or a spline; without it its outer circle is held.",
+        description="Support of the rim of an internal gear: pins or spline. Default: outer circle fixed.",
     )
     face_width: PositiveLength | None = Field(
-        default=None, description="Width of the gear; without it 1 mm, which no result per unit width depends on."
+        default=None, description="Face width. Default: 1 mm (results per unit width do not depend on it)."
     )
     ball_diameter: PositiveLength | None = Field(
         default=None,
-        description="Diameter of the balls or pins over which M_dK is given; without it the next preferred number (R "
-        "40) above the ball that touches at the V-circle.",
+        description="Ball or pin diameter D_M for M_dK. Default: next R 40 value above the diameter with contact at "
+        "the V-circle.",
     )
     plane: Literal["strain", "stress", "auto"] = Field(
         default="strain",
-        description="Plane strain, plane stress, or `auto`: strain where the face is at least five tooth thicknesses "
-        "wide.",
+        description="Plane strain, plane stress or `auto` (plane strain if the face width is at least five tooth "
+        "thicknesses).",
     )
     material: Table[MaterialPart] = Field(
-        default_factory=MaterialPart, description="Elasticity and density of the gear; without it steel."
+        default_factory=MaterialPart, description="Elastic constants and density. Default: steel."
     )
     strength: Table[StrengthPart] | None = Field(
         default=None,
-        description="Strength of the material (allowable stress numbers), for the result rating: kind, quality and "
-        "hardness.",
+        description="Material for rating: type, quality (ML, MQ, ME) and hardness (allowable stress numbers of ISO "
+        "6336-5).",
     )
     tooth_mesh: str | None = Field(
         default=None,
-        description="File with a finite-element mesh of your own of the tooth sector; without it one is generated.",
+        description="File with a user FE mesh of the tooth sector. Default: generated.",
     )
     tooth_mesh_fillet: Literal["rack", "own"] = Field(
         default="rack",
-        description="Whether the fillet of `tooth_mesh` is compared with the one that the rack cuts, or is your own "
-        "(optimised, ground).",
+        description="Fillet of `tooth_mesh`: checked against the generated fillet, or `own` (optimised, ground).",
     )
     relief: Table[ReliefPart] | None = Field(
         default=None,
-        description="Profile modification of every tooth; its parts add up, and it needs the effect `relief`.",
+        description="Profile modification of all teeth (sum of its parts); active with the effect `relief`.",
     )
     lead: Table[LeadPart] | None = Field(
         default=None,
-        description="Modification of every flank over the face, the same at every height; it needs the effect "
-        "`relief`.",
+        description="Flank line (lead) modification, the same at every tooth height; active with the effect `relief`.",
     )
     bias: Table[BiasPart] | None = Field(
         default=None,
-        description="Twist S_alpha: the profile slope at end II less that at end I; it needs the effect `relief`.",
+        description="Flank twist S_alpha: profile slope at end II minus that at end I; active with effects.relief.",
     )
     topography: Table[TopographyPart] | None = Field(
         default=None,
-        description="Modification of every flank by a table over roll angle and face; it needs the effect `relief`.",
+        description="Flank modification by a table over roll angle and face width; active with the effect `relief`.",
     )
     measured: Table[MeasuredPart] | None = Field(
         default=None,
-        description="Measured profiles, helices or flanks in the place of those that are drawn; they need the effect "
+        description="Measured profiles, helices or flanks instead of the nominal ones; active with the effect "
         "`relief`.",
     )
     spacing_errors: Table[SpacingErrorsPart] | None = Field(
         default=None,
-        description="One accumulated error for each tooth in the order of meshing, positive where the flank lies "
-        "back; it needs the effect `spacing_errors`.",
+        description="Cumulative pitch deviation of each tooth in meshing order, positive for missing material; "
+        "active with effects.spacing_errors.",
     )
     roughness: Table[RoughnessPart] | None = Field(
-        default=None, description="of flanks and root fillets, for scuffing, micropitting, friction and rating"
+        default=None,
+        description="Roughness of flanks and root fillets, for scuffing, micropitting, friction and rating.",
     )
     flank_treatment: FlankTreatment | None = Field(
         default=None,
@@ -204,26 +197,26 @@ class GearPart(Part):
     )
     tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
         default=None,
-        description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11; it wants a `face_width`.",
+        description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11; requires `face_width`.",
     )
     deviations: Table[DeviationsPart] | None = Field(
         default=None,
-        description="Own deviations of the flanks, in the place of those by `tolerance_class` in a rating and in "
-        "`robustness`; a gear outside the sizes of ISO 1328-1 has no others.",
+        description="User-defined flank deviations, replacing those of `tolerance_class` in rating and `robustness`. "
+        "Required outside the size range of ISO 1328-1.",
     )
     helix_angle: Angle | None = Field(
-        default=None, description="Helix angle on the pitch cylinder, up to 60 deg; without it the gear is a spur gear."
+        default=None, description="Helix angle at the reference cylinder, up to 60 deg. Default: 0 (spur gear)."
     )
     hand: Literal["left", "right", "spur"] | None = Field(
-        default=None, description="Which way the helix winds; `spur` goes with a helix angle of zero."
+        default=None, description="Hand of helix, `left` or `right`; `spur` for zero helix angle."
     )
     normal_module: PositiveLength | None = Field(
         default=None,
-        description="Module in the normal section of a helical gear; give this or `normal_diametral_pitch`.",
+        description="Normal module m_n of a helical gear; alternatively `normal_diametral_pitch`.",
     )
     normal_diametral_pitch: PositiveInverseLength | None = Field(
         default=None,
-        description="Diametral pitch in the normal section of a helical gear; give this or `normal_module`.",
+        description="Normal diametral pitch of a helical gear; alternatively `normal_module`.",
     )
 
     def rim(self, root_radius: float) -> float | None:
@@ -272,7 +265,7 @@ class GearPart(Part):
     def _one_size(self) -> Self:
         if self.tolerance_class is not None and self.face_width is None:
             raise refuse(
-                "is missing, but helix tolerances of a tolerance_class depend on it", 'write face_width = "20 mm"',
+                "is required for the helix tolerances of tolerance_class", 'set face_width = "20 mm"',
                 key="face_width",
             )  # fmt: skip
         self._check_web()
@@ -282,15 +275,13 @@ class GearPart(Part):
             return self
         for key in ("hand", "normal_module", "normal_diametral_pitch"):
             if getattr(self, key) is not None:
-                raise refuse("has a meaning only with helix_angle", 'write helix_angle = "30 deg"', key=key)
+                raise refuse("requires helix_angle", 'set helix_angle = "30 deg"', key=key)
         if self.module is None and self.diametral_pitch is None:
-            raise refuse("is missing", 'write module = "3.175 mm" or diametral_pitch = "8 / inch"', key="module")
+            raise refuse("is missing", 'set module = "3.175 mm" or diametral_pitch = "8 / inch"', key="module")
         if self.module is not None and self.diametral_pitch is not None:
-            raise refuse("contradicts module", "give either module or diametral_pitch", key="diametral_pitch")
+            raise refuse("contradicts module", "specify either module or diametral_pitch", key="diametral_pitch")
         if self.plane == "auto" and self.face_width is None:
-            raise refuse(
-                'is missing, but plane = "auto" decides by it', 'write face_width = "6.35 mm"', key="face_width"
-            )
+            raise refuse('is required for plane = "auto"', 'set face_width = "6.35 mm"', key="face_width")
         return self
 
     def _check_internal(self) -> None:
@@ -298,57 +289,57 @@ class GearPart(Part):
         if not self.internal:
             for key in ("cutter", "outer_radius", "rim_support"):
                 if getattr(self, key) is not None:
-                    raise refuse("has a meaning only for internal gears", "write internal = true", key=key)
+                    raise refuse("applies only to internal gears", "set internal = true", key=key)
             return
         for key, remedy in _EXTERNAL_ONLY.items():
             if key in self.given:
-                raise refuse("has no meaning for an internal gear", remedy, key=key)
+                raise refuse("is not used for an internal gear", remedy, key=key)
         if self.cutter is None:
             raise refuse(
-                "is missing, but it makes the teeth of an internal gear",
-                "write cutter = { teeth = 20, addendum = 1.25, tip_radius = 0.2 }", key="cutter",
+                "is required for an internal gear",
+                "set cutter = { teeth = 20, addendum = 1.25, tip_radius = 0.2 }", key="cutter",
             )  # fmt: skip
         if self.outer_radius is not None and self.rim_thickness is not None:
-            raise refuse("contradicts outer_radius", "give either rim_thickness or outer_radius", key="rim_thickness")
+            raise refuse(
+                "contradicts outer_radius", "specify either rim_thickness or outer_radius", key="rim_thickness"
+            )
 
     def _check_web(self) -> None:
         """Refuse webs of no rim, wider than any, and twice given."""
         if self.body is not None:
             for key in ("rim_thickness", "web_thickness"):
                 if getattr(self, key) is not None:
-                    raise refuse("contradicts body, which has its own", f"write {key} in body alone", key=key)
+                    raise refuse("contradicts body.{key}", f"specify {key} in body only", key=key)
             for key in ("bore_radius", "face_width"):
                 if getattr(self, key) is None:
-                    raise refuse("is missing for a gear with a body", f'write {key} = "20 mm"', key=key)
+                    raise refuse("is required for a gear with a body", f'set {key} = "20 mm"', key=key)
         if self.web_thickness is None:
             return
         if self.rim_thickness is None and self.bore_radius is None:
             raise refuse(
-                "is missing, but C_R of a gear with a web_thickness depends on it", 'write rim_thickness = "20 mm"',
+                "is required for C_R of a gear with web_thickness", 'set rim_thickness = "20 mm"',
                 key="rim_thickness",
             )  # fmt: skip
         if self.face_width is None or self.web_thickness > 2.0 * self.face_width:
             raise refuse(
-                "must be at most twice the face_width", "check it, or leave it out for a solid disc",
+                "must be at most twice the face_width", "check it, or remove it for a solid disc",
                 key="web_thickness", value=f"{self.web_thickness * 1e3:.6g} mm",
             )  # fmt: skip
 
     def _check_helical(self) -> None:
         """Refuse sizes of the section across the axis, and keys of what is computed in a plane."""
         if (self.normal_module is None) == (self.normal_diametral_pitch is None):
-            remedy = 'write normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'
-            raise refuse("must be given once for a helical gear", remedy, key="normal_module")
+            remedy = 'set normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'
+            raise refuse("must be specified exactly once for a helical gear", remedy, key="normal_module")
         for key in ("module", "diametral_pitch"):
             if key in self.model_fields_set:
-                raise refuse("is that of a spur gear", f"write normal_{key} for a gear with a helix_angle", key=key)
+                raise refuse("is for spur gears only", f"use normal_{key} for a gear with helix_angle", key=key)
         for key in ("plane", "tooth_mesh", "tooth_mesh_fillet"):
             if self.has_helix and getattr(self, key) != type(self).model_fields[key].default:
-                raise refuse(
-                    "is not computed for a gear with a helix_angle yet", f"remove {key}: results do without it", key=key
-                )
+                raise refuse("is not available for helical gears", f"remove {key} (not needed for results)", key=key)
         for key in ("hand", "face_width"):
             if getattr(self, key) is None:
-                raise refuse("is missing for a helical gear", f"give {key}", key=key)
+                raise refuse("is required for a helical gear", f"specify {key}", key=key)
 
     @property
     def module_length(self) -> float:
@@ -417,7 +408,9 @@ class GearPart(Part):
             found = largest_cutter(made, self.teeth)
             if found is None:
                 raise
-            remedy = f"set cutter.teeth = {found.cutter.teeth}, the largest cutter that clears; or {error.remedy}"
+            remedy = (
+                f"set cutter.teeth = {found.cutter.teeth}, the largest cutter without interference; or {error.remedy}"
+            )
             raise GeometryError(error.key, error.value, error.rule, remedy) from None
 
     def _held_radius(self, root_radius: float) -> float:
@@ -428,7 +421,7 @@ class GearPart(Part):
         if self.rim_thickness is not None and self.rim_thickness > root_radius:
             raise InputError(
                 "rim_thickness", f"{self.rim_thickness * 1e3:.6g} mm",
-                f"must lie inside (0, root radius = {root_radius * 1e3:.6g} mm)", "leave it out for a solid gear",
+                f"must be between 0 and the root radius {root_radius * 1e3:.6g} mm", "remove it for a solid gear",
             )  # fmt: skip
         return 0.5 * root_radius if self.bore_radius is None else self.bore_radius
 

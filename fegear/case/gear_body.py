@@ -16,19 +16,19 @@ from fegear.geometry.rim_support import RimSupport
 class WebHolesPart(Part):
     """``body.holes = { count, circle_diameter, diameter, angle, tooth }``: round holes in a web, evenly spaced."""
 
-    count: int = Field(description="Number of holes, any: it need not divide the number of teeth.")
-    circle_diameter: PositiveLength = Field(description="Diameter of the circle of the holes' middles.")
+    count: int = Field(description="Number of holes; need not divide the number of teeth.")
+    circle_diameter: PositiveLength = Field(description="Pitch circle diameter of the holes.")
     diameter: PositiveLength = Field(description="Diameter of each hole.")
     angle: Angle = Field(
         default=0.0,
-        description="Of the first hole's middle from the centre line of tooth 0 in the middle of the face, positive "
-        "the way that its loaded flank faces; without it a hole lies below the middle of tooth 0.",
+        description="Angle from the centre line of tooth 0 (mid-face) to the centre of the first hole, positive in "
+        "the direction its loaded flank faces. Default: 0.",
     )
 
     tooth: int | None = Field(
         default=None,
-        description="Tooth, counted clockwise from tooth 0, that tables, pairs and sets take for all teeth; without it "
-        "they take the mean over all.",
+        description="Tooth (clockwise from tooth 0) whose compliance and stress are used for all teeth. Default: "
+        "mean of all teeth.",
     )
 
     def build(self) -> WebHoles:
@@ -43,35 +43,36 @@ class GearBodyPart(Part):
     """
 
     rim_thickness: PositiveLength = Field(
-        description="Rim s_R below the root circle, as wide as the face; for the ratings too (Y_B, C_R, K_B)."
+        description="Rim thickness s_R below the root circle, over the full face width; also used in the ratings "
+        "(Y_B, C_R, K_B)."
     )
     web_thickness: PositiveLength = Field(
-        description="Thickness b_s of the web between rim and hub, along the axis; for C_R of the ratings too."
+        description="Axial web thickness b_s between rim and hub; also used in the rating (C_R)."
     )
     web_offset: Length = Field(
         default=0.0,
-        description="How far the middle of the web lies from the middle of the face, toward end II. An idler "
-        "has end II at opposite ends in the mesh that drives it and in the one that it drives: both are refused.",
+        description="Axial offset of web centre from mid-face, positive towards end II. Not available for idlers "
+        "(end II differs between the two meshes).",
     )
     web_inclination: Angle = Field(
         default=0.0,
-        description="Of the web, at most 30 deg either way: a positive one meets the hub nearer to end II than the "
-        "rim. web_thickness is along the axis, and web_offset that of its end at the rim.",
+        description="Web inclination, -30 to 30 deg; positive: the web meets the hub nearer to end II than the rim. "
+        "web_thickness is axial; web_offset refers to the rim end.",
     )
     hub_radius: PositiveLength | None = Field(
-        default=None, description="Outside of the hub; without it the web goes down to the bore and is held there."
+        default=None, description="Outer radius of the hub. Default: no hub, web fixed at the bore."
     )
     hub_width: PositiveLength | None = Field(
-        default=None, description="Width of the hub, at most that of the face; without it as wide as the face."
+        default=None, description="Axial width of the hub, at most the face width. Default: face width."
     )
     hub_offset: Length = Field(
-        default=0.0, description="How far the middle of the hub lies from the middle of the face, toward end II."
+        default=0.0, description="Axial offset of the hub centre from mid-face, positive towards end II."
     )
 
     holes: Table[WebHolesPart] | None = Field(
         default=None,
-        description="Round holes through the web, evenly spaced. Teeth differ then: how far is reported, and tables, "
-        "pairs and sets take the mean over all teeth, or one of them.",
+        description="Round, equally spaced web holes. The variation of compliance over the teeth is reported; "
+        "tables, pairs and planetary sets use the mean of all teeth or one tooth (`tooth`).",
     )
 
     @model_validator(mode="after")
@@ -79,13 +80,13 @@ class GearBodyPart(Part):
         if not abs(self.web_inclination) <= STEEPEST * (1.0 + 1e-9):
             most = f"{math.degrees(STEEPEST):.6g} deg"
             raise refuse(
-                f"must lie between -{most} and {most}, for which inclined webs were compared with other programs",
+                f"must be between -{most} and {most} (verified range)",
                 key="web_inclination", value=f"{math.degrees(self.web_inclination):.6g} deg",
             )  # fmt: skip
         if self.hub_radius is None:
             for key in ("hub_width", "hub_offset"):
                 if key in self.given:
-                    raise refuse("has a meaning only with hub_radius", 'write hub_radius = "25 mm"', key=key)
+                    raise refuse("requires hub_radius", 'set hub_radius = "25 mm"', key=key)
         return self
 
     def build(self, root_radius: float, bore_radius: float, face_width: float) -> GearBody:
@@ -108,17 +109,17 @@ class RimSupportPart(Part):
     """``rim_support = { kind, pins, width, angle }`` of a ring gear."""
 
     kind: Literal["held", "splined", "pins"] = Field(
-        description="`held`: the whole outer circle; `splined`: tractions spread evenly over it take force and torque; "
-        "`pins`: evenly spaced parts of it are held on average, of a gear with its width at every height of the face, "
-        "and along the axis."
+        description="`held`: outer circle fixed; `splined`: force and torque taken by uniform tractions over the "
+        "outer circle; `pins`: equally spaced arcs of it fixed on average (3D gears: at every height, "
+        "and axially)."
     )
     pins: int | None = Field(default=None, description="Number of pins, bolts or lugs, 2 to the number of teeth.")
     width: PositiveLength | None = Field(
-        default=None, description="Width of each, along the outer circle: over it the rim moves neither way on average."
+        default=None, description="Width of each pin along the outer circle (mean displacement zero over it)."
     )
     angle: Angle = Field(
         default=0.0,
-        description="Of the first pin from the centre line of tooth 0 in the middle of the face, positive the way that "
+        description="Angle from the centre line of tooth 0 (mid-face) to the first pin, positive in the direction "
         "its loaded flank faces.",
     )
 
@@ -126,14 +127,14 @@ class RimSupportPart(Part):
     def _pins(self) -> Self:
         for key in ("pins", "width"):
             if self.kind == "pins" and getattr(self, key) is None:
-                raise refuse("is missing for a rim on pins", 'write pins = 6, width = "12 mm"', key=key)
+                raise refuse("is required for a rim on pins", 'set pins = 6, width = "12 mm"', key=key)
         for key in ("pins", "width", "angle"):
             if self.kind != "pins" and key in self.given:
-                raise refuse("has a meaning only for a rim on pins", 'write kind = "pins"', key=key)
+                raise refuse("applies only to a rim on pins", 'set kind = "pins"', key=key)
         if self.pins is not None and self.pins < 2:
             raise refuse(
-                "must be at least 2, for the ring would turn about one", "give the number of pins", key="pins",
-                value=self.pins,
+                "must be at least 2 (a ring on one pin could rotate about it)", "specify the number of pins",
+                key="pins", value=self.pins,
             )  # fmt: skip
         return self
 

@@ -23,18 +23,17 @@ class ShaftPart(Part):
 
     in_plane: Length = Field(
         default=0.0,
-        description="f_Sigma_delta of ISO/TR 10064-3: deviation in the plane of the axes; positive where they move "
-        "apart at end II.",
+        description="f_Sigma_delta of ISO/TR 10064-3: deviation in the plane of the axes; positive if the axes "
+        "diverge towards end II.",
     )
     out_of_plane: Length = Field(
         default=0.0,
-        description="f_Sigma_beta of ISO/TR 10064-3: deviation across that plane; positive where it opens the flanks "
-        "toward end II.",
+        description="f_Sigma_beta of ISO/TR 10064-3: deviation perpendicular to that plane; positive if the flank "
+        "gap opens towards end II.",
     )
     over: PositiveLength | None = Field(
         default=None,
-        description="Distance over which the deviations are measured, as that of the bearings; without it the gear's "
-        "own face.",
+        description="Reference length of the deviations, e.g. bearing span. Default: face width of the gear.",
     )
 
 
@@ -47,26 +46,26 @@ class MisalignmentPart(Part):
 
     shaft_angle: Angle = Field(
         default=0.0,
-        description="Turn of the driven gear's axis about the line of centres, the same as `out_of_plane` as an angle.",
+        description="Rotation of the driven gear's axis about the line of centres (`out_of_plane` as an angle).",
     )
-    lead_angle: Angle = Field(default=0.0, description="Error of the pinion's lead angle; give this or `lead`.")
+    lead_angle: Angle = Field(default=0.0, description="Lead angle error of the pinion; alternatively `lead`.")
     lead: Length | None = Field(
         default=None,
-        description="Error of the pinion's lead itself, Delta H_1 of TM-107451, Eq. 18; give this or `lead_angle`.",
+        description="Lead error of the pinion, Delta H_1 of TM-107451, Eq. 18; alternatively `lead_angle`.",
     )
-    profile_angle: Angle = Field(default=0.0, description="Error of the normal profile angle of the pinion's cutter.")
+    profile_angle: Angle = Field(default=0.0, description="Error of the normal profile angle of the pinion cutter.")
     centre_distance: Length = Field(default=0.0, description="Error of the centre distance.")
     driver: ShaftPart | None = Field(
-        default=None, description="Deviation of the driver's shaft from parallel, which adds to `shaft_angle`."
+        default=None, description="Parallelism deviation of the driver shaft, added to `shaft_angle`."
     )
     driven: ShaftPart | None = Field(
-        default=None, description="Deviation of the driven gear's shaft from parallel, which adds to `shaft_angle`."
+        default=None, description="Parallelism deviation of the driven shaft, added to `shaft_angle`."
     )
 
     @model_validator(mode="after")
     def _one_lead(self) -> Self:
         if self.lead is not None and "lead_angle" in self.given:
-            raise refuse("contradicts lead_angle", "give either the error of the lead or that of its angle", key="lead")
+            raise refuse("contradicts lead_angle", "specify either lead or lead_angle", key="lead")
         return self
 
     def deviation(self, pair: GearPair) -> tuple[float, float]:
@@ -99,13 +98,14 @@ class ModificationPart(Part):
     normal; ``absorb = true`` chooses the crown so that its parabolic error absorbs the pair's linear one.
     """
 
-    parabola: InverseLength = Field(default=0.0, description="Coefficient a_c of the parabola on the pinion's cutter.")
+    parabola: InverseLength = Field(default=0.0, description="Parabola coefficient a_c of the pinion cutter.")
     crown: LengthOrZero = Field(
-        default=0.0, description="Material removed at each end of the pinion's face, along the normal."
+        default=0.0, description="Amount of lead crowning at each face end of the pinion, normal to the flank."
     )
     absorb: bool = Field(
         default=False,
-        description="Whether the crown is chosen so that its parabolic error absorbs the pair's linear one.",
+        description="Choose the lead crowning such that its parabolic transmission error absorbs the linear one from "
+        "misalignment.",
     )
 
     def crown_coefficient(self, pinion: Gear) -> float:
@@ -118,10 +118,10 @@ class ToothContactPart(Part):
     """``[tooth_contact]``: how finely the cycle is looked at, and the load for contact ellipses."""
 
     positions: Annotated[int, Field(ge=2, le=100_000)] = Field(
-        default=400, description="Pinion angles per cycle; the extremes do not depend on it."
+        default=400, description="Number of pinion angles per mesh cycle; the extremes do not depend on it."
     )
     load: PositiveForce | None = Field(
-        default=None, description="Normal force on a tooth pair, for contact ellipses; without it there are none."
+        default=None, description="Normal force on a tooth pair, for contact ellipses. Default: no ellipses."
     )
 
 

@@ -35,7 +35,7 @@ def read_json(path: Path, key: str) -> dict[str, object]:
     try:
         found = json.loads(text, parse_constant=refused)
     except json.JSONDecodeError as error:
-        rule = f"is no valid JSON: line {error.lineno}: {error.msg}"
+        rule = f"is not valid JSON: line {error.lineno}: {error.msg}"
         raise InputError(key, name, rule, "write it again") from None
     except (RecursionError, ValueError):  # nests and whole numbers that Python does not read
         found = _TOO_DEEP

@@ -34,15 +34,15 @@ class LoadingPart(Part):
 
     pair: str | None = Field(
         default=None,
-        description="The pair whose base pitch and load are taken; without it lengths are in base pitches and loads "
-        "in shares of the design load.",
+        description="Pair that defines base pitch and load. Default: lengths in base pitches, loads relative to the "
+        "design load.",
     )
     load: PositiveForce | None = Field(
-        default=None, description="Design load, with a pair; without it the pair's nominal load."
+        default=None, description="Design load, with a pair. Default: nominal load of the pair."
     )
     length: PositiveLength | None = Field(
         default=None,
-        description="Loaded path on the line of action, with a pair; without it the pair's path of contact.",
+        description="Loaded path on the line of action, with a pair. Default: the pair's path of contact.",
     )
     contact_ratio: PositiveNumber | None = Field(
         default=None, description="Loaded path in base pitches; required without a pair."
@@ -55,43 +55,40 @@ class LoadingPart(Part):
         description="Slopes s at contact initiation: 0 to 2, polynomial 0 to r.",
     )
     exponents: Annotated[list[int], Field(min_length=1)] | None = Field(
-        default=None, description="Odd exponents r of the polynomial family; without it 7."
+        default=None, description="Odd exponents r of the polynomial family. Default: 7."
     )
     peaks: Annotated[list[PositiveNumber], Field(min_length=1)] | None = Field(
         default=None,
-        description="Largest loads of a tooth pair over the design load (F), for contact ratios above 2; without it "
-        "the middle of their range.",
+        description="Peak tooth pair load relative to the design load (F), for contact ratios above 2. Default: "
+        "middle of the admissible range.",
     )
     inner_slope: Annotated[Number, Field(ge=0.0)] = Field(
         default=1.0, description="Slope s of the inner ramps, for contact ratios above 2."
     )
     highest_order: Annotated[Number, Field(gt=3.0, le=1e4)] = Field(
-        default=30.0, description="Up to which spectra go, in tooth-mesh frequencies."
+        default=30.0, description="Upper limit of the spectra, in tooth-mesh frequencies."
     )
-    speed: PositiveSpeed | None = Field(
-        default=None, description="Speed of the pair's driver, at which its teeth answer by themselves."
-    )
+    speed: PositiveSpeed | None = Field(default=None, description="Driver speed for the response of single teeth.")
     tooth_frequency: Annotated[float, quantity("frequency", positive=True)] | None = Field(
         default=None,
-        description="Lowest natural frequency of the teeth of both gears; without it that of each as a beam on its "
-        "foundation.",
+        description="Lowest tooth natural frequency of both gears. Default: beam on elastic foundation.",
     )
     content_above: Annotated[Number, Field(gt=0.0, le=1e3)] = Field(
-        default=20.0, description="Order from which content counts as high in `loading_trade_off`, to ten times that."
+        default=20.0, description="Lower limit of the high orders in `loading_trade_off` (upper limit: ten times this)."
     )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
         if self.length is not None and self.contact_ratio is not None:
-            raise refuse("contradicts length", "give either length or contact_ratio", key="contact_ratio")
+            raise refuse("contradicts length", "specify either length or contact_ratio", key="contact_ratio")
         if self.exponents is not None and self.family != "polynomial":
-            raise refuse('has a meaning only with family = "polynomial"', key="exponents")
+            raise refuse('requires family = "polynomial"', key="exponents")
         for key in ("length", "load", "speed", "tooth_frequency"):
             if getattr(self, key) is not None and self.pair is None:
-                raise refuse("has a meaning only with a pair", 'name it: pair = "I"', key=key)
+                raise refuse("requires a pair", 'set pair = "I"', key=key)
         if self.pair is None and self.contact_ratio is None:
             raise refuse(
-                "is missing where no pair is named", "write contact_ratio = 1.5", key="contact_ratio",
+                "is required without a pair", "set contact_ratio = 1.5", key="contact_ratio",
                 value="(not given)",
             )  # fmt: skip
         counts = [len(values) for values in (self.slopes, self.exponents, self.peaks) if values]
@@ -106,17 +103,16 @@ class LoadDistributionPart(Part):
     """
 
     positions: Annotated[int, Field(ge=2, le=256)] = Field(
-        default=16, description="Roll positions over one base pitch."
+        default=16, description="Number of mesh positions over one base pitch."
     )
     panels: Annotated[int, Field(ge=2, le=200)] | None = Field(
         default=None,
-        description="Parts into which the common face is divided; without it one to a quarter of a module.",
+        description="Number of panels over the common face width. Default: one per quarter module.",
     )
-    coat: PositiveLength = Field(default=6e-6, description="Thickness of the marking compound in the contact pattern.")
+    coat: PositiveLength = Field(default=6e-6, description="Thickness of the marking compound for the contact pattern.")
     base_pitch: Annotated[int, Field(ge=0, le=1_000_000)] = Field(
         default=0,
-        description="Which teeth meet where they have spacing errors: pair 0 is on the teeth of that number, counted "
-        "round and round.",
+        description="Number of the tooth pair 0 for pitch deviations (counted cyclically).",
     )
 
 
@@ -128,17 +124,17 @@ class LineErrorPart(Part):
     """
 
     over_face: Length = Field(
-        default=0.0, description="Gap that opens from the face end at -b/2 to that at +b/2 along the driver's axis."
+        default=0.0,
+        description="Linear gap over the full face width, zero at end I (-b/2), maximum at end II "
+        "(+b/2) of the driver.",
     )
-    crowning: LengthOrZero = Field(
-        default=0.0, description="Gap that opens from the middle of the face to both ends, as a parabola."
-    )
-    file: str | None = Field(default=None, description="CSV file with `z` and `gap`, such as that of deflected shafts.")
+    crowning: LengthOrZero = Field(default=0.0, description="Parabolic gap from mid-face (zero) to both face ends.")
+    file: str | None = Field(default=None, description="CSV file with `z` and `gap`, for example of deflected shafts.")
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not self.model_fields_set:
-            raise refuse("is empty", 'write line_error = { over_face = "10 um" }')
+            raise refuse("is empty", 'set line_error = { over_face = "10 um" }')
         return self
 
 
@@ -147,20 +143,20 @@ class TransmissionErrorPart(Part):
 
     method: Literal["quadrature", "mark-series"] = Field(
         default="quadrature",
-        description="The exact quadrature alone, or Mark's series and closed forms as well, with what they miss, and "
-        "the lines of `mesh-force-spectrum` by the series.",
+        description="Method: exact quadrature, or additionally Mark's series and closed-form solution with their "
+        "error (also in `mesh-force-spectrum`).",
     )
     terms: Annotated[int, Field(ge=0, le=200)] = Field(
-        default=3, description="M of Mark's series, 0 to 200; the report advises 3 at least."
+        default=3, description="Order M of Mark's series, 0 to 200 (at least 3 recommended by Mark)."
     )
     even_positions: Annotated[int, Field(ge=8, le=100_000)] | None = Field(
         default=None,
-        description="Rows of a table over one tooth of the driver for other programs, evenly spaced and periodic; "
-        "written as .mat, too.",
+        description="Number of rows of a periodic table over one driver tooth for other programs; also written as "
+        ".mat.",
     )
 
     @model_validator(mode="after")
     def _terms_of_a_series(self) -> Self:
         if "terms" in self.given and self.method != "mark-series":
-            raise refuse('has a meaning only with method = "mark-series"', key="terms")
+            raise refuse('requires method = "mark-series"', key="terms")
         return self

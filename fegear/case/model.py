@@ -29,79 +29,69 @@ from fegear.case.transmissibility import TransmissibilityPart
 class Case(Part):
     """One case file."""
 
-    title: str = Field(default="", description="Headline of the report; without it the file's name.")
+    title: str = Field(default="", description="Title of the report. Default: file name.")
     schema_version: Annotated[int, Field(ge=1)] = Field(
         default=SCHEMA_VERSION,
-        description="Form of case files that this one was written in; a later one than fegear knows is refused.",
+        description="Version of the case file format; newer versions than supported are rejected.",
     )
-    results: Annotated[list[str], Field(min_length=1)] = Field(
-        description="What is wanted: these results are computed, and what they need, nothing else."
-    )
+    results: Annotated[list[str], Field(min_length=1)] = Field(description='Results to compute, e.g. ["rating"].')
     neglected: bool | Literal["once"] | None = Field(
         default=None,
-        description="Estimate in notes what effects that are off would change: `true`, `false`, or `once` (of a sweep "
-        "only its first point). Default: `true` in a run; `false` in sweeps, effect studies and questions from Python.",
+        description="Estimate the influence of effects that are off (notes): `true`, `false`, or `once` (first point "
+        "of a sweep only). Default: `true` in a run; `false` in sweeps, effect studies and Python.",
     )
-    gear: dict[str, Table[GearPart]] = Field(
-        default_factory=dict, description="The gears, each by a name of your choice."
-    )
-    pair: dict[str, Table[PairPart]] = Field(
-        default_factory=dict, description="The pairs of gears in mesh, each by a name of your choice."
-    )
+    gear: dict[str, Table[GearPart]] = Field(default_factory=dict, description="Gears, by name.")
+    pair: dict[str, Table[PairPart]] = Field(default_factory=dict, description="Gear pairs in mesh, by name.")
     stiffness: Table[StiffnessPart] = Field(
-        default_factory=StiffnessPart, description="Where the tables of compliance and root stress are taken."
+        default_factory=StiffnessPart, description="Load positions of the compliance and root stress tables."
     )
     study: Table[StudyPart] | None = Field(
-        default=None, description="Gears over which root-stress formulas are compared with finite elements."
+        default=None, description="Gears for the comparison of root-stress formulas with FE."
     )
     tooth_contact: Table[ToothContactPart] = Field(
-        default_factory=ToothContactPart, description="How finely the contact of rigid flanks is followed."
+        default_factory=ToothContactPart, description="Settings of the tooth contact analysis (rigid flanks)."
     )
     load_distribution: Table[LoadDistributionPart] = Field(
-        default_factory=LoadDistributionPart, description="How finely the load over the face is resolved."
+        default_factory=LoadDistributionPart, description="Settings of the load distribution over the face width."
     )
     transmissibility: dict[str, Table[TransmissibilityPart]] = Field(
-        default_factory=dict, description="Helical pairs as rigid gears on bearings, each by a name of your choice."
+        default_factory=dict, description="Helical pairs as rigid gears on bearings, by name."
     )
     design: Table[DesignPart] | None = Field(
-        default=None, description="Which pair is to be relieved, for which load, and how its teeth are to share it."
+        default=None, description="Profile modification design: pair, design load, load sharing."
     )
     flank_design: Table[FlankDesignPart] | None = Field(
-        default=None, description="Relief over profile and face of a pair that is loaded with its width."
+        default=None, description="Design of profile and flank line modifications of a 3D pair."
     )
     robustness: Table[TolerancePart] | None = Field(
-        default=None, description="Deviations of a pair drawn at random inside the tolerances of its gears."
+        default=None, description="Random deviations of a pair within the tolerances of its gears."
     )
-    loading: Table[LoadingPart] | None = Field(default=None, description="Tooth loading functions to look at.")
+    loading: Table[LoadingPart] | None = Field(default=None, description="Tooth loading functions.")
     transmission_error: Table[TransmissionErrorPart] = Field(
         default_factory=TransmissionErrorPart,
-        description="A method from the literature, in addition to the exact transmission error.",
+        description="Additional method for the transmission error (Mark's series).",
     )
     train: Table[TrainPart] | None = Field(
-        default=None, description="The gear train: bodies, shafts, meshes, dampers and torques."
+        default=None, description="Gear train: bodies, shafts, meshes, dampers and torques."
     )
     planetary: dict[str, Table[PlanetaryPart]] = Field(
-        default_factory=dict, description="Planetary sets, each by a name of your choice."
+        default_factory=dict, description="Planetary gear sets, by name."
     )
     shaft: dict[str, Table[ShaftInSpacePart]] = Field(
         default_factory=dict,
-        description="Shafts in space with their gears and bearings, each by a name of your choice.",
+        description="Shafts with their gears and bearings, by name.",
     )
-    bearing: dict[str, Table[BearingPart]] = Field(
-        default_factory=dict, description="Bearings of the shafts, each by a name of your choice."
-    )
+    bearing: dict[str, Table[BearingPart]] = Field(default_factory=dict, description="Bearings of the shafts, by name.")
     dynamics: Table[DynamicsPart] = Field(
-        default_factory=DynamicsPart, description="Speeds, frequencies, harmonics and friction of the running train."
+        default_factory=DynamicsPart, description="Speeds, frequencies, harmonics and friction of the gear train."
     )
     effects: Table[EffectsPart] = Field(
-        default_factory=EffectsPart, description="The physical effects that count; each is off unless named."
+        default_factory=EffectsPart, description="Physical effects included; all others are off."
     )
-    accuracy: Table[AccuracyPart] = Field(
-        default_factory=AccuracyPart, description="How exact the finite elements shall be."
-    )
+    accuracy: Table[AccuracyPart] = Field(default_factory=AccuracyPart, description="Accuracy of the FE solution.")
     rating: Table[RatingPart] = Field(
-        default_factory=RatingPart, description="What is evaluated in addition to the rating by ISO 6336."
+        default_factory=RatingPart, description="Evaluations in addition to the rating to ISO 6336."
     )
     cost: Table[CostPart] = Field(
-        default_factory=CostPart, description="What `fegear cost` studies; a run does not read it."
+        default_factory=CostPart, description="Settings of `fegear cost` (not used in a run)."
     )

@@ -30,10 +30,10 @@ def nearest(
         ``words(name)`` -> what a word of the trade means, which comes before its spelling.
     """
     names = sorted(known)
-    listed = f"known here: {', '.join(names)}" if names else "none is known here"
+    listed = f"known here: {', '.join(names)}" if names else "none is defined here"
     listed = f"{lists_all} lists all {len(names)}" if lists_all else listed
     meaning = words(name) if words else None
     if meaning is not None:
         return f"{meaning.remedy(names)}; {listed}"
     near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE_KEYS if words else _ALIKE)
-    return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed
+    return f'did you mean "{near[0]}"? {listed}' if near and len(names) > 1 else listed

@@ -41,31 +41,27 @@ class CompliancePart(Part):
     """``compliance = { source = "fe" }``: where a pair's tooth compliances come from."""
 
     source: Literal["fe", "cornell", "weber-banaschek", "potential-energy", "table"] = Field(
-        default="fe", description="Finite elements, a formula by its authors, or a table of your own."
+        default="fe", description="Finite elements, a published formula, or a user table."
     )
     file: str | None = Field(
         default=None,
         description="CSV file with `x [mm]` or `roll_angle [deg]` and `compliance [um/N]`, or with `load [N]` and "
         "`deflection [um]`.",
     )
-    of: Literal["tooth", "pair"] | None = Field(
-        default=None, description="Whether the table is of one tooth or of a pair of teeth."
-    )
+    of: Literal["tooth", "pair"] | None = Field(default=None, description="Table for one tooth or for a tooth pair.")
     fit: Literal["linear", "cubic"] | None = Field(
-        default=None, description="How the table is made continuous: straight lines, or one cubic fitted to all of it."
+        default=None, description="Interpolation of the table: linear, or one cubic fitted to all points."
     )
 
     @model_validator(mode="after")
     def _table_needs_file(self) -> Self:
         if self.source == "table" and self.file is None:
-            raise refuse(
-                "is missing, but the compliance source is a table", 'name its file: file = "c.csv"', key="file"
-            )
+            raise refuse('is required for compliance source "table"', 'set file = "c.csv"', key="file")
         if self.source != "table":
             for key in ("file", "of", "fit"):
                 if getattr(self, key) is not None:
                     raise refuse(
-                        f'has no meaning with source = "{self.source}"', 'remove it or set source = "table"', key=key
+                        f'is not used with source = "{self.source}"', 'remove it or set source = "table"', key=key
                     )
         return self
 
@@ -82,13 +78,13 @@ class RootStressPart(Part):
         Field(min_length=1),
     ] = Field(
         default=("fe",),
-        description="Finite elements or formulas; of a list the first is the result, the others are compared with it.",
+        description="Finite elements or formulas; the first of a list is the result, the others are for comparison.",
     )
 
     @model_validator(mode="after")
     def _each_once(self) -> Self:
         if len(set(self.source)) < len(self.source):
-            raise refuse("names a source twice", "name each once", value=list(self.source), key="source")
+            raise refuse("contains a source twice", "specify each once", value=list(self.source), key="source")
         return self
 
 
@@ -97,28 +93,28 @@ class IsoPart(Part):
 
     edition: Literal[2006, 2019] | None = Field(
         default=None,
-        description="Edition of ISO 6336 that is followed; without it 2019 in a rating, 2006 in the crosscheck.",
+        description="Edition of ISO 6336. Default: 2019 in a rating, 2006 in the crosscheck.",
     )
     accuracy_grade: Annotated[int, Field(ge=0, le=12)] = Field(
-        default=6, description="Accuracy grade of the gears, 0 to 12; grade 4 or better lets Y_DT relieve deep teeth."
+        default=6, description="Accuracy grade of the gears, 0 to 12; Y_DT for deep teeth requires grade 4 or better."
     )
     dynamic_method: Literal["B", "C"] = Field(
         default="B",
-        description="Method of K_v: B from masses and stiffness, C a fit for pairs well below their resonance.",
+        description="Method for K_v: B (masses and stiffness), C (approximation for pairs well below resonance).",
     )
     tip_relief_factor: Annotated[Number, Field(ge=1.0, le=1.2)] | None = Field(
         default=None,
-        description="Own f_ZCa of helical flanks of the edition of 2019, 1 to 1.2; without it 1.2 without tip relief, "
-        "1.07 with one, which are recalled.",
+        description="User-defined f_ZCa of helical gears (edition 2019), 1 to 1.2. Default: 1.2 without, 1.07 with "
+        "tip relief (not verified against a printed source).",
     )
     micropitting_material_factor: Annotated[Number, Field(ge=0.3, le=2.0)] | None = Field(
         default=None,
-        description="Own material factor W_W of the permissible film of ISO/TS 6336-22; from the steels of both flanks "
-        "without.",
+        description="User-defined material factor W_W for the permissible film of ISO/TS 6336-22. Default: from the "
+        "steels of both flanks.",
     )
     flank_fracture_material_factor: Annotated[Number, Field(ge=0.3, le=2.0)] = Field(
         default=1.0,
-        description="K_material of ISO/TS 6336-4: shear strength of both steels over that by their hardness.",
+        description="Material factor K_material of ISO/TS 6336-4.",
     )
 
 
@@ -130,75 +126,78 @@ class PairPart(Part):
     """Two gears in mesh and the load between them."""
 
     driver: str = Field(description="Name of the driving gear.")
-    driven: str = Field(description="Name of the driven gear; it may be the same.")
+    driven: str = Field(description="Name of the driven gear; may be the same gear.")
     centre_distance: PositiveLength | None = Field(
         default=None,
-        description="Working centre distance; without it the one at which the teeth mesh without backlash.",
+        description="Working centre distance. Default: zero backlash.",
     )
     load: PositiveForce | None = Field(
-        default=None, description="Nominal load along the line of action; give this or `torque`."
+        default=None, description="Nominal load along the line of action; alternatively `torque`."
     )
     torque: PositiveTorque | None = Field(
-        default=None, description="Nominal torque on the driver; give this or `load`."
+        default=None, description="Nominal torque on the driver; alternatively `load`."
     )
     loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = Field(
         default=None,
-        description="Further loads along the line of action; without `load` and `torque` the largest is the nominal "
-        "one.",
+        description="Additional loads along the line of action. Without `load` or `torque` the largest is the "
+        "nominal load.",
     )
     speed: PositiveSpeed | None = Field(
-        default=None, description="Speed of the driver, for the time column of root-stress histories."
+        default=None, description="Speed of the driver, for example for the time column of root-stress histories."
     )
     width: Width | None = Field(
         default=None,
-        description="How wide the loaded teeth are: one plane section, coupled slices of it, or solid gears; without "
-        "it plane for spur and solid for helical gears.",
+        description="Tooth model: `plane` (2D), `slices` (coupled slices) or `solid` (3D). Default: plane for spur, "
+        "solid for helical gears.",
     )
     compliance: Table[CompliancePart] = Field(
-        default_factory=CompliancePart, description="Where the tooth compliances come from."
+        default_factory=CompliancePart, description="Source of the tooth compliances."
     )
     root_stress: Table[RootStressPart] = Field(
-        default_factory=RootStressPart, description="Where root stresses come from."
+        default_factory=RootStressPart, description="Source of the root stresses."
     )
     misalignment: Table[MisalignmentPart] | None = Field(
-        default=None, description="How the shafts and the pinion's flank deviate; it needs the effect `misalignment`."
+        default=None,
+        description="Misalignment of the shafts and deviations of the pinion flank; active with the "
+        "effect `misalignment`.",
     )
     line_error: Table[LineErrorPart] | None = Field(
         default=None,
-        description="What keeps the unloaded flanks apart over the face; it needs the effect `misalignment`.",
+        description="Gap between the unloaded flanks over the face width (line error); active with "
+        "effects.misalignment.",
     )
     modification: Table[ModificationPart] | None = Field(
         default=None,
-        description="How the pinion's flank is localised for tooth contact analysis; loaded flanks count it with the "
-        "effect `relief`.",
+        description="Crowning of the pinion flank for tooth contact analysis; included in loaded flanks with "
+        "effects.relief.",
     )
     axial_offset: Length = Field(
         default=0.0,
-        description="Height of the driven gear's mid face above the driver's, toward end I; only the common face "
-        "bears.",
+        description="Axial offset of the driven gear's mid-face towards end I; only the common face width carries "
+        "load.",
     )
     iso_6336: Table[IsoPart] = Field(
-        default_factory=IsoPart, description="Choices that ISO 6336 leaves: edition, methods, and own factors."
+        default_factory=IsoPart, description="Options of ISO 6336: edition, methods, user-defined factors."
     )
     lubricant: Table[LubricantPart] | None = Field(
-        default=None, description="the oil of the pair, for film thickness, scuffing, micropitting and friction"
+        default=None, description="Lubricant of the pair, for film thickness, scuffing, micropitting and friction."
     )
     friction: Table[PairFrictionPart] | None = Field(
-        default=None, description="friction law of gear-mesh-power-loss; Schlenk's where the lubricant is known"
+        default=None, description="Friction law for gear-mesh-power-loss. Default: Schlenk if `lubricant` is specified."
     )
     operation: Table[OperationPart] = Field(
-        default_factory=OperationPart, description="Loads, life and required safeties that the result rating is for."
+        default_factory=OperationPart, description="Loads, life and minimum safety factors for rating."
     )
     shafts: Table[ShaftsPart] | None = Field(
         default=None,
-        description="What carries the pinion, for the face load factor of ISO 6336-1 in the result rating.",
+        description="Pinion shaft and bearing arrangement for K_Hbeta (ISO 6336-1) in rating.",
     )
 
     @model_validator(mode="after")
     def _one_load(self) -> Self:
         if self.load is not None and self.torque is not None:
             raise refuse(
-                "contradicts load", "give either the load along the line of action or the torque", key="torque"
+                "contradicts load", "specify either the load along the line of action or the torque", key="torque"
             )
         return self
 
@@ -219,21 +218,22 @@ class PairPart(Part):
         """Refuse what contradicts the width in which the pair is loaded."""
         if pair.driver.helix_angle != 0.0 and self.width == "plane":
             raise InputError(
-                f"{prefix}.width", '"plane"', "has no meaning for helical gears: their load moves along the face",
-                'write width = "solid" or "slices", or remove it',
+                f"{prefix}.width", '"plane"', "is not available for helical gears",
+                'set width = "solid" or "slices", or remove it',
             )  # fmt: skip
         if self.width_in(pair) == "plane":
             return
         if "compliance" in self.given:
             raise InputError(
                 f"{prefix}.compliance", "(given)",
-                "is for plane teeth, and gears with a width are solved by finite elements",
-                "remove compliance" if pair.driver.helix_angle else 'remove compliance, or write width = "plane"',
+                "is defined for the plane (2D) model only; 3D gears are solved by FE",
+                "remove compliance" if pair.driver.helix_angle else 'remove compliance, or set width = "plane"',
             )  # fmt: skip
         if self.root_stress.source != ("fe",):
             raise InputError(
                 f"{prefix}.root_stress.source", list(self.root_stress.source),
-                "is for plane teeth: over the face, root stress comes from finite elements", 'write source = "fe"',
+                "is defined for the plane (2D) model only; root stress of 3D gears is computed "
+                "by FE", 'set source = "fe"',
             )  # fmt: skip
 
     def width_in(self, pair: GearPair) -> Width:

@@ -22,32 +22,32 @@ class MeshErrorPart(Part):
 
     pair: str | None = Field(
         default=None,
-        description="A pair of the case whose transmission error it is; give this, a `file` or an `amplitude`.",
+        description="Pair whose transmission error excites the vibration; alternatively `file` or `amplitude`.",
     )
     flanks: Literal["rigid", "loaded"] | None = Field(
         default=None,
-        description="Whether that of rigid or of loaded flanks is taken; without it loaded for plane teeth and where "
-        "the mesh is the pair's, else rigid.",
+        description="Transmission error of rigid or of loaded flanks. Default: loaded for the plane (2D) model and "
+        "if the mesh is that of the pair, otherwise rigid.",
     )
     shuttling: bool = Field(
-        default=False, description="Whether the moment about x of the force that wanders over the face is added."
+        default=False, description="Include the moment about x due to axial shuttling of the mesh force."
     )
     file: str | None = Field(
         default=None, description="CSV file with `n`, `cosine [um]`, `sine [um]`, or `amplitude [um]`."
     )
-    amplitude: Length | None = Field(default=None, description="One amplitude, 0-peak.")
+    amplitude: Length | None = Field(default=None, description="Single amplitude.")
     harmonic: Annotated[int, Field(ge=1, le=20_000)] | None = Field(
-        default=None, description="The mesh harmonic of `amplitude`; without it the first."
+        default=None, description="Mesh harmonic of `amplitude`. Default: 1."
     )
     harmonics: Annotated[int, Field(ge=1, le=64)] | None = Field(
         default=None,
-        description="Harmonics taken of a pair or file; without it 8, of loaded flanks at most half as many as "
+        description="Number of harmonics of pair or file. Default: 8, for loaded flanks at most half of "
         "`load_distribution.positions`.",
     )
     along: Coordinate = Field(
         default="y",
-        description="Coordinate in which the error acts; angles count as a length at half the face width or at the "
-        "base radius.",
+        description="Coordinate in which the error acts; angles as a length at half the face width or at the base "
+        "radius.",
     )
 
     @model_validator(mode="after")
@@ -55,18 +55,18 @@ class MeshErrorPart(Part):
         given = [key for key in ("pair", "file", "amplitude") if getattr(self, key) is not None]
         if len(given) != 1:
             raise refuse(
-                "must be given in one way", "give pair, file or amplitude", key="pair",
+                "must be specified in one way", "specify pair, file or amplitude", key="pair",
                 value=", ".join(given) or "(not given)",
             )  # fmt: skip
         if self.harmonic is not None and given != ["amplitude"]:
-            raise refuse("belongs to amplitude", "leave it out", key="harmonic")
+            raise refuse("belongs to amplitude", "remove it", key="harmonic")
         for key in ("flanks", "shuttling"):
             if key in self.given and given != ["pair"]:
-                raise refuse("belongs to pair", "leave it out", key=key)
+                raise refuse("belongs to pair", "remove it", key=key)
         if self.shuttling and self.along != "y":
-            raise refuse("goes with an error along y", "leave along out", key="shuttling")
+            raise refuse("requires an error along y", "remove along", key="shuttling")
         if self.harmonics is not None and given == ["amplitude"]:
-            raise refuse("has no meaning with amplitude", "write harmonic for the one that it has", key="harmonics")
+            raise refuse("is not used with amplitude", "use harmonic for its order", key="harmonics")
         return self
 
 
@@ -75,25 +75,28 @@ class ExternalForcePart(Part):
 
     on: Literal["driver", "driven"] = Field(description="The gear on which the force acts.")
     order: PositiveNumber | None = Field(
-        default=None, description="Order of that gear's shaft; give this or `frequency`."
+        default=None, description="Order of that gear's shaft; alternatively `frequency`."
     )
-    frequency: Frequency | None = Field(default=None, description="Frequency of the force; give this or `order`.")
+    frequency: Frequency | None = Field(default=None, description="Frequency of the force; alternatively `order`.")
     phase: Angle = Field(default=0.0, description="Phase of the force.")
-    y: Force = Field(default=0.0, description="Force along the transverse line of action, 0-peak.")
-    z: Force = Field(default=0.0, description="Force along the axis, 0-peak.")
-    theta_x: Torque = Field(default=0.0, description="Moment about x, 0-peak.")
-    theta_y: Torque = Field(default=0.0, description="Moment about y, 0-peak.")
-    theta_z: Torque = Field(default=0.0, description="Moment about the axis, 0-peak.")
+    y: Force = Field(default=0.0, description="Amplitude of the force along the transverse line of action.")
+    z: Force = Field(default=0.0, description="Amplitude of the axial force.")
+    theta_x: Torque = Field(default=0.0, description="Amplitude of the moment about x.")
+    theta_y: Torque = Field(default=0.0, description="Amplitude of the moment about y.")
+    theta_z: Torque = Field(default=0.0, description="Amplitude of the moment about the gear axis.")
 
     @model_validator(mode="after")
     def _one_frequency(self) -> Self:
         if self.order is not None and self.frequency is not None:
-            raise refuse("contradicts order", "give either", key="frequency")
+            raise refuse("contradicts order", "specify only one", key="frequency")
         if self.order is None and self.frequency is None:
-            raise refuse("must be given, or a frequency instead", "give either", key="order")
+            raise refuse("must be given, or a frequency instead", "specify only one", key="order")
         if not any(self.components):
             raise refuse(
-                "is no force", 'give y, z, theta_x, theta_y or theta_z: theta_z = "10 N*m"', key="y", value=self.y
+                "must have a force or moment",
+                'specify y, z, theta_x, theta_y or theta_z: theta_z = "10 N*m"',
+                key="y",
+                value=self.y,
             )
         return self
 
@@ -108,14 +111,14 @@ class ExcitationPart(Part):
 
     speeds: SpeedsPart = Field(description="Speeds of the driver: a list, or a range.")
     speed: PositiveSpeed | None = Field(
-        default=None, description="Speed whose spectrum is drawn; without it that of the largest mesh force."
+        default=None, description="Speed of the plotted spectrum. Default: speed of the maximum mesh force."
     )
     teeth: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
-        default=None, description="Teeth of the driver, where the transmission error is not a pair's."
+        default=None, description="Number of driver teeth, if the transmission error is not from a pair."
     )
-    transmission_error: MeshErrorPart | None = Field(default=None, description="The transmission error that excites.")
+    transmission_error: MeshErrorPart | None = Field(default=None, description="Transmission error excitation.")
     external: list[ExternalForcePart] = Field(
-        default_factory=list, max_length=100, description="Forces and moments on the gears."
+        default_factory=list, max_length=100, description="External forces and moments on the gears."
     )
 
     @model_validator(mode="after")
@@ -123,14 +126,14 @@ class ExcitationPart(Part):
         error = self.transmission_error
         if error is None and not self.external:
             raise refuse(
-                "is missing, and external as well", 'write transmission_error = { amplitude = "1 um" }',
+                "is required, or external", 'set transmission_error = { amplitude = "1 um" }',
                 key="transmission_error", value="(not given)",
             )  # fmt: skip
         if error is not None and error.pair is None and self.teeth is None:
             raise refuse(
-                "is missing, but the transmission error needs it: its frequency is teeth times speed",
-                "write the driver's number of teeth", key="teeth", value="(not given)",
+                "is required for the frequency of the transmission error",
+                "specify the number of teeth of the driver", key="teeth", value="(not given)",
             )  # fmt: skip
         if error is not None and error.pair is not None and self.teeth is not None:
-            raise refuse("is that of the pair already", "leave it out", key="teeth")
+            raise refuse("is already defined by the pair", "remove it", key="teeth")
         return self

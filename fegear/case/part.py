@@ -101,7 +101,9 @@ def refuse_more(limit: int, what: str, *counts: int, key: str = "") -> None:
     total = math.prod(counts)
     if total > limit:
         size = " x ".join(f"{n:,}" for n in counts) + (f" = {total:,}" if len(counts) > 1 else "")
-        raise refuse(f"asks for {size} {what}", f"ask for {limit:,} at most", value="(a list)", key=key)
+        raise refuse(
+            f"requests {size} {what}, above the limit", f"reduce to at most {limit:,}", value="(a list)", key=key
+        )
 
 
 #: Magnitudes that a machine can have, in SI. Beyond them products overflow, and no refusal after that would say why.
@@ -123,7 +125,9 @@ def quantity(dimension: str, *, positive: bool = False, not_negative: bool = Fal
         except InputError as error:
             raise refuse(error.rule, error.remedy, value=error.value) from None
         if not plausible(number):
-            raise refuse(f"is {number:.3g} in SI units, beyond any machine", "check the unit", value=shown(value))
+            raise refuse(
+                f"is {number:.3g} in SI units, outside the plausible range", "check the unit", value=shown(value)
+            )
         if positive and number <= 0.0:
             raise refuse("must be greater than zero", value=shown(value))
         if not_negative and number < 0.0:
@@ -154,10 +158,10 @@ def _number(value: object) -> object:
     """Let a whole number stand for a float, as TOML users write ``addendum = 1``, and refuse absurd sizes."""
     if isinstance(value, int) and not isinstance(value, bool):
         if abs(value) > LARGEST:
-            raise refuse("is beyond any machine", "check the number", value=shown(value))
+            raise refuse("is outside the plausible range", "check the number", value=shown(value))
         value = float(value)
     if isinstance(value, float) and math.isfinite(value) and not plausible(value):
-        raise refuse("is beyond any machine", "check the number")
+        raise refuse("is outside the plausible range", "check the number")
     return value
 
 

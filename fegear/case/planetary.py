@@ -50,29 +50,29 @@ class SetStiffnessPart(Part):
 
     sun_mesh: MeshStiffness | None = Field(
         default=None,
-        description="Mesh stiffness of sun and planet: one value, or several evenly over the base pitch from the pitch "
-        "point on; without it that of the teeth of pair NAME_sun.",
+        description="Sun-planet mesh stiffness: constant, or equally spaced values over one base pitch from the "
+        "pitch point. Default: from the teeth of pair NAME_sun.",
     )
     ring_mesh: MeshStiffness | None = Field(
         default=None,
-        description="Mesh stiffness of planet and ring: one value, or several evenly over the base pitch; without it "
-        "that of the teeth of pair NAME_ring, where the ring is a gear.",
+        description="Planet-ring mesh stiffness: constant, or equally spaced values over one base pitch. Default: "
+        "from the teeth of pair NAME_ring if the ring is a gear.",
     )
     pin: PositiveStiffness | None = Field(
         default=None,
-        description="Stiffness of a planet's pin and bearing in either direction; without it the pin is rigid.",
+        description="Radial stiffness of planet pin and bearing. Default: rigid.",
     )
     sun: StiffnessOrZero | None = Field(
-        default=None, description="Bearing of the sun across the axis; without it rigid, or none where the sun floats."
+        default=None, description="Radial support stiffness of the sun. Default: rigid, or none if floating."
     )
     ring: StiffnessOrZero | None = Field(
-        default=None, description="Support of the ring across the axis; without it rigid, or none where it floats."
+        default=None, description="Radial support stiffness of the ring. Default: rigid, or none if floating."
     )
     carrier: StiffnessOrZero | None = Field(
-        default=None, description="Bearing of the carrier across the axis; without it rigid, or none where it floats."
+        default=None, description="Radial support stiffness of the carrier. Default: rigid, or none if floating."
     )
     turning: TorsionalStiffnessOrZero | None = Field(
-        default=None, description="Torsional stiffness that holds the fixed member; without it rigid."
+        default=None, description="Torsional support stiffness of the fixed member. Default: rigid."
     )
 
 
@@ -86,22 +86,22 @@ class SetBodyPart(Part):
 class SetBodiesPart(Part):
     """``body = { carrier = { mass, inertia }, ... }``: what moves; gears have their own where it is not given."""
 
-    sun: SetBodyPart | None = Field(default=None, description="The sun. Default: that of the gear.")
+    sun: SetBodyPart | None = Field(default=None, description="Sun. Default: from the gear.")
     ring: SetBodyPart | None = Field(
-        default=None, description="The ring, with what turns with it. Default: that of the gear."
+        default=None, description="Ring including parts connected to it. Default: from the gear."
     )
-    carrier: SetBodyPart | None = Field(default=None, description="The carrier with its pins, without planets.")
-    planet: SetBodyPart | None = Field(default=None, description="One planet. Default: that of the gear.")
+    carrier: SetBodyPart | None = Field(default=None, description="Carrier with pins, without planets.")
+    planet: SetBodyPart | None = Field(default=None, description="One planet. Default: from the gear.")
 
 
 class PinErrorsPart(Part):
     """``pin_errors = { tangential = ["20 um", "0 um", "0 um"] }``: how far pins stand from their places."""
 
     tangential: list[Length] | None = Field(
-        default=None, description="Displacement of each pin counter-clockwise, one for each planet."
+        default=None, description="Tangential position error of each pin, positive counter-clockwise."
     )
     radial: list[Length] | None = Field(
-        default=None, description="Displacement of each pin outward, one for each planet."
+        default=None, description="Radial position error of each pin, positive outward."
     )
 
 
@@ -112,50 +112,45 @@ PHASED_HARMONICS = 12
 class PlanetaryPart(Part):
     """A planetary set: one sun, equal planets, one ring, one carrier."""
 
-    sun: str = Field(description="Name of the gear that is the sun.")
-    planet: str = Field(description="Name of the gear that each planet is.")
+    sun: str = Field(description="Name of the sun gear.")
+    planet: str = Field(description="Name of the planet gear.")
     ring: str | None = Field(
         default=None,
-        description="Name of the internal gear that is the ring, whose teeth are then solved in its mesh; give this or "
-        "`ring_teeth`.",
+        description="Name of the ring gear (internal gear of the case); alternatively `ring_teeth`.",
     )
     ring_teeth: Annotated[int, Field(ge=5, le=2000)] | None = Field(
         default=None,
-        description="Number of teeth of a ring that is no gear of the case, positive; its mesh has a given stiffness.",
+        description="Number of teeth (positive) of a ring that is not modelled as a gear; requires a mesh stiffness.",
     )
     planets: Annotated[int, Field(ge=1, le=100)] | None = Field(
-        default=None, description="Number of evenly spaced planets; give this or `angles`."
+        default=None, description="Number of equally spaced planets; alternatively `angles`."
     )
     angles: Annotated[list[Angle], Field(min_length=1), at_most(100, "planets")] | None = Field(
-        default=None, description="Angles of the planets, counter-clockwise; give this or `planets`."
+        default=None, description="Angles of the planets, counter-clockwise; alternatively `planets`."
     )
     centre_distance: PositiveLength | None = Field(
         default=None,
-        description="From the axis to the planets; without it the one at which sun and planet mesh without backlash.",
+        description="Centre distance sun-planet. Default: zero backlash.",
     )
-    fixed: CentralName = Field(default="ring", description="Member that does not turn.")
-    input: CentralName = Field(default="sun", description="Member that drives.")
-    torque: PositiveTorque = Field(description="Torque on the driving member, in the sense of its rotation.")
+    fixed: CentralName = Field(default="ring", description="Fixed member.")
+    input: CentralName = Field(default="sun", description="Driving member.")
+    torque: PositiveTorque = Field(description="Torque on the driving member, positive in its direction of rotation.")
     speed: PositiveSpeed | None = Field(default=None, description="Speed of the driving member.")
-    clockwise: bool = Field(default=False, description="Whether the driving member turns clockwise.")
-    speeds: SpeedsPart | None = Field(
-        default=None, description="Speeds of the driving member over which vibration is computed."
-    )
+    clockwise: bool = Field(default=False, description="Driving member rotates clockwise.")
+    speeds: SpeedsPart | None = Field(default=None, description="Speeds of the driving member for vibration.")
     backlash: PositiveLength | Literal["unlimited"] = Field(
         default="unlimited",
-        description='Backlash of every mesh along the line of action, for `planet-motion`, or "unlimited", with which '
-        "back flanks never touch.",
+        description='Backlash of all meshes along the line of action, for `planet-motion`, or "unlimited" (no '
+        "back-side contact).",
     )
     mesh_efficiency: Annotated[Number, Field(gt=0.0, le=1.0)] = Field(
-        default=1.0, description="Efficiency of both meshes one after the other with the carrier at rest."
+        default=1.0, description="Efficiency of sun and ring mesh in series, carrier fixed."
     )
-    floating: list[CentralName] = Field(default=["sun"], description="Members without a bearing across the axis.")
+    floating: list[CentralName] = Field(default=["sun"], description="Floating members (no radial bearing).")
     stiffness: SetStiffnessPart = Field(
         default_factory=SetStiffnessPart, description="Stiffness of meshes, pins and bearings."
     )
-    pin_errors: PinErrorsPart = Field(
-        default_factory=PinErrorsPart, description="How far pins stand from their places on the carrier."
-    )
+    pin_errors: PinErrorsPart = Field(default_factory=PinErrorsPart, description="Pin position errors.")
     body: SetBodiesPart = Field(default_factory=SetBodiesPart, description="Masses and inertias, for vibration.")
     damping_ratio: Annotated[Number, Field(ge=0.0, lt=1.0)] = Field(
         default=0.03, description="Damping ratio of every mode, for vibration."
@@ -170,28 +165,30 @@ class PlanetaryPart(Part):
     def _consistent(self) -> Self:
         if (self.planets is None) == (self.angles is None):
             raise refuse(
-                "must be given in one way", 'write planets = 3, or angles = ["0 deg", "117 deg", ...]', key="planets",
+                "must be specified in one way", 'set planets = 3, or angles = ["0 deg", "117 deg", ...]', key="planets",
                 value="(not given)" if self.planets is None else f"{self.planets}, with angles",
             )  # fmt: skip
         if (self.ring is None) == (self.ring_teeth is None):
             raise refuse(
-                "must be given, or ring_teeth" if self.ring is None else "contradicts ring_teeth",
-                "name the internal gear that is the ring, or give the number of teeth alone", key="ring",
+                "is required, or ring_teeth" if self.ring is None else "contradicts ring_teeth",
+                "specify either the ring gear or its number of teeth", key="ring",
                 value="(not given)" if self.ring is None else self.ring,
             )  # fmt: skip
         if self.fixed == self.input:
-            raise refuse("is fixed as well", "fix another member, or drive another one", key="input")
+            raise refuse("is fixed as well", "choose a different fixed or driving member", key="input")
         for key in ("tangential", "radial"):
             given = getattr(self.pin_errors, key)
             if given is not None and len(given) != self.count:
                 raise refuse(
-                    f"has {len(given)} entries for {self.count} planets", "write one for each, zero where it is exact",
+                    f"has {len(given)} entries for {self.count} planets",
+                        "specify one value for each planet (zero if exact)",
                     key=f"pin_errors.{key}", value="(a list)",
                 )  # fmt: skip
         for member in self.floating:
             if getattr(self.stiffness, member):
                 raise refuse(
-                    f"contradicts the bearing of the {member}", f"leave the {member} out, or stiffness.{member}",
+                    f"contradicts the floating {member}", f"remove the {member} from floating, or remove "
+                                                                f"stiffness.{member}",
                     key="floating",
                 )  # fmt: skip
         return self

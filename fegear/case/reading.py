@@ -118,11 +118,11 @@ class Scene:
         path = self.folder / text
         if self.within is not None and not is_below(path, self.within):
             raise InputError(
-                key, shown(text, PATH), f"is outside the folders opened here ({', '.join(self.within)})",
+                key, shown(text, PATH), f"is outside the open folders ({', '.join(self.within)})",
                 "start fegear open with --folder FOLDER",
             )  # fmt: skip
         if not path.is_file():
-            raise InputError(key, f'"{text}"', "is no file", f"looked for it as {path}")
+            raise InputError(key, f'"{text}"', "file not found", f"searched at {path}")
         return path
 
 
@@ -166,7 +166,7 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         ValueError,
         RecursionError,
     ) as error:  # besides what TOML forbids, numbers and nests that Python cannot hold
-        raise InputError("case", name, f"is no valid TOML: {error}", "quantities stand in quotes") from None
+        raise InputError("case", name, f"invalid TOML: {error}", "quantities with a unit must be quoted") from None
     _refuse_decimal_commas(text)
     return document
 
@@ -182,8 +182,8 @@ def _refuse_decimal_commas(text: str) -> None:
         if glued and re.search(r",\s", found[2]):
             point, two = glued[0].replace(",", "."), glued[0].replace(",", ", ")
             raise InputError(
-                found[1], f"[{' '.join(found[2].split())}]", f"can be read with a decimal comma in {glued[0]}",
-                f"write {point}, or {two} for two numbers",
+                found[1], f"[{' '.join(found[2].split())}]", f"may contain a decimal comma ({glued[0]})",
+                f"use {point}, or {two} for two numbers",
             )  # fmt: skip
 
 
@@ -223,12 +223,12 @@ def build_scene(
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):
             if (gear := getattr(pair, role)) not in case.gear:
-                rule, remedy = "is no gear of this case", nearest(gear, case.gear)
+                rule, remedy = "is not a gear of this case", nearest(gear, case.gear)
                 raise InputError(f"pair.{key}.{role}", f'"{gear}"', rule, remedy)
         if (gears[pair.driver].helix_angle == 0.0) != (gears[pair.driven].helix_angle == 0.0):
             raise InputError(
-                f"pair.{key}.driven", f'"{pair.driven}"', "is helical where its mate is not, or the other way round",
-                "give both the same helix_angle and opposite hands",
+                f"pair.{key}.driven", f'"{pair.driven}"', "only one of the two gears is helical",
+                "specify the same helix_angle and opposite hands",
             )  # fmt: skip
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
     case = _with_effects(case, pairs)
@@ -276,7 +276,7 @@ def apply_override(document: dict[str, Any], override: str) -> None:
     path, equals, text = override.partition("=")
     steps = path.strip().split(".")
     if not equals or not all(steps):
-        raise InputError("--set", f'"{override}"', "must read KEY=VALUE", "for example --set gear.a.teeth=30")
+        raise InputError("--set", f'"{override}"', "must have the form KEY=VALUE", "for example --set gear.a.teeth=30")
     value = typed_value(text)
     if isinstance(value, list):
         _refuse_decimal_commas(f"{steps[-1]} = {text.strip()}")
@@ -320,7 +320,7 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
                 raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known, words=_meant))
             table[step] = {}
         if not isinstance(table[step], dict):
-            raise InputError(option, f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
+            raise InputError(option, f'"{path}"', f'"{step}" is not a table')
         table = table[step]
     known = keys_at(steps[:-1])
     if known and steps[-1] not in known and steps[-1] not in table:

@@ -32,7 +32,7 @@ def check_references(case: Case, built: Mapping[str, Collection[str]]) -> None:
     known = {**built, "body": train.body if train else (), "mesh": train.mesh if train else ()}
     for key, name, kind in _references(case):
         if name is not None and name not in known[kind]:
-            raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known[kind]))
+            raise InputError(key, f'"{name}"', f"is not a {kind} of this case", nearest(name, known[kind]))
 
 
 def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:

@@ -31,41 +31,40 @@ class EndReliefPart(Part):
     """Tip or root relief: amount, start and shape."""
 
     amount: Length | None = Field(
-        default=None, description="Material removed at the end of the relief; give this or `amount_over_delta`."
+        default=None, description="Amount of relief (C_a); alternatively `amount_over_delta`."
     )
     amount_over_delta: Number | None = Field(
         default=None,
-        description="The amount in units of Welbourn's Delta: deflection at the driver's HPSTC plus twice the largest "
-        "spacing error.",
+        description="Amount in units of Welbourn's Delta (deflection at the driver's HPSTC plus twice the maximum "
+        "pitch deviation).",
     )
     start_roll_angle: Angle | None = Field(
-        default=None, description="Where the relief starts, as a roll angle of the gear; give one of the four starts."
+        default=None, description="Start of relief as roll angle; specify exactly one of the four start keys."
     )
     start_radius: PositiveLength | None = Field(
-        default=None, description="Where the relief starts, as a radius of the gear; give one of the four starts."
+        default=None, description="Start of relief as radius; specify exactly one of the four start keys."
     )
     length: PositiveLength | None = Field(
-        default=None, description="Length of the relief along the line of action; give one of the four starts."
+        default=None,
+        description="Length of the relief along the line of action; specify exactly one of the four start keys.",
     )
     normalised_length: PositiveNumber | None = Field(
-        default=None, description="Length of a tip relief in L_n of TM-89901: 1 reaches from the tip to the HPSTC."
+        default=None, description="Normalised length L_n of the tip relief (TM-89901): 1 from the tip to the HPSTC."
     )
-    shape: Shape = Field(
-        default="linear", description="How the removal grows from the start: straight, or as a parabola."
-    )
+    shape: Shape = Field(default="linear", description="Shape of the relief from its start: linear or parabolic.")
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
         if (self.amount is None) == (self.amount_over_delta is None):
             raise refuse(
-                "must be given, or amount_over_delta instead",
+                "is required, or amount_over_delta",
                 "Delta is the deflection at the HPSTC plus twice the spacing error (Welbourn)",
                 key="amount",
             )
         given = [key for key in STARTS if getattr(self, key) is not None]
         if len(given) != 1:
             raise refuse(
-                f"must be given in exactly one way, not in {len(given)}", f"give one of {', '.join(STARTS)}",
+                f"must be specified in exactly one way, not in {len(given)}", f"specify one of {', '.join(STARTS)}",
                 key="start_radius", value=" and ".join(given) or "(not given)",
             )  # fmt: skip
         return self
@@ -75,13 +74,13 @@ class TipReliefPart(EndReliefPart):
     """``tip = { amount, start_roll_angle | start_radius | length | normalised_length, shape, at_radius }``."""
 
     at_radius: PositiveLength | None = Field(
-        default=None, description="Radius at which the amount is measured; without it where the involute ends."
+        default=None, description="Radius at which the amount applies. Default: end of the involute (tip form circle)."
     )
 
     @model_validator(mode="after")
     def _measured_at_the_tip(self) -> Self:
         if self.normalised_length is not None and self.at_radius is not None:
-            raise refuse("contradicts normalised_length, which counts from the tip", "leave it out", key="at_radius")
+            raise refuse("contradicts normalised_length (measured from the tip)", "remove it", key="at_radius")
         return self
 
 
@@ -89,25 +88,25 @@ class RootReliefPart(EndReliefPart):
     """``root = { amount, start_..., shape, end_radius }``; it ends where contact starts unless given otherwise."""
 
     end_radius: PositiveLength | None = Field(
-        default=None, description="Radius at which the amount is measured; without it where contact starts."
+        default=None, description="Radius at which the amount applies. Default: start of active profile."
     )
 
     @model_validator(mode="after")
     def _no_tip_measures(self) -> Self:
         if self.normalised_length is not None:
-            raise refuse("is a measure of tip relief", "give start_radius or length", key="normalised_length")
+            raise refuse("applies to tip relief only", "specify start_radius or length", key="normalised_length")
         return self
 
 
 class CrowningPart(Part):
     """``crowning = { amount, start_radius, end_radius }``; over the active profile unless given otherwise."""
 
-    amount: Length = Field(description="Material removed at both ends of the crowned profile.")
+    amount: Length = Field(description="Amount of profile crowning C_alpha at both ends of the crowned profile.")
     start_radius: PositiveLength | None = Field(
-        default=None, description="Lower end of the crowned profile; without it that of the active profile."
+        default=None, description="Lower end of the crowned profile. Default: start of active profile."
     )
     end_radius: PositiveLength | None = Field(
-        default=None, description="Upper end of the crowned profile; without it that of the active profile."
+        default=None, description="Upper end of the crowned profile. Default: end of active profile."
     )
 
 
@@ -115,14 +114,14 @@ class ReliefTablePart(Part):
     """``table = { roll_angles | radii, removals }`` or ``{ file }``, and how to interpolate."""
 
     roll_angles: Annotated[list[Angle], Field(min_length=2)] | None = Field(
-        default=None, description="Roll angles of the table, rising; give these or `radii`, with `removals`."
+        default=None, description="Roll angles of the table, increasing; alternatively `radii`."
     )
     radii: Annotated[list[PositiveLength], Field(min_length=2)] | None = Field(
-        default=None, description="Radii of the table, rising; give these or `roll_angles`, with `removals`."
+        default=None, description="Radii of the table, increasing; alternatively `roll_angles`."
     )
     removals: Annotated[list[Length], Field(min_length=2)] | None = Field(
         default=None,
-        description="Material removed at each place of the table; held at its first and last value beyond them.",
+        description="Amount of modification at each point of the table; constant beyond its ends.",
     )
     file: str | None = Field(
         default=None,
@@ -130,17 +129,17 @@ class ReliefTablePart(Part):
         "`relief_<pair>_<gear>` of an earlier run.",
     )
     interpolation: Literal["linear", "cubic"] = Field(
-        default="linear", description="What lies between the entries: straight lines, or a cubic spline."
+        default="linear", description="Interpolation: linear or cubic spline."
     )
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         inline = [key for key in ("roll_angles", "radii", "removals") if getattr(self, key) is not None]
         if self.file is not None and inline:
-            raise refuse(f"contradicts {inline[0]}", "give either the file or the lists", key="file")
+            raise refuse(f"contradicts {inline[0]}", "specify either the file or the lists", key="file")
         if self.file is None and (self.removals is None or len(inline) != 2):
             raise refuse(
-                "is incomplete", "give removals with either roll_angles or radii, or a file", key="removals",
+                "is incomplete", "specify removals with either roll_angles or radii, or a file", key="removals",
                 value=", ".join(inline) or "(not given)",
             )  # fmt: skip
         places = self.roll_angles or self.radii or []
@@ -153,23 +152,23 @@ class ReliefPart(Part):
     """Profile modification of every tooth of a gear; parts of any kind add up."""
 
     tip: Annotated[list[TipReliefPart], several(TipReliefPart)] = Field(
-        default_factory=list, description="Tip relief: a table, or a list of several that add up."
+        default_factory=list, description="Tip relief: a table, or a list of tables (summed)."
     )
     root: Annotated[list[RootReliefPart], several(RootReliefPart)] = Field(
-        default_factory=list, description="Root relief: a table, or a list of several that add up."
+        default_factory=list, description="Root relief: a table, or a list of tables (summed)."
     )
     crowning: Annotated[list[CrowningPart], several(CrowningPart)] = Field(
-        default_factory=list, description="Profile crowning: a table, or a list of several that add up."
+        default_factory=list, description="Profile crowning: a table, or a list of tables (summed)."
     )
     table: Annotated[list[ReliefTablePart], several(ReliefTablePart)] = Field(
         default_factory=list,
-        description="Removal by a table over roll angle or radius, or a list of several that add up.",
+        description="Modification as a table over roll angle or radius, or a list of tables (summed).",
     )
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not (self.tip or self.root or self.crowning or self.table):
-            raise refuse("removes nothing", "give tip, root, crowning or table, or leave relief out", value="{}")
+            raise refuse("is empty", "specify tip, root, crowning or table, or remove relief", value="{}")
         return self
 
 
@@ -179,7 +178,7 @@ class SpacingErrorsPart(Part):
     model_config = spelt_also(lambda table: table["properties"]["values"])
 
     values: Annotated[list[Length], Field(min_length=1)] | None = Field(
-        default=None, description="One error for each tooth, in the order of meshing."
+        default=None, description="Cumulative pitch deviation of each tooth, in meshing order."
     )
     file: str | None = Field(
         default=None, description="CSV file with a column `spacing_error [um]`, one line for each tooth."
@@ -193,21 +192,17 @@ class SpacingErrorsPart(Part):
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         if (self.values is None) == (self.file is None):
-            raise refuse("must be one error for each tooth, as a list or in a file", key="values")
+            raise refuse("must be one value for each tooth, as a list or in a file", key="values")
         return self
 
 
 class LeadEndReliefPart(Part):
     """``end_relief = { amount, length, end, shape }``: of end I (-b/2), end II (+b/2), or both."""
 
-    amount: Length = Field(description="Material removed at the end of the face.")
-    length: PositiveLength = Field(description="Length of the relief along the face.")
-    end: Literal["I", "II", "both"] = Field(
-        default="both", description="Which end is relieved: I at -b/2, II at +b/2, or both."
-    )
-    shape: Shape = Field(
-        default="linear", description="How the removal grows toward the end: straight, or as a parabola."
-    )
+    amount: Length = Field(description="Amount of end relief.")
+    length: PositiveLength = Field(description="Length of the end relief along the face width.")
+    end: Literal["I", "II", "both"] = Field(default="both", description="Relieved end: I (-b/2), II (+b/2) or both.")
+    shape: Shape = Field(default="linear", description="Shape of the end relief: linear or parabolic.")
 
 
 class LeadPart(Part):
@@ -216,23 +211,23 @@ class LeadPart(Part):
     ``crowning`` is removed at both ends, ``slope`` at end II; ``file`` has the columns ``z`` and ``removal``.
     """
 
-    crowning: Length = Field(default=0.0, description="C_beta: a parabola over the face, removed at both ends.")
+    crowning: Length = Field(default=0.0, description="Lead crowning C_beta (parabolic).")
     slope: Length = Field(
-        default=0.0, description="C_Hbeta, helix correction: nothing at end I, all of it removed at end II."
+        default=0.0, description="Helix slope modification C_Hbeta: zero at end I, full amount at end II."
     )
     end_relief: Annotated[list[LeadEndReliefPart], several(LeadEndReliefPart)] = Field(
-        default_factory=list, description="Relief at the ends of the face: a table, or a list of several that add up."
+        default_factory=list, description="End relief: a table, or a list of tables (summed)."
     )
     file: str | None = Field(
         default=None,
-        description="CSV file with `z [mm]` from the middle of the face and `removal [um]`, straight between its "
-        "entries, held beyond them.",
+        description="CSV file with `z [mm]` from mid-face and `removal [um]`; linear interpolation, constant beyond "
+        "its ends.",
     )
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not self.model_fields_set:
-            raise refuse("is empty", 'write lead = { crowning = "5 um" }', value="{}")
+            raise refuse("is empty", 'set lead = { crowning = "5 um" }', value="{}")
         return self
 
 
@@ -242,14 +237,14 @@ class BiasPart(Part):
     model_config = spelt_also(lambda table: table["properties"]["amount"])
 
     amount: Length = Field(
-        description="Twist S_alpha; positive takes material from the tip at end II and from the root at end I, a "
-        "quarter at each corner."
+        description="Flank twist S_alpha; positive removes material at the tip at end II and at the root at end I (a "
+        "quarter of it at each corner)."
     )
     start_radius: PositiveLength | None = Field(
-        default=None, description="Lower end of the twisted profile; without it that of the active profile."
+        default=None, description="Lower end of the twisted profile. Default: start of active profile."
     )
     end_radius: PositiveLength | None = Field(
-        default=None, description="Upper end of the twisted profile; without it that of the active profile."
+        default=None, description="Upper end of the twisted profile. Default: end of active profile."
     )
 
     @model_validator(mode="before")
@@ -262,8 +257,8 @@ class TopographyPart(Part):
     """``topography = { file }``: columns ``roll_angle`` or ``radius``, ``z`` and ``removal`` on a full grid."""
 
     file: str = Field(
-        description="CSV file with `roll_angle [deg]` or `radius [mm]`, `z [mm]` and `removal [um]`, every roll "
-        "angle at every height once; bilinear between them, held beyond them."
+        description="CSV file with `roll_angle [deg]` or `radius [mm]`, `z [mm]` and `removal [um]` on a full grid; "
+        "bilinear interpolation, constant beyond its ends."
     )
 
 
@@ -275,43 +270,40 @@ class MeasuredPart(Part):
 
     profile: str | None = Field(
         default=None,
-        description="CSV file of profile traces: `radius [mm]`, `roll_angle [deg]` or `roll_length [mm]`, "
-        "`deviation [um]`, positive for more material than the involute, and `tooth` where there are several.",
+        description="CSV file of profile traces: `radius [mm]`, `roll_angle [deg]` or `roll_length [mm]`, `deviation "
+        "[um]`, positive for more material than the involute, and `tooth` for several teeth.",
     )
     lead: str | None = Field(
         default=None,
-        description="CSV file of helix traces: `z [mm]` from the middle of the face, toward end II, `deviation [um]`, "
-        "and `tooth`.",
+        description="CSV file of helix traces: `z [mm]` from mid-face towards end II, `deviation [um]`, and `tooth`.",
     )
     topography: str | None = Field(
         default=None,
-        description="CSV file of whole flanks: a profile's column, `z [mm]`, `deviation [um]`, and `tooth`, on a full "
-        "grid; it stands for profile and lead.",
+        description="CSV file of complete flanks on a full grid: a profile column, `z [mm]`, `deviation [um]` and "
+        "`tooth`; replaces profile and lead.",
     )
     filter: bool = Field(
         default=True,
-        description="Whether the Gaussian filter of ISO 1328-1 takes out what is shorter than a thirtieth of the "
-        "evaluation length.",
+        description="Apply the Gaussian low-pass filter of ISO 1328-1 (cut-off 1/30 of the evaluation length).",
     )
     profile_range: Annotated[list[PositiveLength], Field(min_length=2, max_length=2)] | None = Field(
         default=None,
-        description="Radii between which profiles are evaluated; without it 95 % of the way from where contact starts "
-        "to where the involute ends.",
+        description="Profile evaluation range (radii). Default: 95 % of the range from start of active profile to "
+        "tip form circle.",
     )
     lead_range: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = Field(
         default=None,
-        description="Heights between which helices are evaluated; without it the face without 5 %, at most a module, "
-        "at either end.",
+        description="Helix evaluation range (z). Default: face width less 5 % (at most one module) at each end.",
     )
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if self.topography is not None and (self.profile or self.lead):
-            raise refuse("contradicts profile and lead", "give the whole flank or traces", key="topography")
+            raise refuse("contradicts profile and lead", "specify either flanks or traces", key="topography")
         if not (self.topography or self.profile or self.lead):
-            raise refuse("names no file", 'write measured = { profile = "profile.csv" }', value="{}")
+            raise refuse("must have a file", 'set measured = { profile = "profile.csv" }', value="{}")
         for key in ("profile_range", "lead_range"):
             ends = getattr(self, key)
             if ends is not None and not ends[0] < ends[1]:
-                raise refuse("must rise from its first to its last place", key=key, value="(a list)")
+                raise refuse("must increase from its first to its last place", key=key, value="(a list)")
         return self

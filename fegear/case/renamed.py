@@ -37,7 +37,7 @@ class Renamed(NamedTuple):
 
 
 #: Keys, the oldest change first.
-KEYS: tuple[Renamed, ...] = (Renamed("effects.off_line_of_action", "", "0.2", "no result knew it"),)
+KEYS: tuple[Renamed, ...] = (Renamed("effects.off_line_of_action", "", "0.2", "not used by any result"),)
 
 
 class Change(NamedTuple):
@@ -68,7 +68,8 @@ def current(document: Mapping[str, object]) -> tuple[Mapping[str, object], tuple
     version = document.get("schema_version", SCHEMA_VERSION)
     if isinstance(version, int) and version > SCHEMA_VERSION:
         raise InputError(
-            "schema_version", version, f"is of a later fegear; this one knows case files up to {SCHEMA_VERSION}",
+            "schema_version", version, "was written for a newer version of fegear (this version supports "
+                                       f"schema_version up to {SCHEMA_VERSION})",
             "update fegear",
         )  # fmt: skip
     found = changes(document)
@@ -80,8 +81,8 @@ def current(document: Mapping[str, object]) -> tuple[Mapping[str, object], tuple
         if new:
             table = _table(made, new[:-1])
             if new[-1] in table:
-                rule = f"is the old name of {'.'.join(new)}, which is given too"
-                raise InputError(".".join(old), value, rule, "take the old one out")
+                rule = f"is the old name of {'.'.join(new)}, which is also set"
+                raise InputError(".".join(old), value, rule, "remove the old key")
             table[new[-1]] = value
     return made, tuple(change.remark for change in found)
 
@@ -138,7 +139,5 @@ def _table(document: dict[str, Any], path: tuple[str, ...]) -> dict[str, Any]:
 
 def _remark(old: str, new: str, renamed: Renamed) -> str:
     reason = f" ({renamed.reason})" if renamed.reason else ""
-    now = (
-        f"is called {new} since {renamed.since}{reason}" if new else f"is gone since {renamed.since}{reason}: not read"
-    )
-    return f"{old} {now}; fegear migrate writes the case anew."
+    now = f"was renamed {new} in {renamed.since}{reason}" if new else f"was removed in {renamed.since}{reason}; ignored"
+    return f"{old} {now}; update the file with fegear migrate."

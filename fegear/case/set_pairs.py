@@ -38,7 +38,7 @@ def with_set_pairs(case: Case, gears: Mapping[str, Gear]) -> Case:
             if gear is None:
                 continue
             if gear not in gears:
-                raise InputError(f"planetary.{name}.{role}", f'"{gear}"', "is no gear of this case",
+                raise InputError(f"planetary.{name}.{role}", f'"{gear}"', "is not a gear of this case",
                                  nearest(gear, case.gear))  # fmt: skip
             if gears[gear].tooth.internal != (role == "ring"):
                 rule = "must be an internal gear" if role == "ring" else "is an internal gear"
@@ -65,8 +65,8 @@ def _set_pair(case: Case, name: str, mesh: Mesh, distance: float | None) -> Pair
     elif (given.driver, given.driven) != roles:
         raise InputError(
             f"pair.{own}.driver", f'"{given.driver}"',
-            f"is the mesh of {mesh} and planet of planetary.{name}, in which {roles[0]} drives {roles[1]}",
-            "name the gears so, or give the pair another name",
+            f"is reserved for the {mesh}-planet mesh of planetary.{name}, with {roles[0]} driving {roles[1]}",
+            "set driver and driven accordingly, or rename the pair",
         )  # fmt: skip
     filled: dict[str, Any] = {}
     if not (given.load or given.torque):

@@ -37,33 +37,37 @@ Torque = Annotated[float, quantity("torque")]
 class SectionPart(Part):
     """``{ length = "40 mm", outer = "35 mm", inner = "0 mm" }``; a cone where an end has another diameter."""
 
-    length: PositiveLength = Field(description="Length along the axis.")
-    outer: PositiveLength = Field(description="Outer diameter at its start.")
-    inner: LengthOrZero = Field(default=0.0, description="Diameter of the hole at its start; zero for solid.")
-    outer_end: PositiveLength | None = Field(default=None, description="Outer diameter at the end of a cone.")
-    inner_end: LengthOrZero | None = Field(default=None, description="Diameter of a conical hole at the end.")
+    length: PositiveLength = Field(description="Length of the section.")
+    outer: PositiveLength = Field(description="Outer diameter at the start of the section.")
+    inner: LengthOrZero = Field(default=0.0, description="Bore diameter at the start of the section; 0: solid.")
+    outer_end: PositiveLength | None = Field(
+        default=None, description="Outer diameter at the end of the section (conical)."
+    )
+    inner_end: LengthOrZero | None = Field(
+        default=None, description="Bore diameter at the end of the section (conical)."
+    )
 
 
 class GearPlacePart(Part):
     """``{ gear = "pinion", at = "60 mm" }``: the middle of a gear's face on the shaft."""
 
     gear: str = Field(description="Name of a gear of the case.")
-    at: LengthOrZero = Field(description="Middle of its face from the shaft's left end.")
+    at: LengthOrZero = Field(description="Position of mid-face from the left shaft end.")
     stiffens: bool = Field(
         default=True,
-        description="Whether its body sits fast on the shaft, or is one with it, and carries torque and bending over "
-        "its `seat`; without, the gear moves with the section of the bare shaft at each height of its face.",
+        description="Gear body rigidly connected to the shaft over its `seat` (stiffens it in torsion and bending). "
+        "If false, the gear follows the bare shaft.",
     )
     seat: PositiveLength | None = Field(
         default=None,
-        description="Length over which it sits fast, about the middle of its face; without it all of the face, or of "
-        "the hub of its body.",
+        description="Length of the rigid connection, centred on mid-face. Default: face width, or hub width of the "
+        "body.",
     )
 
     @model_validator(mode="after")
     def _fast(self) -> Self:
         if self.seat is not None and not self.stiffens:
-            raise refuse("contradicts stiffens = false", "leave one of them out", key="seat")
+            raise refuse("contradicts stiffens = false", "remove one of them", key="seat")
         return self
 
 
@@ -71,28 +75,27 @@ class BearingPlacePart(Part):
     """``{ bearing = "6208", at = "12 mm" }``: a bearing on the shaft."""
 
     bearing: str = Field(description="Name of a bearing of the case.")
-    at: LengthOrZero = Field(description="Where its force acts, from the shaft's left end.")
+    at: LengthOrZero = Field(description="Position of the bearing force from the left shaft end.")
     around: str | None = Field(
         default=None,
-        description="Name of the shaft around this one in which its outer ring sits; the housing without it. Its name "
-        "stands at the inner shaft alone.",
+        description="Name of the outer (hollow) shaft that carries the outer ring; specify at the inner shaft only. "
+        "Default: housing.",
     )
     reversed: bool = Field(
         default=False,
-        description="Whether the bearing is mounted the other way round: its contact angle and the coupling of force "
-        "and tilt change their sign.",
+        description="Bearing mounted reversed (contact angle and coupling of force and tilt change sign).",
     )
 
 
 class LoadPart(Part):
     """``{ at = "0 mm", force = ["0 N", "-800 N", "0 N"] }``: a force from outside, at the axis."""
 
-    at: LengthOrZero = Field(description="Where it acts, from the shaft's left end.")
+    at: LengthOrZero = Field(description="Position from the left shaft end.")
     force: Annotated[list[Force], Field(min_length=3, max_length=3)] | None = Field(
-        default=None, description="Along x, y and the axis z."
+        default=None, description="Force components along x, y and z (axial)."
     )
     moment: Annotated[list[Torque], Field(min_length=3, max_length=3)] | None = Field(
-        default=None, description="About x, y and the axis z."
+        default=None, description="Moment components about x, y and z (axial)."
     )
 
 
@@ -100,24 +103,28 @@ class ShaftInSpacePart(Part):
     """A shaft parallel to z: sections from its left end on, its gears, bearings, coupling and loads."""
 
     axis: Annotated[list[Length], Field(min_length=2, max_length=2)] = Field(
-        default=[0.0, 0.0], description="Where the axis stands: x and y."
+        default=[0.0, 0.0], description="Position of the axis: x and y."
     )
-    start: Length = Field(default=0.0, description="z of the left end.")
+    start: Length = Field(default=0.0, description="z coordinate of the left end.")
     sections: Annotated[list[SectionPart], Field(min_length=1), at_most(1000, "sections")] = Field(
-        description="Sections one after the other from the left end."
+        description="Sections in order from the left end."
     )
     material: MaterialPart = Field(default_factory=MaterialPart, description="Material of the shaft.")
-    rigid: bool = Field(default=False, description="Whether the shaft itself does not bend, to compare.")
-    gears: Annotated[list[GearPlacePart], at_most(100, "gears")] = Field(default=[], description="Gears on it.")
+    rigid: bool = Field(default=False, description="Rigid shaft (for comparison).")
+    gears: Annotated[list[GearPlacePart], at_most(100, "gears")] = Field(
+        default=[], description="Gears mounted on the shaft."
+    )
     bearings: Annotated[list[BearingPlacePart], at_most(100, "bearings")] = Field(
-        default=[], description="Bearings that hold it."
+        default=[], description="Bearings of the shaft."
     )
     coupling: LengthOrZero | None = Field(
-        default=None, description="Where the torque enters or leaves that the gears do not balance; none without it."
+        default=None, description="Position of the coupling that balances the torque. Default: none."
     )
-    loads: Annotated[list[LoadPart], at_most(1000, "loads")] = Field(default=[], description="Forces from outside.")
+    loads: Annotated[list[LoadPart], at_most(1000, "loads")] = Field(
+        default=[], description="External forces and moments."
+    )
     clockwise: bool = Field(
-        default=False, description="Sense in which it turns, seen from +z; shafts driven by others follow from these."
+        default=False, description="Direction of rotation seen from +z; that of driven shafts follows from it."
     )
 
     @model_validator(mode="after")
@@ -141,17 +148,19 @@ class ShaftInSpacePart(Part):
 class RollingElementsPart(Part):
     """``elements = { kind = "ball", count = 9, diameter = "12.7 mm", pitch_diameter = "65 mm" }``."""
 
-    kind: Literal["ball", "roller"] = Field(description="Balls press by Hertz's law, rollers by that of ISO/TS 16281.")
+    kind: Literal["ball", "roller"] = Field(description="Rolling element type: ball (Hertz) or roller (ISO/TS 16281).")
     count: Annotated[int, Field(ge=3, le=500)] = Field(description="Number of balls or rollers.")
-    diameter: PositiveLength = Field(description="Of a ball, or of a roller in its middle.")
-    pitch_diameter: PositiveLength = Field(description="Of the circle of their centres.")
+    diameter: PositiveLength = Field(description="Diameter of a ball, or of a roller at mid-length.")
+    pitch_diameter: PositiveLength = Field(description="Pitch diameter of the rolling elements.")
     contact_angle: Angle = Field(
-        default=0.0, description="Zero for deep groove and cylindrical; positive where a shaft moving to +z is held."
+        default=0.0,
+        description="Nominal contact angle; 0 for deep groove and cylindrical roller bearings; positive "
+        "if axial load towards +z is supported.",
     )
     groove_ratio: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(
-        default=[0.52, 0.52], description="Groove radius over ball diameter of inner and outer ring."
+        default=[0.52, 0.52], description="Ratio of groove radius to ball diameter, inner and outer ring."
     )
-    roller_length: PositiveLength | None = Field(default=None, description="Effective length of a roller.")
+    roller_length: PositiveLength | None = Field(default=None, description="Effective roller length.")
     clearance: Length = Field(default=0.0, description="Diametral clearance as mounted; negative for preload.")
 
 
@@ -159,10 +168,10 @@ class BearingLifePart(Part):
     """``life = { dynamic_rating = "32.5 kN", axial_factor = 1.6, ... }`` of the catalogue, for ISO 281."""
 
     dynamic_rating: PositiveForce = Field(description="Basic dynamic load rating C.")
-    kind: Literal["ball", "roller"] = Field(default="ball", description="Exponent 3 or 10/3.")
-    radial_factor: Annotated[Number, Field(ge=0.0)] = Field(default=1.0, description="X beyond the limit e.")
-    axial_factor: Annotated[Number, Field(ge=0.0)] = Field(default=0.0, description="Y beyond the limit e.")
-    limit: Annotated[Number, Field(ge=0.0)] = Field(default=0.0, description="e: F_a/F_r up to which P = F_r.")
+    kind: Literal["ball", "roller"] = Field(default="ball", description="Life exponent p, 3 or 10/3.")
+    radial_factor: Annotated[Number, Field(ge=0.0)] = Field(default=1.0, description="Factor X for F_a/F_r above e.")
+    axial_factor: Annotated[Number, Field(ge=0.0)] = Field(default=0.0, description="Factor Y for F_a/F_r above e.")
+    limit: Annotated[Number, Field(ge=0.0)] = Field(default=0.0, description="Limit e of F_a/F_r up to which P = F_r.")
 
     def build(self) -> LifeRating:
         """Make the rating."""
@@ -174,39 +183,41 @@ class BearingLifePart(Part):
 class BearingPart(Part):
     """A bearing: stiffness with or without clearance, or its elements; rigid radially where nothing is said."""
 
-    radial: StiffnessOrZero | None = Field(default=None, description="Radial stiffness; rigid without it.")
-    axial: StiffnessOrZero | None = Field(default=None, description="Axial stiffness; none without it, unless `fixed`.")
-    tilting: TorsionalStiffnessOrZero = Field(default=0.0, description="Stiffness against tilt.")
-    fixed: bool = Field(default=False, description="Whether it is rigid along the axis.")
-    radial_clearance: LengthOrZero = Field(default=0.0, description="How far the ring moves to a side freely.")
-    axial_clearance: LengthOrZero = Field(default=0.0, description="How far the ring moves along the axis freely.")
+    radial: StiffnessOrZero | None = Field(default=None, description="Radial stiffness. Default: rigid.")
+    axial: StiffnessOrZero | None = Field(default=None, description="Axial stiffness. Default: none, unless `fixed`.")
+    tilting: TorsionalStiffnessOrZero = Field(default=0.0, description="Tilting stiffness.")
+    fixed: bool = Field(default=False, description="Axially rigid (locating bearing).")
+    radial_clearance: LengthOrZero = Field(default=0.0, description="Radial play (half the diametral clearance).")
+    axial_clearance: LengthOrZero = Field(default=0.0, description="Axial play to either side.")
     matrix: Annotated[list[list[Number]], Field(min_length=5, max_length=5)] | None = Field(
-        default=None, description="5 x 5 stiffness in N, m, rad against x, y, z and turns about x and y."
+        default=None, description="5 x 5 stiffness matrix (x, y, z and tilt about x and y) in N, m, rad."
     )
-    elements: RollingElementsPart | None = Field(default=None, description="What rolls in it, for nonlinear stiffness.")
+    elements: RollingElementsPart | None = Field(default=None, description="Rolling elements, for nonlinear stiffness.")
     housing_radial: StiffnessOrZero | None = Field(
-        default=None, description="Radial stiffness of the seat in the housing; rigid without it."
+        default=None, description="Radial stiffness of the bearing seat in the housing. Default: rigid."
     )
     housing_axial: StiffnessOrZero | None = Field(
-        default=None, description="Axial stiffness of the seat in the housing; rigid without it."
+        default=None, description="Axial stiffness of the bearing seat in the housing. Default: rigid."
     )
-    life: BearingLifePart | None = Field(default=None, description="Ratings of the catalogue, for lives by ISO 281.")
+    life: BearingLifePart | None = Field(default=None, description="Catalogue ratings, for bearing life to ISO 281.")
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
         stiffness = {"radial", "axial", "tilting", "fixed", "radial_clearance", "axial_clearance"}
         ways = [key for key in ("matrix", "elements") if getattr(self, key) is not None]
         if len(ways) + bool(stiffness & self.given) > 1:
-            raise refuse("contradicts other keys", "give stiffness, a matrix, or elements", key=ways[0])
+            raise refuse("contradicts other keys", "specify stiffness, a matrix, or elements", key=ways[0])
         if self.matrix is not None and any(len(row) != 5 for row in self.matrix):
-            raise refuse("has rows of other lengths than 5", "write five numbers a row", key="matrix", value="(rows)")
+            raise refuse("must have 5 numbers per row", "specify five numbers per row", key="matrix", value="(rows)")
         if (self.radial_clearance or self.axial_clearance) and (self.radial is None or self.fixed):
-            raise refuse("needs a stiffness behind the clearance", "give radial and axial", key="radial_clearance")
+            raise refuse(
+                "requires a stiffness in addition to the clearance", "specify radial and axial", key="radial_clearance"
+            )
         for key in ("housing_radial", "housing_axial"):
             if getattr(self, key) == 0.0:
-                raise refuse("leaves no seat", "give a stiffness above zero, or leave it out", key=key)
+                raise refuse("must be greater than zero", "specify a stiffness above zero, or remove it", key=key)
         if self.elements is not None and self.elements.kind == "roller" and self.elements.roller_length is None:
-            raise refuse("is needed for rollers", 'write roller_length = "12 mm"', key="elements.roller_length")
+            raise refuse("is required for rollers", 'set roller_length = "12 mm"', key="elements.roller_length")
         return self
 
     def build(self, *, mirrored: bool = False) -> Bearing:

@@ -33,45 +33,41 @@ _POSITIONS = 100
 class StiffnessPart(Part):
     """Which gear, at which radii, under how wide a contact; with face positions as a solid, band by band."""
 
-    gear: str | None = Field(default=None, description="Which gear the table is of; without it every gear has one.")
+    gear: str | None = Field(default=None, description="Gear. Default: all gears.")
     radii: Annotated[list[PositiveLength], Field(min_length=1), at_most(100_000, "load positions")] | None = Field(
-        default=None, description="Radii at which the flank is loaded; give these or `positions`."
+        default=None, description="Radii of the load positions; alternatively `positions`."
     )
     positions: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
         default=None,
-        description="Load positions, equally spaced in roll angle over the active profile (without a pair over the "
-        "whole involute). Default: 100, with `face_positions` 12.",
+        description="Number of load positions, equally spaced in roll angle over the active profile (without a pair: "
+        "over the full involute). Default: 100, with `face_positions` 12.",
     )
     contact_half_width: PositiveLength | None = Field(
-        default=None, description="Half-width of the contact; without it and `load` 0.02 modules."
+        default=None, description="Contact half-width. Default: from `load`, otherwise 0.02 modules."
     )
     load: PositiveLineLoad | None = Field(
         default=None,
-        description="Line load from which Hertz gives the half-width, together with a pair; give this or "
-        "`contact_half_width`.",
+        description="Line load for the Hertzian contact half-width, with a pair; alternatively `contact_half_width`.",
     )
-    pair: str | None = Field(
-        default=None, description="The pair in which the gear is loaded, where it has several; without it the first."
-    )
+    pair: str | None = Field(default=None, description="Pair in which the gear is loaded. Default: the first.")
     face_positions: FacePositions | None = Field(
         default=None,
-        description="Solve the gear with its width: places along the face from its middle, or how many from end to "
-        "end; without it the table is plane.",
+        description="Face positions z from mid-face, or their number: 3D gear. Default: plane (2D) gear.",
     )
     source: Literal["solid", "slices"] = Field(
         default="solid",
-        description="With `face_positions`: solid gears, or coupled slices of the plane section, cheaper and some "
-        "per cent off.",
+        description="Model used with `face_positions`: 3D gear, or coupled slices (faster, a few per cent less "
+        "accurate).",
     )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
         if self.radii is not None and self.positions is not None:
-            raise refuse("contradicts radii", "give either radii or positions", key="positions")
+            raise refuse("contradicts radii", "specify either radii or positions", key="positions")
         if self.contact_half_width is not None and self.load is not None:
-            raise refuse("contradicts contact_half_width", "give either of them", key="load")
+            raise refuse("contradicts contact_half_width", "specify only one of them", key="load")
         if self.face_positions is None and self.source == "slices":
-            raise refuse("has no meaning for a plane gear", "give face_positions too, or remove it", key="source")
+            raise refuse("is not used for plane (2D) gears", "set face_positions, or remove it", key="source")
         if self.face_positions is not None:
             self._check_bands()
         return self
@@ -79,8 +75,8 @@ class StiffnessPart(Part):
     def _check_bands(self) -> None:
         """Refuse what a solid table does not know, and too many bands."""
         if self.load is not None:
-            remedy = "give contact_half_width, or leave face_positions out for the table of plane strain or stress"
-            raise refuse("is a load per width, which the bands of a solid gear do not have", remedy, key="load")
+            remedy = "specify contact_half_width, or remove face_positions for a plane (2D) table"
+            raise refuse("is a load per width and is not defined for load bands on a 3D gear", remedy, key="load")
         found = self.face_positions
         count = found if isinstance(found, int) else len(found or ())
         refuse_more(_MOST_BANDS, "bands", self.band_radii, count, key="face_positions")

@@ -59,7 +59,7 @@ def _rockwell(value: Any) -> Any:
     if unit != "HRC":
         return value
     if not _HRC[0] <= number <= _HRC[-1]:
-        rule = f"must lie between {_HRC[0]:g} and {_HRC[-1]:g} HRC, where ISO 18265 converts it"
+        rule = f"must be between {_HRC[0]:g} and {_HRC[-1]:g} HRC (conversion of ISO 18265)"
         raise refuse(rule, "give it in HV or HBW", value=value)
     i = max(bisect_left(_HRC, number), 1)
     part = (number - _HRC[i - 1]) / (_HRC[i] - _HRC[i - 1])
@@ -89,15 +89,19 @@ _LARGEST_RESIDUAL = 3e9
 def _refuse_depths(depths: list[float], values: list[float], name: str) -> None:
     """Refuse a profile whose depths do not rise, or that are not as many as its values."""
     if len(depths) != len(values):
-        raise refuse(f"has {len(depths)} depths for {len(values)} of {name}", "give one each", key="depth")
+        raise refuse(
+            f"has {len(depths)} depths for {len(values)} values of {name}",
+            "specify one value for each depth",
+            key="depth",
+        )
     if any(one >= other for one, other in pairwise(depths)):
-        raise refuse("must rise from each depth to the next", "sort the measured points", key="depth")
+        raise refuse("must be strictly increasing", "sort the measured points", key="depth")
 
 
 class HardnessProfilePart(Part):
     """``hardness_profile = { depth, hardness }``: as measured below the flank."""
 
-    depth: Depths = Field(description="Depths below the finished flank, rising.")
+    depth: Depths = Field(description="Depths below the finished flank, increasing.")
     hardness: Hardnesses = Field(description="Hardness at each depth in HV, HBW or HRC.")
 
     @model_validator(mode="after")
@@ -109,9 +113,9 @@ class HardnessProfilePart(Part):
 class ResidualStressPart(Part):
     """``residual_stress = { depth, stress }``: along profile and face, as measured; compression is negative."""
 
-    depth: Depths = Field(description="Depths below the finished flank, rising.")
+    depth: Depths = Field(description="Depths below the finished flank, increasing.")
     stress: Annotated[list[Stress], Field(min_length=2, max_length=500)] = Field(
-        description="Residual stress at each depth, the same along profile and face; compression is negative."
+        description="Residual stress at each depth, uniform over the flank; compression negative."
     )
 
     @model_validator(mode="after")
@@ -120,8 +124,8 @@ class ResidualStressPart(Part):
         for value in self.stress:
             if abs(value) > _LARGEST_RESIDUAL:
                 raise refuse(
-                    f"is that of no steel, above {_LARGEST_RESIDUAL * 1e-9:g} GPa", "check the unit", key="stress",
-                    value=f"{value * 1e-6:g} MPa",
+                    f"exceeds the residual stress of any steel, {_LARGEST_RESIDUAL * 1e-9:g} GPa", "check the unit",
+                    key="stress", value=f"{value * 1e-6:g} MPa",
                 )  # fmt: skip
         return self
 
@@ -134,26 +138,23 @@ class StrengthPart(Part):
     factors depend on its kind.
     """
 
-    material: MaterialName = Field(
-        description="Kind of material of ISO 6336-5, on which allowable stresses, life and notch factors depend."
-    )
+    material: MaterialName = Field(description="Material type to ISO 6336-5.")
     quality: Literal["ML", "MQ", "ME"] = Field(
         default="MQ",
-        description="Quality of material and heat treatment (ISO 6336-5): ML lowest, MQ usual, ME highest.",
+        description="Material quality ML, MQ or ME (ISO 6336-5).",
     )
     hardness: Hardness | None = Field(
         default=None,
-        description="Hardness of the surface in HV, HBW or HRC; the middle of the material's range without.",
+        description="Surface hardness in HV, HBW or HRC. Default: middle of the range of the material.",
     )
     core_hardness: Hardness | None = Field(
         default=None,
-        description="Hardness of the core of surface-hardened teeth: 25 HRC at least for case-hardened steel, quality "
-        "MQ, whose root is stronger from 30 HRC on; AGMA 2101 asks for it too.",
+        description="Core hardness of surface-hardened teeth: at least 25 HRC for case-hardened steel MQ (higher "
+        "sigma_Flim from 30 HRC); also used by AGMA 2101.",
     )
     jominy_12: Hardness | None = Field(
         default=None,
-        description="Hardness 12 mm from the quenched end of a Jominy bar, of case-hardened steel of quality MQ: from "
-        "28 HRC on the root is stronger.",
+        description="Jominy hardness at 12 mm, of case-hardened steel MQ (higher sigma_Flim from 28 HRC).",
     )
     case_depth: PositiveLength | None = Field(
         default=None,
@@ -161,56 +162,56 @@ class StrengthPart(Part):
         "`flank-fracture`.",
     )
     hardness_profile: HardnessProfilePart | None = Field(
-        default=None, description="Measured hardness over depth, in place of the curve through case_depth."
+        default=None, description="Measured hardness over depth, instead of the curve through case_depth."
     )
     residual_stress: ResidualStressPart | None = Field(
         default=None,
-        description="Measured residual stress over depth; from the hardness by Lang's rule without.",
+        description="Measured residual stress over depth. Default: from the hardness (Lang).",
     )
     contact: PositivePressure | None = Field(
-        default=None, description="Own allowable stress number (contact) sigma_Hlim in place of that of ISO 6336-5."
+        default=None, description="User-defined allowable stress number (contact) sigma_Hlim. Default: ISO 6336-5."
     )
     bending: PositivePressure | None = Field(
-        default=None, description="Own nominal stress number (bending) sigma_Flim in place of that of ISO 6336-5."
+        default=None, description="User-defined nominal stress number (bending) sigma_Flim. Default: ISO 6336-5."
     )
     bending_allowable: PositivePressure | None = Field(
-        default=None, description="Own allowable stress number (bending) sigma_FE = 2 sigma_Flim, in place of bending."
+        default=None,
+        description="User-defined allowable stress number (bending) sigma_FE = 2 sigma_Flim, instead of bending.",
     )
     yield_strength: PositivePressure | None = Field(
         default=None,
-        description="Yield point sigma_S or proof stress sigma_0.2, on which the notch sensitivity of steels that are "
-        "not surface-hardened depends; the least favourable without.",
+        description="Yield point sigma_S or proof stress sigma_0.2, for the notch sensitivity of steels without "
+        "surface hardening. Default: least favourable value.",
     )
     tensile_strength: PositivePressure | None = Field(
-        default=None, description="Tensile strength sigma_B of cast iron, on which its notch sensitivity depends."
+        default=None, description="Tensile strength sigma_B of cast iron, for its notch sensitivity."
     )
     long_life: Annotated[float, Field(ge=0.85, le=1.0)] = Field(
         default=0.85,
-        description="Life factors Z_NT and Y_NT at 1e10 load cycles: 0.85, or up to 1 for the best material, "
-        "manufacture and lubrication with experience.",
+        description="Z_NT and Y_NT at 1e10 load cycles: 0.85, up to 1.0 for optimum material, manufacture, "
+        "lubrication and experience.",
     )
     pitting_allowed: bool = Field(
-        default=False, description="Whether some pitting may be seen, for which Z_NT of a limited life is larger."
+        default=False, description="Limited pitting permitted (higher Z_NT in the limited life range)."
     )
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Self:
         if self.bending is not None and self.bending_allowable is not None:
-            raise refuse("contradicts bending", "give sigma_Flim or sigma_FE", key="bending_allowable")
+            raise refuse("contradicts bending", "specify sigma_Flim or sigma_FE", key="bending_allowable")
         for key in ("contact", "bending", "bending_allowable", "yield_strength", "tensile_strength"):
             value = getattr(self, key)
             if value is not None and not _WEAKEST <= value <= _STRONGEST:
                 raise refuse(
-                    f"is that of no gear, {_WEAKEST * 1e-6:g} MPa to {_STRONGEST * 1e-9:g} GPa", "check the unit",
+                    f"is outside the range of gear materials, {_WEAKEST * 1e-6:g} MPa to {_STRONGEST * 1e-9:g} "
+                    "GPa", "check the unit",
                     key=key, value=f"{value * 1e-6:g} MPa",
                 )  # fmt: skip
         for key in ("core_hardness", "case_depth", "hardness_profile", "residual_stress"):
             if getattr(self, key) is not None and not self.material.startswith(_WITH_A_CORE):
-                raise refuse("has a meaning only for surface-hardened steel", f"remove {key}", key=key)
+                raise refuse("applies only to surface-hardened steel", f"remove {key}", key=key)
         if self.jominy_12 is not None and self.material != "case-hardened-steel":
-            raise refuse("has a meaning only for case-hardened-steel", "remove jominy_12", key="jominy_12")
+            raise refuse("applies only to case-hardened-steel", "remove jominy_12", key="jominy_12")
         if self.tensile_strength is not None and not self.material.endswith("iron"):
-            raise refuse(
-                "has a meaning only for cast iron", "remove it, or give yield_strength", key="tensile_strength"
-            )
+            raise refuse("applies only to cast iron", "remove it, or give yield_strength", key="tensile_strength")
         return self

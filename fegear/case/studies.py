@@ -39,33 +39,33 @@ DRAWN = ("teeth", "profile_shift", "rack_tip_radius", "rack_dedendum", "pressure
 class StudyPart(Part):
     """Every combination of the lists is computed; a list that is not given keeps the gear's own value."""
 
-    gear: str | None = Field(default=None, description="The gear whose tooth is varied; without it the only gear.")
-    teeth: Teeth | None = Field(default=None, description="Numbers of teeth; without it the gear's own.")
+    gear: str | None = Field(default=None, description="Gear whose tooth is varied. Default: the only gear.")
+    teeth: Teeth | None = Field(default=None, description="Numbers of teeth. Default: the gear's own.")
     profile_shift: Numbers | None = Field(
-        default=None, description="Profile shift coefficients; without it the gear's own."
+        default=None, description="Profile shift coefficients. Default: the gear's own."
     )
     rack_tip_radius: Numbers | None = Field(
-        default=None, description="Tip radii of the generating rack in modules; without it the gear's own."
+        default=None, description="Tip radii of the generating rack in modules. Default: the gear's own."
     )
     rack_dedendum: Positives | None = Field(
         default=None,
-        description="With `samples`: dedenda of the generating rack in modules; without it the gear's own.",
+        description="With `samples`: dedenda of the generating rack in modules. Default: the gear's own.",
     )
     pressure_angle: Angles | None = Field(
-        default=None, description="With `samples`: pressure angles of the rack; without it the gear's own."
+        default=None, description="With `samples`: pressure angles of the rack. Default: the gear's own."
     )
     load_position: Shares = Field(
         default_factory=lambda: [0.1, 0.4, 0.7, 1.0],
-        description="Where the load acts, as shares of the roll angle between start (0) and end (1) of the involute; "
-        "with `samples` the first and the last, and eight loads a gear between them. Default: 0.1, 0.4, 0.7, 1; with "
-        "`samples` 0 to 1.",
+        description="Load positions as fractions of roll angle from start (0) to end (1) of the involute; with "
+        "`samples` the first and last of eight loads per gear. Default: 0.1, 0.4, 0.7, 1; with `samples` "
+        "0 to 1.",
     )
     samples: int | None = Field(
         default=None, ge=2, le=10_000,
-        description="Gears drawn evenly between the first and the last value of every list, in place of every "
-        "combination; draws that give no tooth are drawn anew.",
+        description="Number of random gears between the first and last value of every list (instead of all "
+                    "combinations); invalid teeth are resampled.",
     )  # fmt: skip
-    seed: int = Field(default=0, ge=0, le=2**31 - 1, description="The same seed draws the same gears.")
+    seed: int = Field(default=0, ge=0, le=2**31 - 1, description="Seed of the random gears.")
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -78,14 +78,14 @@ class StudyPart(Part):
         if self.samples is None:
             for key in ("rack_dedendum", "pressure_angle"):
                 if getattr(self, key):
-                    raise refuse("is for gears that are drawn", "give samples, their number", key=key)
+                    raise refuse("requires samples", "set samples (number of gears)", key=key)
             return self
         if "load_position" not in self.model_fields_set:
             object.__setattr__(self, "load_position", [0.0, 1.0])
         for key in DRAWN:
             values = getattr(self, key) or [0]
             if len(values) > 2 or values[0] > values[-1]:
-                raise refuse("must be one value, or the lowest and the highest", "see samples", key=key)
+                raise refuse("must be one value, or minimum and maximum", "see samples", key=key)
         return self
 
     @model_validator(mode="after")
@@ -105,17 +105,16 @@ class CostPart(Part):
     """Which quantities of which gear and pair."""
 
     quantities: Annotated[list[QuantityName], Field(min_length=1)] | None = Field(
-        default=None, description="What is studied; without it what `results` stands for."
+        default=None, description="Quantities to study. Default: those of `results`."
     )
     gear: str | None = Field(
         default=None,
-        description="The gear whose compliance and root stress are studied; without it that of `[stiffness]`, else "
-        "the pair's driver.",
+        description="Gear for compliance and root stress. Default: that of `[stiffness]`, else the pair's driver.",
     )
     pair: str | None = Field(
         default=None,
-        description="The pair whose transmission error and forces are studied; without it that of `[stiffness]`, "
-        "else the first with a load.",
+        description="Pair for transmission error and forces. Default: that of `[stiffness]`, else the first with a "
+        "load.",
     )
 
     @property
@@ -139,46 +138,47 @@ class RobustReliefPart(Part):
 
     amounts: Annotated[list[PositiveLength], Field(min_length=1), at_most(_MOST_VALUES, "amounts")] | None = Field(
         default=None,
-        description="Amounts at the tips to be tried; without it eight up to three times the mean transmission error.",
+        description="Amounts of tip relief to evaluate. Default: eight values up to three times the mean "
+        "transmission error.",
     )
     lengths: (
         Annotated[list[Annotated[Number, Field(gt=0.0, le=1.0)]], Field(min_length=1), at_most(_MOST_VALUES, "lengths")]
         | None
     ) = Field(
-        default=None, description="Lengths over the path of contact to be tried; without it seven from 0.1 to 0.7."
+        default=None,
+        description="Relief lengths relative to the path of contact. Default: seven values from 0.1 to 0.7.",
     )
     shape: Literal["linear", "parabolic"] = Field(default="linear", description="Shape of the tip reliefs.")
     draws: Annotated[int, Field(ge=20, le=2_000)] = Field(
         default=512,
-        description="How many draws candidates are compared over; results are those of others.",
+        description="Number of samples for comparing candidates (results use different samples).",
     )
     percentile: Annotated[Number, Field(ge=50.0, le=99.9)] = Field(
-        default=95.0, description="Percentile of the peak-to-peak transmission error that is to be least."
+        default=95.0, description="Percentile of the peak-to-peak transmission error to minimise."
     )
 
 
 class TolerancePart(Part):
     """Which pair is drawn how often, and how its deviations are spread."""
 
-    pair: str | None = Field(default=None, description="Pair whose deviations are drawn; without it the only one.")
-    draws: Annotated[int, Field(ge=20, le=100_000)] = Field(default=2000, description="How many engagements are drawn.")
+    pair: str | None = Field(default=None, description="Pair whose deviations are sampled. Default: the only pair.")
+    draws: Annotated[int, Field(ge=20, le=100_000)] = Field(default=2000, description="Number of samples.")
     seed: Annotated[int, Field(ge=0, le=2_147_483_647)] = Field(
-        default=1, description="Seed of the sequence; the same one gives the same bits."
+        default=1, description="Seed of the sequence (same seed, same results)."
     )
     sequence: Literal["sobol", "halton", "random"] = Field(
-        default="sobol", description="Scrambled quasi-random sequence, or `random`, plain Monte Carlo."
+        default="sobol", description="Sampling: scrambled quasi-random sequence, or `random` (Monte Carlo)."
     )
     distribution: Literal["normal", "uniform"] = Field(
         default="normal",
-        description="With `normal` the tolerance is three standard deviations, and the end; `uniform` is even over it.",
+        description="Distribution: `normal` (tolerance = three standard deviations, truncated) or `uniform`.",
     )
     deviations: Annotated[list[Deviation], Field(min_length=1)] | None = Field(
-        default=None, description="Kinds of deviations that are drawn; without it all that have a tolerance."
+        default=None, description="Deviations to sample. Default: all with a tolerance."
     )
-    centre_distance: LengthOrZero = Field(
-        default=0.0, description="Largest deviation of the centre distance, to either side."
-    )
+    centre_distance: LengthOrZero = Field(default=0.0, description="Tolerance of the centre distance (plus/minus).")
     reliefs: RobustReliefPart | None = Field(
         default=None,
-        description="Tip reliefs of both gears are tried: the best in a percentile is compared with the nominal best.",
+        description="Search for the tip relief of both gears with the best percentile, compared with the nominal "
+        "optimum.",
     )

@@ -59,14 +59,14 @@ class RoughnessPart(Part):
     """``roughness = { flank = "0.4 um", root = "1.6 um" }``: arithmetic mean roughness R_a, new or after running in."""
 
     flank: PositiveLength | None = Field(
-        default=None, description="Ra of the working flanks, in the direction in which they slide"
+        default=None, description="Ra of the working flanks, in the direction of sliding."
     )
-    root: PositiveLength | None = Field(default=None, description="Ra of the root fillets")
+    root: PositiveLength | None = Field(default=None, description="Ra of the root fillets.")
     flank_rz: PositiveLength | None = Field(
-        default=None, description="mean peak-to-valley roughness Rz of the flanks; 6 Ra where it is not given"
+        default=None, description="Mean peak-to-valley roughness Rz of the flanks. Default: 6 Ra."
     )
     root_rz: PositiveLength | None = Field(
-        default=None, description="mean peak-to-valley roughness Rz of the fillets; 6 Ra where it is not given"
+        default=None, description="Mean peak-to-valley roughness Rz of the root fillets. Default: 6 Ra."
     )
 
     @model_validator(mode="after")
@@ -75,7 +75,7 @@ class RoughnessPart(Part):
             value = getattr(self, key)
             if value is not None and value > most:
                 raise refuse(
-                    f"is rougher than any gear, {most * 1e6:g} um",
+                    f"exceeds the maximum roughness of {most * 1e6:g} um",
                     "check the unit",
                     key=key,
                     value=f"{value * 1e6:g} um",
@@ -84,7 +84,7 @@ class RoughnessPart(Part):
             low, high = getattr(self, ra), getattr(self, rz)
             if low is not None and high is not None and high < low:
                 raise refuse(
-                    f"is below {ra} = {low * 1e6:g} um: no Rz is less than its Ra", "check both", key=rz,
+                    f"must not be lower than {ra} = {low * 1e6:g} um", "check both", key=rz,
                     value=f"{high * 1e6:g} um",
                 )  # fmt: skip
         return self
@@ -109,63 +109,64 @@ class LubricantPart(Part):
     """``lubricant = { viscosity_40, viscosity_100, density_15, temperature, kind, ... }``: the oil of a pair."""
 
     viscosity_40: PositiveKinematicViscosity = Field(
-        description="kinematic viscosity at 40 degC, the number of the ISO viscosity grade"
+        description="Kinematic viscosity at 40 degC (ISO viscosity grade)."
     )
     viscosity_100: PositiveKinematicViscosity | None = Field(
         default=None,
-        description="kinematic viscosity at 100 degC; without it that of a mineral oil of viscosity index 95",
+        description="Kinematic viscosity at 100 degC. Default: mineral oil of viscosity index 95.",
     )
-    density_15: PositiveDensity = Field(default=895.0, description="density at 15 degC")
-    temperature: Temperature = Field(description="of the oil, in the sump or where it is sprayed into the mesh")
-    kind: OilKind = Field(default="mineral", description="base oil")
-    supply: Supply = Field(default="dip", description="how the oil comes to the teeth: factor X_S")
+    density_15: PositiveDensity = Field(default=895.0, description="Density at 15 degC.")
+    temperature: Temperature = Field(description="Oil temperature in the sump or at the spray nozzle.")
+    kind: OilKind = Field(default="mineral", description="Base oil.")
+    supply: Supply = Field(default="dip", description="Lubrication method (dip, spray ...): factor X_S.")
     scuffing_load_stage: Annotated[int, Field(ge=1, le=14)] | None = Field(
         default=None,
-        description="failure load stage of the FZG test A/8.3/90 (ISO 14635-1), for S_B and S_intS",
+        description="Failure load stage of the FZG test A/8.3/90 (ISO 14635-1), for S_B and S_intS.",
     )
     scuffing_temperature: Temperature | None = Field(
-        default=None, description="contact temperature at which the oil scuffs, in place of the one from the test"
+        default=None, description="Scuffing temperature of the oil. Default: from the test."
     )
     micropitting_load_stage: Annotated[int, Field(ge=5, le=10)] | None = Field(
-        default=None, description="failure load stage of the FVA 54/7 test C/8.3/90, for the safety S_lambda"
+        default=None, description="Failure load stage of the FVA 54/7 test C/8.3/90, for S_lambda."
     )
     micropitting_temperature: Temperature = Field(
-        default=90.0, description="oil temperature of that test; the standard test is run at 90 degC"
+        default=90.0, description="Oil temperature of the micropitting test (standard: 90 degC)."
     )
     permissible_film: Annotated[Number, Field(gt=0.0, le=100.0)] | None = Field(
-        default=None, description="permissible specific film thickness lambda_GFP, in place of the one from the test"
+        default=None,
+        description="Permissible specific lubricant film thickness lambda_GFP. Default: from the micropitting test.",
     )
 
     @model_validator(mode="after")
     def _thinner_when_hot(self) -> Self:
         if self.viscosity_40 > _THICKEST:
             raise refuse(
-                f"is thicker than any oil, {_THICKEST * 1e6:g} mm^2/s", "check the unit", key="viscosity_40",
+                f"exceeds the maximum viscosity of {_THICKEST * 1e6:g} mm^2/s", "check the unit", key="viscosity_40",
                 value=f"{self.viscosity_40 * 1e6:g} mm^2/s",
             )  # fmt: skip
         if not _DENSITIES[0] <= self.density_15 <= _DENSITIES[1]:
             raise refuse(
-                f"is the density of no oil, which have {_DENSITIES[0]:g} to {_DENSITIES[1]:g} kg/m^3",
-                'check the unit: write for example "895 kg/m^3"', key="density_15", value=f"{self.density_15:g} kg/m^3",
+                f"is outside the density range of lubricating oils, {_DENSITIES[0]:g} to {_DENSITIES[1]:g} kg/m^3",
+                'check the unit: for example "895 kg/m^3"', key="density_15", value=f"{self.density_15:g} kg/m^3",
             )  # fmt: skip
         if self.viscosity_100 is not None and self.viscosity_100 >= self.viscosity_40:
-            raise refuse("must be below viscosity_40: oil thins as it warms", "check both", key="viscosity_100")
+            raise refuse("must be lower than viscosity_40", "check both", key="viscosity_100")
         if self.viscosity_100 is None and self.viscosity_40 < _THIN:
             raise refuse(
-                "is needed for so thin an oil: no usual gear oil says how it thins", "give viscosity_100",
+                "is required for viscosity_40 this low (no default viscosity index)", "specify viscosity_100",
                 key="viscosity_100", value="(not given)",
             )  # fmt: skip
         if self.viscosity_40 < 2e-6 or (self.viscosity_100 or 2e-6) < 2e-6:
             key = "viscosity_40" if self.viscosity_40 < 2e-6 else "viscosity_100"
-            raise refuse("is below 2 mm^2/s, where the viscosity law of ASTM D341 does not hold", "check it", key=key)
+            raise refuse("is below 2 mm^2/s, the validity limit of the viscosity law of ASTM D341", "check it", key=key)
         for one, other in (
             ("scuffing_load_stage", "scuffing_temperature"),
             ("micropitting_load_stage", "permissible_film"),
         ):
             if getattr(self, one) is not None and getattr(self, other) is not None:
-                raise refuse(f"contradicts {one}", "give either", key=other)
+                raise refuse(f"contradicts {one}", "specify only one", key=other)
         if not -40.0 <= self.temperature <= 250.0:
-            raise refuse("must lie between -40 and 250 degC", "check the unit", key="temperature")
+            raise refuse("must be between -40 and 250 degC", "check the unit", key="temperature")
         return self
 
 
@@ -173,29 +174,31 @@ class PairFrictionPart(Part):
     """``friction = { law = "schlenk" }`` or ``{ coefficient = 0.05 }``: of flanks, for `gear-mesh-power-loss`."""
 
     law: FrictionLaw | None = Field(
-        default=None, description='friction law (default: "constant" with a coefficient, else "schlenk")'
+        default=None, description='Friction law. Default: "constant" with a coefficient, otherwise "schlenk".'
     )
     coefficient: Annotated[Number, Field(ge=0.0, le=0.5)] | None = Field(
-        default=None, description="friction coefficient of the law constant"
+        default=None, description='Coefficient of friction for law "constant".'
     )
     local: bool = Field(
         default=False,
-        description="take a law of mean coefficients at every point with its own load, speeds and curvature",
+        description="Apply a law for mean coefficients locally (local load, speeds and curvature).",
     )
     viscosity: PositiveViscosity | None = Field(
-        default=None, description="dynamic viscosity for benedict-kelley; that of the lubricant where it is not given"
+        default=None, description='Dynamic viscosity for "benedict-kelley". Default: that of the lubricant.'
     )
 
     @model_validator(mode="after")
     def _what_the_law_needs(self) -> Self:
         if self.law == "constant" and self.coefficient is None:
-            raise refuse('is needed by law = "constant"', "give coefficient", key="coefficient", value="(not given)")
+            raise refuse(
+                'is required by law = "constant"', "specify coefficient", key="coefficient", value="(not given)"
+            )
         if self.law not in (None, "constant") and self.coefficient is not None:
-            raise refuse(f'has no meaning with law = "{self.law}"', "leave it out", key="coefficient")
+            raise refuse(f'is not used with law = "{self.law}"', "remove it", key="coefficient")
         if self.viscosity is not None and self.law != "benedict-kelley":
-            raise refuse('belongs to law = "benedict-kelley"', "leave it out", key="viscosity")
+            raise refuse('requires law = "benedict-kelley"', "remove it", key="viscosity")
         if self.local and self.name in ("constant", "buckingham", "benedict-kelley"):
-            raise refuse(f'has no meaning with law = "{self.name}"', "leave it out", key="local", value=True)
+            raise refuse(f'is not used with law = "{self.name}"', "remove it", key="local", value=True)
         return self
 
     @property

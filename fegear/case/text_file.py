@@ -80,7 +80,7 @@ def read_file(path: Path, key: str) -> TextFile:
         if data.startswith(mark):
             raise InputError(key, f'"{path.name}"', f"is in {name}, not in UTF-8", "save it as UTF-8")
     if b"\0" in data:
-        raise InputError(key, f'"{path.name}"', "is no text", "check which file it is")
+        raise InputError(key, f'"{path.name}"', "is not a text file", "check which file it is")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -130,7 +130,7 @@ def _data(path: Path, key: str) -> bytes:
     except OSError as error:
         raise InputError(key, shown(str(path), PATH), f"cannot be read ({error.strerror or error})") from None
     except ValueError:
-        raise InputError(key, shown(str(path), PATH), "can be no file's name", "check its characters") from None
+        raise InputError(key, shown(str(path), PATH), "is not a valid file name", "check its characters") from None
 
 
 def _at_once(name: str, flags: int) -> int:
@@ -171,13 +171,13 @@ def named_path(text: str, key: str, *, home: bool = False) -> Path:
         If it can be no path: empty, of a home folder that nobody has, of characters that no file's name may have.
     """
     if not text.strip():
-        raise InputError(key, shown(text), "must not be empty", 'write for example "drive" or "." for this folder')
+        raise InputError(key, shown(text), "must not be empty", 'for example "drive" or "." for this folder')
     if any(unicodedata.category(sign) in ("Cc", "Cs") for sign in text):
-        raise InputError(key, shown(text), "has a character that a file's name must not have", "leave it out")
+        raise InputError(key, shown(text), "contains a character not allowed in file names", "remove it")
     try:
         return Path(text).expanduser() if home else Path(text)
     except RuntimeError:
-        raise InputError(key, shown(text), "begins with a home folder that is not known", "write it in full") from None
+        raise InputError(key, shown(text), "refers to an unknown home folder", "use an absolute path") from None
 
 
 def write_file(path: Path, data: bytes, key: str) -> None:
@@ -202,7 +202,7 @@ def write_file(path: Path, data: bytes, key: str) -> None:
             state = place.stat()
             if not stat.S_ISREG(state.st_mode):
                 raise InputError(
-                    key, shown(str(path), PATH), "is a folder, a pipe or a device, not a file", "choose another"
+                    key, shown(str(path), PATH), "is a folder, a pipe or a device, not a file", "choose another file"
                 )
             mode = state.st_mode & 0o777
         handle, scratch = tempfile.mkstemp(prefix=".", dir=place.parent)
@@ -220,7 +220,7 @@ def write_file(path: Path, data: bytes, key: str) -> None:
         remedy = "make room" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "choose another name"
         raise InputError(key, shown(str(path), PATH), f"cannot be written ({reason})", remedy) from None
     except ValueError:
-        raise InputError(key, shown(str(path), PATH), "can be no file's name", "check its characters") from None
+        raise InputError(key, shown(str(path), PATH), "is not a valid file name", "check its characters") from None
 
 
 def _umask() -> int:

@@ -30,9 +30,9 @@ class Meaning:
         """What to write instead, where these names are known."""
         here = next((name for key in self.keys if (name := key.rpartition(".")[2]) in known), "")
         if here:
-            return f'the nearest known name is "{here}"' + (f" ({self.how})" if self.how else "")
+            return f'did you mean "{here}"' + (f" ({self.how})" if self.how else "")
         if self.keys:
-            return f"set {self.keys[0]} for it" + (f" ({self.how})" if self.how else "")
+            return f"use {self.keys[0]}" + (f" ({self.how})" if self.how else "")
         return self.how
 
 
@@ -63,25 +63,23 @@ _LETTERS = str.maketrans({
     "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "α": "alpha", "β": "beta", "ρ": "rho", "ν": "nu", "σ": "sigma",
     "-": "", " ": "", "_": "", "'": "",
 })  # fmt: skip
-_RACK = "a rack is not possible in fegear: a gear of 1000 teeth comes nearest"
-_STEPPED = "stepped planets are not possible in fegear: a planet is one gear, which meshes with sun and ring"
-_DOUBLE = (
-    "double-helical gears are not possible in fegear: describe one half, with half the face width and half the torque"
-)
-_CRACK = "cracks are not possible in fegear: all teeth of a gear are whole"
-_WORN = "worn flanks can be given as measured ones (gear.NAME.measured); wear is not computed in fegear"
-_CROSSED = "axes that cross are not possible in fegear: gears are cylindrical, on parallel axes"
-_UNEVEN = "both flanks of a tooth are equal in fegear: one pressure angle serves both"
-_SPACING = "give its course as gear.NAME.spacing_errors, one value for each tooth"
-_HEAT = "gears are not heated in fegear; flank-surface computes temperatures of flanks"
+_RACK = "racks are not supported; use a gear with 1000 teeth as an approximation"
+_STEPPED = "stepped planets are not supported: each planet is one gear meshing with sun and ring"
+_DOUBLE = "double-helical gears are not supported: model one half with half the face width and torque"
+_CRACK = "cracks are not supported"
+_WORN = "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)"
+_CROSSED = "only cylindrical gears on parallel axes are supported"
+_UNEVEN = "asymmetric teeth are not supported (one pressure angle for both flanks)"
+_SPACING = "specify it as gear.NAME.spacing_errors, one value for each tooth"
+_HEAT = "thermal expansion is not computed; flank-surface computes flank temperatures"
 
-_THICKNESS = "how much thinner the tooth is at the pitch circle than pi/2 + 2 x tan(alpha) modules"
-_MEASURED = f"{_THICKNESS}; geometry reports the span and the dimension over balls that follow"
+_THICKNESS = "reduction of the tooth thickness at the reference circle from (pi/2 + 2 x tan(alpha)) m"
+_MEASURED = f"{_THICKNESS}; geometry reports the resulting span and dimension over balls"
 _BACKLASH = (
     ("gear.NAME.thickness_allowance",),
     "with pair.NAME.centre_distance it gives the backlash, which geometry reports; of a train train.mesh.NAME.backlash",
 )
-_FOLLOWS = "it follows from the gears, and geometry reports it"
+_FOLLOWS = "calculated from the gears, see geometry"
 
 #: Words, the keys that they mean, and what is to be known.
 _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
@@ -95,7 +93,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("pnd p_nd", ("gear.NAME.normal_diametral_pitch",), ""),
     ("circular_pitch pitch p teilung base_pitch p_b tooth_pitch", ("gear.NAME.module",), "the circular pitch over pi"),
     ("d pitch_diameter reference_diameter pitch_circle pitch_radius teilkreis teilkreisdurchmesser",
-     ("gear.NAME.module",), "the pitch diameter over the number of teeth"),
+     ("gear.NAME.module",), "the reference diameter over the number of teeth"),
     ("alpha alpha_n phi phi_n normal_pressure_angle eingriffswinkel", ("gear.NAME.pressure_angle",), ""),
     ("beta psi helix schraegungswinkel spiral_angle", ("gear.NAME.helix_angle",), ""),
     ("helix_hand hand_of_helix helix_direction flankenrichtung lead_direction", ("gear.NAME.hand",), ""),
@@ -186,7 +184,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("shaft_misalignment alignment_error achsneigung achsschraenkung axis_error",
      ("pair.NAME.misalignment",), ""),
     ("mesh_stiffness c_gamma cgamma eingriffssteifigkeit",
-     ("train.mesh.NAME.stiffness",), "without it that of the teeth, which transmission-error reports"),
+     ("train.mesh.NAME.stiffness",), "default: from the teeth, see transmission-error"),
     (("contact_ratio epsilon_alpha eps_alpha profilueberdeckung overlap_ratio working_pressure_angle alpha_w alpha_wt "
      "betriebseingriffswinkel base_circle d_b base_diameter base_radius grundkreis tip_clearance"), (), _FOLLOWS),
     # the case
@@ -200,7 +198,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("headline titel", ("title",), ""),
     ("coupling_between_teeth coupled_teeth", ("effects.neighbour_coupling", "effects"), ""),
     ("tip_contact premature_contact off_line_contact vorzeitiger_eingriff", ("effects.corner_contact", "effects"), ""),
-    ("gravity weight_of_gears", (), "weight is not counted in fegear; give forces as shaft.NAME.loads"),
+    ("gravity weight_of_gears", (), "weight is not included; specify forces as shaft.NAME.loads"),
     # what is not there
     ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", (), _RACK),
     ("herringbone double_helical double_helix pfeilverzahnung gap_width", (), _DOUBLE),
@@ -222,7 +220,7 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("tooth_stiffness single_tooth_stiffness compliance c_prime zahnfedersteifigkeit", ("stiffness",), ""),
     ("load_share load_distribution_between_teeth lastaufteilung", ("load-sharing",), ""),
     ("contact_stress hertz hertz_pressure hertzian_stress pressure pressung flankenpressung", ("load-sharing",),
-     "over the face load-distribution"),
+     "over the face width: load-distribution"),
     ("bending_stress tooth_root_stress fillet_stress root_bending zahnfussspannung", ("root-stress",),
      "in the mesh root-stress-history"),
     (("safety safety_factor safety_factors iso_6336 iso6336 agma agma_2101 din_3990 strength life lifetime s_h s_f "
@@ -246,7 +244,7 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("crack crack_propagation stress_intensity_factor sif riss", (), _CRACK),
     ("wear wear_depth verschleiss", (), _WORN),
     ("noise sound_power sound_pressure acoustics geraeusch", (),
-     "sound is not computed in fegear; transmission-error and dynamic-factor are what excites it"),
+     "noise is not computed; see transmission-error and dynamic-factor for its excitation"),
 )  # fmt: skip
 _VALUES = {
     "hand": dict.fromkeys(("double", "doublehelical", "herringbone", "both"), _DOUBLE),

@@ -40,18 +40,19 @@ class BodyPart(Part):
 
     inertia: PositiveInertia | None = Field(
         default=None,
-        description="Moment of inertia, which adds to that of `gears`; without `gears` it is all.",
+        description="Moment of inertia, in addition to that of `gears`.",
     )
     gears: Annotated[list[str], Field(min_length=1)] | None = Field(
         default=None,
-        description="Gears that the body is made of: inertia of teeth, rim, web, hub and bore, density by material.",
+        description="Gears of the body, whose inertia (teeth, rim, web, hub, bore; density of the material) is "
+        "included.",
     )
 
     @model_validator(mode="after")
     def _some_inertia(self) -> Self:
         if self.inertia is None and self.gears is None:
             raise refuse(
-                "is missing", 'write inertia = "0.002 kg*m^2", or gears = ["a"] to take it from their geometry',
+                "is missing", 'set inertia = "0.002 kg*m^2", or gears = ["a"] to take it from their geometry',
                 key="inertia", value="(not given)",
             )  # fmt: skip
         return self
@@ -69,11 +70,13 @@ class ShaftPart(Part):
     diameter: PositiveLength | None = Field(default=None, description="Outer diameter of the shaft, with `length`.")
     bore_diameter: LengthOrZero = Field(default=0.0, description="Diameter of the shaft's bore.")
     shear_modulus: PositivePressure = Field(default=79.5e9, description="Shear modulus of the shaft.")
-    rigid: bool = Field(default=False, description="Whether the shaft is rigid.")
+    rigid: bool = Field(default=False, description="Rigid shaft.")
     damping: TorsionalDamping | None = Field(
-        default=None, description="Torsional damping; give this or `damping_ratio`."
+        default=None, description="Torsional damping; alternatively `damping_ratio`."
     )
-    damping_ratio: Ratio | None = Field(default=None, description="Damping ratio of the shaft; give this or `damping`.")
+    damping_ratio: Ratio | None = Field(
+        default=None, description="Damping ratio of the shaft; alternatively `damping`."
+    )
 
     @model_validator(mode="after")
     def _one_stiffness(self) -> Self:
@@ -81,67 +84,65 @@ class ShaftPart(Part):
         ways = [self.stiffness is not None, bool(size), self.rigid]
         if sum(ways) != 1:
             raise refuse(
-                "must be given in exactly one way", "give stiffness, or length and diameter, or rigid = true",
+                "must be specified in exactly one way", "specify stiffness, or length and diameter, or rigid = true",
                 key="stiffness", value=f"{sum(ways)} ways",
             )  # fmt: skip
         if size:
             for key in ("length", "diameter"):
                 if getattr(self, key) is None:
-                    raise refuse("is missing", f'write {key} = "40 mm"', key=key, value="(not given)")
+                    raise refuse("is missing", f'set {key} = "40 mm"', key=key, value="(not given)")
             try:
                 refuse_shaft(self.length or 0.0, self.diameter or 0.0, LONGEST_OF_TRAIN)
             except GeometryError as error:
                 raise refuse(error.rule, error.remedy, key=error.key, value=error.value) from None
         if self.damping is not None and self.damping_ratio is not None:
-            raise refuse("contradicts damping", "give either", key="damping_ratio")
+            raise refuse("contradicts damping", "specify only one", key="damping_ratio")
         if self.rigid and (self.damping or self.damping_ratio):
-            raise refuse("has no meaning for a rigid shaft", "leave it out", key="damping")
+            raise refuse("is not used for a rigid shaft", "remove it", key="damping")
         return self
 
 
 class LikePart(Part):
     """``like = { pair = "I", width_ratio = 6.0 }``: teeth of another pair, unmodified, so many times as wide."""
 
-    pair: str = Field(description="The pair whose teeth these are like, unmodified.")
-    width_ratio: PositiveNumber = Field(default=1.0, description="Their face width over that of the pair.")
+    pair: str = Field(description="Pair with the same teeth (unmodified).")
+    width_ratio: PositiveNumber = Field(default=1.0, description="Face width relative to that of the pair.")
 
 
 class TrainMeshPart(Part):
     """A gear pair between two bodies; the pair of the same name unless given otherwise."""
 
     pair: str | None = Field(
-        default=None, description="The pair of the case that meshes here; without it the one of this name."
+        default=None, description="Gear pair of the case for this mesh. Default: pair of the same name."
     )
-    driver: str = Field(description="Body that drives.")
-    driven: str = Field(description="Body that is driven.")
-    like: LikePart | None = Field(default=None, description="Teeth of another pair, unmodified.")
+    driver: str = Field(description="Driving body.")
+    driven: str = Field(description="Driven body.")
+    like: LikePart | None = Field(default=None, description="Teeth of another pair (unmodified).")
     stiffness: PositiveStiffness | None = Field(
-        default=None, description="Mean mesh stiffness, in place of that of the tooth compliances."
+        default=None, description="Mean mesh stiffness. Default: from the tooth compliances."
     )
     damping: MeshDamping | None = Field(
-        default=None, description="Damping along the line of action; give this or `damping_ratio`."
+        default=None, description="Damping along the line of action; alternatively `damping_ratio`."
     )
-    damping_ratio: Ratio | None = Field(default=None, description="Damping ratio of the mesh; give this or `damping`.")
+    damping_ratio: Ratio | None = Field(default=None, description="Damping ratio of the mesh; alternatively `damping`.")
     damping_law: Literal["constant", "momentary"] = Field(
         default="constant",
-        description="Damping that is constant, from the mean stiffness, or that follows the stiffness of the teeth "
-        "that touch (TM-100180).",
+        description="Mesh damping: constant (mean stiffness) or proportional to the instantaneous mesh stiffness "
+        "(TM-100180).",
     )
     backlash: Backlash | None = Field(
         default=None,
-        description='Backlash along the line of action, or "unlimited", with which back flanks never touch. Default: '
-        "that of the gears at their tooth thickness and centre distance, zero where they jam by rounding.",
+        description='Backlash along the line of action, or "unlimited" (no back-side contact). Default: from tooth '
+        "thickness and centre distance, at least zero.",
     )
-    phase: Number = Field(default=0.0, description="Phase of the mesh at time zero, in base pitches.")
+    phase: Number = Field(default=0.0, description="Mesh phase at time zero, in base pitches.")
 
     @model_validator(mode="after")
     def _one_damping(self) -> Self:
         if self.damping is not None and self.damping_ratio is not None:
-            raise refuse("contradicts damping", "give either", key="damping_ratio")
+            raise refuse("contradicts damping", "specify only one", key="damping_ratio")
         if self.damping_law != "constant" and self.damping is None and self.damping_ratio is None:
-            raise refuse(
-                "has a meaning only with damping", "give damping_ratio or damping, or leave it out", key="damping_law"
-            )
+            raise refuse("requires damping", "specify damping_ratio or damping, or remove it", key="damping_law")
         return self
 
 
@@ -149,7 +150,7 @@ class DamperPart(Part):
     """A viscous damper between two bodies, or between one and the ground."""
 
     a: str = Field(description="Body at one end.")
-    b: str | None = Field(default=None, description="Body at the other end; without it the ground.")
+    b: str | None = Field(default=None, description="Body at the other end. Default: the ground.")
     damping: TorsionalDamping = Field(description="Torsional damping.")
 
 
@@ -162,56 +163,56 @@ class TorqueRipplePart(Part):
 
     body: str = Field(description="Body on which the torque acts.")
     order: Number | None = Field(
-        default=None, description="Periods per revolution of `body`, or of `order_of`; give this or `frequency`."
+        default=None, description="Order (periods per revolution of `body` or `order_of`); alternatively `frequency`."
     )
     order_of: str | None = Field(
-        default=None, description="Body whose revolutions `order` and the angles of `file` count. Default: `body`."
+        default=None, description="Body to whose rotation `order` and the angles of `file` refer. Default: `body`."
     )
     frequency: FrequencyOrZero | None = Field(
-        default=None, description="Fixed frequency, at every speed; give this or `order`."
+        default=None, description="Fixed frequency, independent of speed; alternatively `order`."
     )
     amplitude: AmplitudeOrZero | None = Field(
-        default=None, description="Amplitude of the torque; give this or `amplitude_over_mean`."
+        default=None, description="Amplitude of the torque; alternatively `amplitude_over_mean`."
     )
     amplitude_over_mean: Annotated[Number, Field(ge=0.0)] | None = Field(
         default=None,
-        description="Amplitude over the constant torque of the body; where `phase` is zero, the torque begins at its "
-        "largest size.",
+        description="Amplitude relative to the constant torque of the body; with `phase` zero the torque starts at "
+        "its maximum.",
     )
     phase: Angle = Field(default=0.0, description="Phase of the cosine at time zero.")
     file: str | None = Field(
         default=None,
-        description="CSV file with `angle [deg]` or `time [s]` and `torque [N*m]` over one period, its last line "
-        "repeating the first torque; straight between its entries, the mean left out.",
+        description="CSV file with `angle [deg]` or `time [s]` and `torque [N*m]` over one period, last line equal "
+        "to the first torque; linear interpolation, mean removed.",
     )
-    harmonics: Annotated[int, Field(ge=1, le=512)] = Field(default=32, description="Harmonics of `file` that are kept.")
+    harmonics: Annotated[int, Field(ge=1, le=512)] = Field(default=32, description="Number of harmonics of `file`.")
 
     @model_validator(mode="after")
     def _a_harmonic_or_a_file(self) -> Self:
         if self.file is not None:
             for key in ("order", "frequency", "amplitude", "amplitude_over_mean", "phase"):
                 if key in self.given:
-                    raise refuse("contradicts file, which has the whole torque", "give either", key=key)
+                    raise refuse("contradicts file, which defines the complete torque", "specify only one", key=key)
             return self
         if "harmonics" in self.given:
-            raise refuse("has a meaning only with file", "leave it out", key="harmonics")
+            raise refuse("requires file", "remove it", key="harmonics")
         if (self.order is None) == (self.frequency is None):
             raise refuse(
-                "must be given, or frequency instead", 'write order = 2, or frequency = "100 Hz", or a file',
+                "is required, or frequency", 'set order = 2, or frequency = "100 Hz", or a file',
                 key="order", value="(both)" if self.order is not None else "(not given)",
             )  # fmt: skip
         if self.frequency is not None and self.order_of is not None:
-            raise refuse("has no meaning with a fixed frequency", "leave it out", key="order_of")
+            raise refuse("is not used with a fixed frequency", "remove it", key="order_of")
         for key in ("order", "frequency"):
             value = getattr(self, key)
             if value is not None and value <= 0.0:
-                remedy = "add a constant torque to train.torque" if value == 0.0 else "turn it with phase"
+                remedy = "add a constant torque to train.torque" if value == 0.0 else "use phase instead"
                 raise refuse("must be greater than zero", remedy, key=key)
             if value is not None and value > FASTEST[key]:
                 raise refuse(f"exceeds {FASTEST[key]:,.0f}{' Hz' if key == 'frequency' else ''}", "check it", key=key)
         if (self.amplitude is None) == (self.amplitude_over_mean is None):
             raise refuse(
-                "must be given, or amplitude_over_mean instead", 'write amplitude = "8 N*m"', key="amplitude",
+                "is required, or amplitude_over_mean", 'set amplitude = "8 N*m"', key="amplitude",
                 value="(both)" if self.amplitude is not None else "(not given)",
             )  # fmt: skip
         return self
@@ -221,27 +222,26 @@ class TrainPart(Part):
     """A gear train as a graph; angles and torques of all bodies count in one sense of rotation."""
 
     body: Annotated[dict[str, BodyPart], Field(min_length=1)] = Field(
-        description="Bodies that turn, each by a name of your choice; the first is the reference for speeds."
+        description="Rotating bodies, by name; the first is the reference for speeds."
     )
-    shaft: dict[str, ShaftPart] = Field(
-        default_factory=dict, description="Shafts between bodies, each by a name of your choice."
-    )
+    shaft: dict[str, ShaftPart] = Field(default_factory=dict, description="Shafts between bodies, by name.")
     mesh: Annotated[dict[str, TrainMeshPart], Field(min_length=1)] = Field(
-        description="Gear meshes between bodies, each by a name of your choice."
+        description="Gear meshes between bodies, by name."
     )
     damper: dict[str, DamperPart] = Field(
         default_factory=dict, description="Dampers between bodies, or from a body to the ground."
     )
     torque: Annotated[dict[str, TorqueValue], Field(min_length=1)] = Field(
-        description="Constant torques by body; the loads of the pairs must agree with them."
+        description="Constant torques by body; loads of the pairs must be consistent."
     )
     torque_ripple: dict[str, TorqueRipplePart] = Field(
         default_factory=dict,
-        description="Torques that fluctuate about the constant ones, each by a name of your choice; they need the "
-        "effect `torque_ripple`.",
+        description="Fluctuating torques in addition to the constant ones, by name; active with the effect "
+        "`torque_ripple`.",
     )
     balance: str | None = Field(
-        default=None, description="Body whose torque balances the others; without it they must balance by themselves."
+        default=None,
+        description="Body whose torque is calculated from equilibrium. Default: the given torques must balance.",
     )
 
     @model_validator(mode="after")
@@ -249,7 +249,7 @@ class TrainPart(Part):
         for name in self.torque_ripple:
             if name in self.mesh:
                 raise refuse(
-                    "is the name of a mesh, too, and results say by name what excites", "choose another",
+                    "is also the name of a mesh; excitations must have unique names", "choose another file",
                     key="torque_ripple", value=f'"{name}"',
                 )  # fmt: skip
         return self
@@ -257,7 +257,7 @@ class TrainPart(Part):
     @model_validator(mode="after")
     def _balanced_by_a_free_body(self) -> Self:
         if self.balance in self.torque:
-            raise refuse("has a torque of its own already", "leave one of them out", key="balance")
+            raise refuse("already has a torque", "remove one of them", key="balance")
         return self
 
     def pair_of(self, mesh: str) -> str:

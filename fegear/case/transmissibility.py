@@ -48,8 +48,10 @@ NotNegative = Annotated[Number, Field(ge=0.0)]
 class _Range(Part):
     """What all ranges share."""
 
-    count: _Count = Field(default=61, description="Values in the range.")
-    spacing: Literal["linear", "logarithmic"] = Field(default="linear", description="How the values are spaced.")
+    count: _Count = Field(default=61, description="Number of values.")
+    spacing: Literal["linear", "logarithmic"] = Field(
+        default="linear", description="Spacing of the values: linear or logarithmic."
+    )
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -78,7 +80,7 @@ class NumbersPart(_Range):
     start: Number = Field(description="First value.")
     stop: Number = Field(description="Last value.")
     responses: Annotated[list[Number], _MOST] = Field(
-        default_factory=list, description="Values at which the frequency response is drawn."
+        default_factory=list, description="Values for which the frequency response is plotted."
     )
 
 
@@ -88,7 +90,7 @@ class AnglesPart(_Range):
     start: Angle = Field(description="First angle.")
     stop: Angle = Field(description="Last angle.")
     responses: Annotated[list[Angle], _MOST] = Field(
-        default_factory=list, description="Angles at which the frequency response is drawn."
+        default_factory=list, description="Angles for which the frequency response is plotted."
     )
 
 
@@ -98,7 +100,7 @@ class StiffnessesPart(_Range):
     start: PositiveStiffness = Field(description="First stiffness.")
     stop: PositiveStiffness = Field(description="Last stiffness.")
     responses: Annotated[list[PositiveStiffness], _MOST] = Field(
-        default_factory=list, description="Stiffnesses at which the frequency response is drawn."
+        default_factory=list, description="Stiffnesses for which the frequency response is plotted."
     )
 
 
@@ -108,7 +110,7 @@ class FactorsPart(_Range):
     start: Annotated[Number, Field(ge=0.0)] = Field(description="First factor.")
     stop: Number = Field(description="Last factor.")
     responses: Annotated[list[Annotated[Number, Field(ge=0.0)]], _MOST] = Field(
-        default_factory=list, description="Factors at which the frequency response is drawn."
+        default_factory=list, description="Factors for which the frequency response is plotted."
     )
 
 
@@ -123,9 +125,7 @@ class FollowPart(Part):
         default=None, description="Range of a factor of all bearing stiffnesses."
     )
     base_helix_angle: AnglesPart | None = Field(default=None, description="Range of the base helix angle.")
-    kappa: NumbersPart | None = Field(
-        default=None, description="Range of kappa; it takes mu along where the case leaves mu out."
-    )
+    kappa: NumbersPart | None = Field(default=None, description="Range of kappa; mu follows it if not specified.")
     mu: NumbersPart | None = Field(default=None, description="Range of mu.")
     mesh_stiffness: StiffnessesPart | None = Field(default=None, description="Range of the mesh stiffness K_M.")
 
@@ -133,7 +133,9 @@ class FollowPart(Part):
     def _something(self) -> Self:
         if not self.ranges:
             raise refuse(
-                "names no parameter", 'write base_helix_angle = { start = "0 deg", stop = "40 deg" }', value="(empty)"
+                "must have at least one parameter",
+                'set base_helix_angle = { start = "0 deg", stop = "40 deg" }',
+                value="(empty)",
             )
         return self
 
@@ -153,36 +155,38 @@ class MeshStiffnessPart(Part):
     ``mesh = { pair = "I" }`` takes all of it from the loaded flanks of a pair of the case with its width.
     """
 
-    pair: str | None = Field(default=None, description="A pair of the case whose loaded flanks give K_M, kappa and mu.")
+    pair: str | None = Field(default=None, description="Pair whose loaded flanks define K_M, kappa and mu.")
     stiffness: PositiveStiffness | None = Field(
-        default=None, description="Mesh stiffness K_M; give this, a `distribution` or a `pair`."
+        default=None, description="Mesh stiffness K_M; alternatively `distribution` or `pair`."
     )
     kappa: Number = Field(
         default=0.0,
-        description="Axial distance of the centre of the mesh stiffness from the gear's centre of mass, over half "
-        "the face width.",
+        description="kappa: axial distance from the centre of mass of the gear to the centre of the mesh stiffness, "
+        "over half the face width.",
     )
     mu: Number | None = Field(
         default=None,
-        description="Rotary stiffness about x over K_M times the square of half the face width, at least kappa^2; "
-        "without it that of a uniform contact that reaches one end of the face.",
+        description="mu: rotational stiffness about x over K_M times the square of half the face width, at least "
+        "kappa^2. Default: uniform contact reaching one face end.",
     )
-    base_helix_angle: Angle = Field(default=0.0, description="Helix angle on the base cylinder.")
+    base_helix_angle: Angle = Field(default=0.0, description="Base helix angle.")
     distribution: str | None = Field(
         default=None, description="CSV file with `z [mm]`, `load [N/mm]` and `deflection [um]` over the face."
     )
-    face_width: PositiveLength | None = Field(default=None, description="Face width that goes with `distribution`.")
+    face_width: PositiveLength | None = Field(default=None, description="Face width of `distribution`.")
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         if self.pair is not None:
             for key in sorted(self.given - {"pair"}):
-                raise refuse("comes from the teeth of the pair already", "leave it out", key=key)
+                raise refuse("is already defined by the pair", "remove it", key=key)
             return self
         if (self.stiffness is None) == (self.distribution is None):
-            raise refuse("must be given, or a distribution over the face or a pair", "give one", key="stiffness")
+            raise refuse(
+                "is required, or a distribution over the face width, or a pair", "specify one", key="stiffness"
+            )
         if self.distribution is not None and self.face_width is None:
-            raise refuse("is missing, but the distribution needs it", 'write face_width = "25 mm"', key="face_width")
+            raise refuse("is required for the distribution", 'set face_width = "25 mm"', key="face_width")
         return self
 
     def build(self) -> MeshParameters:
@@ -197,19 +201,18 @@ class BearingPart(Part):
     """Bearing stiffness of one gear: the diagonal by name, or the whole matrix in SI over (y, z, three angles)."""
 
     y: StiffnessOrZero = Field(default=0.0, description="Stiffness along the transverse line of action.")
-    z: StiffnessOrZero = Field(default=0.0, description="Stiffness along the axis.")
-    theta_x: TorsionalStiffnessOrZero = Field(default=0.0, description="Stiffness against turning about x.")
-    theta_y: TorsionalStiffnessOrZero = Field(default=0.0, description="Stiffness against turning about y.")
+    z: StiffnessOrZero = Field(default=0.0, description="Axial stiffness.")
+    theta_x: TorsionalStiffnessOrZero = Field(default=0.0, description="Tilting stiffness about x.")
+    theta_y: TorsionalStiffnessOrZero = Field(default=0.0, description="Tilting stiffness about y.")
     matrix: Matrix | None = Field(
         default=None,
-        description="The whole stiffness matrix over (y, z, theta_x, theta_y, theta_z) in SI, five rows of five "
-        "numbers.",
+        description="Complete stiffness matrix for (y, z, theta_x, theta_y, theta_z) in SI, five rows of five numbers.",
     )
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
         if self.matrix is not None and self.given != {"matrix"}:
-            raise refuse("contradicts the single stiffnesses", "give either", key="matrix")
+            raise refuse("contradicts the single stiffnesses", "specify only one", key="matrix")
         return self
 
     def build(self) -> NDArray[np.float64]:
@@ -229,14 +232,14 @@ class RigidGearPart(Part):
     mass: PositiveMass | None = Field(default=None, description="Mass of the gear.")
     inertia_x: PositiveInertia | None = Field(default=None, description="Moment of inertia about x.")
     inertia_y: PositiveInertia | None = Field(default=None, description="Moment of inertia about y.")
-    inertia_z: PositiveInertia | None = Field(default=None, description="Moment of inertia about the axis.")
+    inertia_z: PositiveInertia | None = Field(default=None, description="Moment of inertia about the gear axis.")
     base_radius: PositiveLength | None = Field(default=None, description="Base radius.")
     half_face_width: PositiveLength | None = Field(default=None, description="Half the face width.")
     bearing: BearingPart = Field(default_factory=BearingPart, description="Stiffness of the bearing.")
     damping: Matrix | None = Field(
         default=None,
-        description="Damping matrix over (y, z, theta_x, theta_y, theta_z) in SI, five rows of five numbers; without "
-        "it zero.",
+        description="Damping matrix for (y, z, theta_x, theta_y, theta_z) in SI, five rows of five numbers. Default: "
+        "zero.",
     )
 
     def build(self) -> RigidGear:
@@ -259,7 +262,7 @@ class UnityRatioPart(Part):
     aspect_ratio: Annotated[Number, Field(gt=0.0)] = Field(description="Half face width over base radius.")
     alpha_y: NotNegative = Field(description="Bearing stiffness ratio along the transverse line of action.")
     alpha_z: NotNegative = Field(description="Bearing stiffness ratio along the axis.")
-    alpha_theta: NotNegative = Field(description="Bearing stiffness ratio against tilting.")
+    alpha_theta: NotNegative = Field(description="Bearing stiffness ratio for tilting.")
     base_radius: PositiveLength | None = Field(
         default=None, description="Base radius, for moments in `pair-forced-response`."
     )
@@ -272,38 +275,32 @@ _OF_UNITY_RATIO = {"alpha_y", "alpha_z", "alpha_theta", "aspect_ratio"}
 class TransmissibilityPart(Part):
     """One pair and the range of Lambda = frequency / sqrt(K_M/m_eq) to look at."""
 
-    mesh: MeshStiffnessPart = Field(
-        description="The mesh between the gears: its stiffness and how that spreads over the face."
-    )
+    mesh: MeshStiffnessPart = Field(description="Mesh stiffness and its distribution over the face width.")
     driver: RigidGearPart | None = Field(
         default=None,
-        description="The driver as a rigid gear on its bearing; where the mesh is a pair's, what is not given is "
-        "that of its gear.",
+        description="Driver as a rigid gear on its bearing. Default with `mesh.pair`: values of its gear.",
     )
     driven: RigidGearPart | None = Field(
         default=None,
-        description="The driven gear as a rigid one on its bearing; where the mesh is a pair's, what is not "
-        "given is that of its gear.",
+        description="Driven gear as a rigid gear on its bearing. Default with `mesh.pair`: values of its gear.",
     )
     unity_ratio: UnityRatioPart | None = Field(
         default=None,
-        description="A pair of two like gears by its dimensionless numbers, in place of `driver` and `driven`.",
+        description="Identical gears (ratio 1) by dimensionless parameters, instead of `driver` and `driven`.",
     )
     damping_ratio: Annotated[Number, Field(ge=0.0)] = Field(
         default=0.0, description="Damping ratio of every flexible mode."
     )
     lambda_from: Annotated[Number, Field(ge=0.0)] = Field(
-        default=0.01, description="Lowest frequency over sqrt(K_M/m_eq)."
+        default=0.01, description="Minimum frequency over sqrt(K_M/m_eq)."
     )
     lambda_to: Annotated[Number, Field(gt=0.0)] = Field(
-        default=2.0, description="Highest frequency over sqrt(K_M/m_eq)."
+        default=2.0, description="Maximum frequency over sqrt(K_M/m_eq)."
     )
     frequencies: Annotated[int, Field(ge=2, le=1_000_000)] = Field(
-        default=400, description="Frequencies of the range; pictures are refined wherever a curve bends."
+        default=400, description="Number of frequencies in the range; refined in figures where a curve bends."
     )
-    follow: FollowPart | None = Field(
-        default=None, description="Parameters over which the modes are followed, for `mode-tracking`."
-    )
+    follow: FollowPart | None = Field(default=None, description="Parameters for `mode-tracking`.")
     excitation: ExcitationPart | None = Field(
         default=None, description="Excitation of the pair, for `pair-forced-response`."
     )
@@ -315,19 +312,19 @@ class TransmissibilityPart(Part):
         if self.mesh.pair is None and (
             general == (self.unity_ratio is not None) or (self.driver is None) != (self.driven is None)
         ):
-            raise refuse("is not described", "give driver and driven, or unity_ratio", key="driver", value="(pair)")
+            raise refuse("is not specified", "specify driver and driven, or unity_ratio", key="driver", value="(pair)")
         if self.lambda_to <= self.lambda_from:
             raise refuse("must be greater than lambda_from", key="lambda_to", value=self.lambda_to)
         if self.follow is not None and self.unity_ratio is None:
             for key in _OF_UNITY_RATIO & set(self.follow.ranges):
-                raise refuse("belongs to unity_ratio", "follow bearing_stiffness instead", key=f"follow.{key}")
+                raise refuse("requires unity_ratio", "use bearing_stiffness instead", key=f"follow.{key}")
         return self
 
     def _check_gears(self) -> None:
         if self.mesh.pair is not None:
             if self.unity_ratio is not None:
                 raise refuse(
-                    "describes gears that are not those of the mesh's pair", "give driver and driven, or leave it out",
+                    "contradicts mesh.pair, which defines the gears", "specify driver and driven, or remove it",
                     key="unity_ratio", value="(given)",
                 )  # fmt: skip
             return
@@ -335,7 +332,7 @@ class TransmissibilityPart(Part):
             for key in OF_THE_GEAR if gear else ():
                 if getattr(gear, key) is None:
                     raise refuse(
-                        "is missing", 'give it, or take the mesh from a pair: mesh = { pair = "I" }',
+                        "is missing", 'specify it, or take the mesh from a pair: mesh = { pair = "I" }',
                         key=f"{role}.{key}", value="(not given)",
                     )  # fmt: skip
 
@@ -346,7 +343,7 @@ class TransmissibilityPart(Part):
 
     def _both(self) -> tuple[RigidGearPart, RigidGearPart]:
         if self.driver is None or self.driven is None:
-            raise InputError("driver", "(pair)", "is not described", "give driver and driven, or unity_ratio")
+            raise InputError("driver", "(pair)", "is not specified", "specify driver and driven, or unity_ratio")
         return self.driver, self.driven
 
     def build(self, mesh: MeshParameters, prefix: str) -> HelicalPairModel | ReducedPairModel:
@@ -373,7 +370,7 @@ class TransmissibilityPart(Part):
         u = self.unity_ratio
         if u.base_radius is None:
             raise InputError(
-                f"{prefix}.unity_ratio.base_radius", "(not given)", "is needed for moments",
-                'write base_radius = "70.48 mm"',
+                f"{prefix}.unity_ratio.base_radius", "(not given)", "is required for moments",
+                'set base_radius = "70.48 mm"',
             )  # fmt: skip
         return model.both_gears(u.base_radius, u.aspect_ratio * u.base_radius)  # type: ignore[union-attr]  # as above

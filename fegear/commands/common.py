@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fegear.engine.run import Watcher
 
 
-INTERRUPTED = "interrupted; results of earlier runs are as they were."
+INTERRUPTED = "interrupted; results of earlier runs are unchanged."
 
 
 def _complete_results(incomplete: str) -> list[str]:
@@ -46,7 +46,7 @@ CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML)
 
 Overrides = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a key of the case, e.g. --set gear.a.teeth=30."),
+    typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the case, e.g. --set gear.a.teeth=30."),
 ]
 
 
@@ -55,7 +55,7 @@ Wanted = Annotated[
     typer.Option(
         "--results",
         metavar="A,B",
-        help="Compute these results in place of the case's; fegear results lists them.",
+        help="Results to compute instead of those in the case (see fegear results).",
         autocompletion=_complete_results,
     ),
 ]
@@ -73,22 +73,24 @@ def out_option(about: str) -> OptionInfo:
     return typer.Option("--out", help=about, parser=named, metavar="PATH")
 
 
-Out = Annotated[Path | None, out_option("Output folder; default results/<case>.")]
+Out = Annotated[Path | None, out_option("Output folder. Default: results/<case>.")]
 
 
-NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw nothing: tables, dataset and report alone.")]
+NoPlots = Annotated[bool, typer.Option("--no-plots", help="No figures; tables, dataset and report only.")]
 
 
 Scheduler = Annotated[
     str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, e.g. tcp://10.0.0.5:8786."),
+    typer.Option(
+        "--scheduler", metavar="ADDRESS", help="Address of a running Dask scheduler, e.g. tcp://10.0.0.5:8786."
+    ),
 ]
 
 
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print notes and errors alone, on stderr.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print notes and errors only (stderr).")]
 
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print what was found as JSON on stdout, nothing else.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the results as JSON only (stdout).")]
 
 
 def changes(overrides: list[str] | None, results: str | None = None) -> list[str]:

@@ -15,7 +15,7 @@ from fegear.output.formats import FORMATS
 def export(
     case: CaseFile,
     overrides: Overrides = None,
-    gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear; default all of them.")] = None,
+    gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear. Default: all gears.")] = None,
     formats: Annotated[
         str,
         typer.Option(
@@ -23,7 +23,7 @@ def export(
             help=f"Any of {', '.join(FORMATS)}, separated by commas; formats of other distributions by their names.",
         ),
     ] = "dxf,msh,vtu,inp",
-    out: Annotated[Path | None, out_option("Output folder; default results/<case>_export.")] = None,
+    out: Annotated[Path | None, out_option("Output folder. Default: results/<case>_export.")] = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
@@ -42,8 +42,8 @@ def export(
     results = read_side(case, "CASE") if leads_to(case, stat.S_ISDIR) else None
     if results is not None and not all(row.takes_results for row in wanted_formats(formats).values()):
         taking = " or ".join(name for name, row in FORMATS.items() if row.takes_results)
-        rule = f"is the folder of a run, which is written as {taking} only"
-        raise InputError("CASE", str(case), rule, f"write --format {taking}, or give the case file")
+        rule = f"is a results folder, which can be exported as {taking} only"
+        raise InputError("CASE", str(case), rule, f"use --format {taking}, or specify the case file")
     try:
         if results is None:
             scene = read_scene(case, overrides or ())

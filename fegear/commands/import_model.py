@@ -17,16 +17,16 @@ _KINDS = "; ".join(row.about for row in IMPORTERS.values())
 def import_(
     model: Annotated[Path, typer.Argument(metavar="MODEL", help=f"{_KINDS}.", show_default=False)],
     out: Annotated[
-        str | None, typer.Option("--out", metavar="CASE", help="Case file to write; default the model's name.")
+        str | None, typer.Option("--out", metavar="CASE", help="Case file to write. Default: name of the model.")
     ] = None,
     load_case: Annotated[
-        int | None, typer.Option("--load-case", metavar="N", help="Number of the load case; default the first.")
+        int | None, typer.Option("--load-case", metavar="N", help="Number of the load case. Default: first.")
     ] = None,
     spectrum: Annotated[
         bool | None,
         typer.Option(
             "--spectrum/--no-spectrum",
-            help="All load cases are the load spectrum of the ratings. Default: if all say how long they last.",
+            help="Use all load cases as load spectrum for the ratings. Default: if all have a duration.",
             show_default=False,
         ),
     ] = None,
@@ -35,11 +35,13 @@ def import_(
         typer.Option(
             "--as",
             metavar="KIND",
-            help=f"Kind of model, where its suffix does not say it; default {next(iter(IMPORTERS))}.",
+            help=f"Model format, if not recognised by the file extension. Default: {next(iter(IMPORTERS))}.",
         ),
     ] = None,
-    unchecked: Annotated[bool, typer.Option("--unchecked", help="Write a case that cannot be planned, too.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
+    unchecked: Annotated[
+        bool, typer.Option("--unchecked", help="Write the case even if it cannot be computed.")
+    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a commented case: gears, stages, shafts, bearings and loads of a gearbox, and what was assumed of each."""
@@ -54,7 +56,7 @@ def import_(
     path = case_file(out or model.stem.replace(".", "_"), force=force)
     write_file(path, text.encode(), "--out")
     notes = sum(line.startswith("# Note: ") for line in text.splitlines())
-    voice.say(f"Wrote {path}, with {notes} notes at its end; next: fegear run {path}")
+    voice.say(f"Wrote {path}, with {notes} notes at the end; next: fegear run {path}")
 
 
 def refuse_unplanned(text: str, name: str) -> None:
@@ -80,7 +82,7 @@ def refuse_unplanned(text: str, name: str) -> None:
     try:
         make_plan(build_scene(parse_document(text, "(its text)"), "case", Path()), STAGES)
     except FegearError as error:
-        rule = f"makes a case that cannot be computed: {str(error).rstrip('.')}"
+        rule = f"gives a case that cannot be computed: {str(error).rstrip('.')}"
         remedy = "correct the model, or import with --unchecked and correct the case"
         raise InputError("MODEL", shown(name), rule, remedy) from None
 

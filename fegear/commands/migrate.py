@@ -17,7 +17,7 @@ _RESULTS = re.compile(r"^(results[ \t]*=[ \t]*\[)(.*?)(\])", re.DOTALL | re.MULT
 
 def migrate(
     case: CaseFile,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what would change; write nothing.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the changes without writing.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a case file anew where keys or results have other names now; comments and order stay.
@@ -33,7 +33,7 @@ def migrate(
     text, said = migrated(file.text, parse_document(file.text, f'"{case}"'))
     build_scene(tomllib.loads(text), case.stem, case.parent)
     if not said:
-        voice.say(f"{case} has the names of now; nothing to change.")
+        voice.say(f"{case} is up to date.")
         return
     for sentence in said:
         voice.say(sentence)
@@ -41,12 +41,10 @@ def migrate(
         return
     kept = case.with_name(case.name + ".old")
     if kept.is_symlink() or leads_to(kept, lambda _mode: True):
-        raise InputError(
-            "case", f'"{kept}"', "is there already; the case would be kept under this name", "move it away"
-        )
+        raise InputError("case", f'"{kept}"', "already exists (name of the backup of the case)", "rename or move it")
     write_file(kept, file.written(file.text), "case")
     write_file(case, file.written(text), "case")
-    voice.say(f"Wrote {case}; as it was: {kept}")
+    voice.say(f"Wrote {case}; backup: {kept}")
 
 
 def migrated(text: str, document: Mapping[str, object]) -> tuple[str, list[str]]:
@@ -72,7 +70,7 @@ def migrated(text: str, document: Mapping[str, object]) -> tuple[str, list[str]]
     former = STAGES.former()
     wanted = document.get("results")
     if isinstance(wanted, list) and (renamed := [name for name in wanted if name in former]):
-        said += [f'results: "{name}" is called "{former[name]}" now.' for name in renamed]
+        said += [f'results: "{name}" was renamed "{former[name]}".' for name in renamed]
         results = list(dict.fromkeys(former.get(name, str(name)) for name in wanted))
         text = _with_results(text, results, former)
         edits["results",] = literal(results)

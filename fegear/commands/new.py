@@ -45,34 +45,40 @@ def new(
         str | None,
         typer.Option(
             "--kind",
-            help="gear, pair, relief, helical, train, planetary, ring or study; default by the numbers of teeth.",
+            help="gear, pair, relief, helical, train, planetary, ring or study. Default: from the numbers of teeth.",
             autocompletion=complete_kinds,
         ),
     ] = None,
-    teeth: Annotated[list[str] | None, typer.Option("--teeth", metavar="N [N]", help="Of pinion and wheel.")] = None,
+    teeth: Annotated[
+        list[str] | None, typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear.")
+    ] = None,
     module: Annotated[str | None, typer.Option("--module", metavar="LENGTH", help='E.g. "3 mm".')] = None,
     pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,
     profile_shift: Annotated[
-        list[str] | None, typer.Option("--profile-shift", metavar="X [X]", help="Of pinion and wheel, in modules.")
+        list[str] | None,
+        typer.Option("--profile-shift", metavar="X [X]", help="Profile shift coefficients of driver and driven gear."),
     ] = None,
     rack: Annotated[str | None, typer.Option("--rack", metavar="A..D", help="Basic rack of ISO 53.")] = None,
     helix_angle: Annotated[str | None, typer.Option("--helix-angle", metavar="ANGLE", help="Helical pairs.")] = None,
     face_width: Annotated[str | None, typer.Option("--face-width", metavar="LENGTH", help='E.g. "30 mm".')] = None,
-    torque: Annotated[str | None, typer.Option("--torque", help='On the pinion, e.g. "260 N m".')] = None,
-    speed: Annotated[str | None, typer.Option("--speed", help='Of the pinion, e.g. "1480 rpm".')] = None,
+    torque: Annotated[str | None, typer.Option("--torque", help='Torque on the driver, e.g. "260 N m".')] = None,
+    speed: Annotated[str | None, typer.Option("--speed", help='Speed of the driver, e.g. "1480 rpm".')] = None,
     tip_relief: Annotated[
         tuple[str, str] | None,
-        typer.Option("--tip-relief", metavar="AMOUNT LENGTH", help='Of both gears, e.g. "20 um" "4 mm".'),
+        typer.Option("--tip-relief", metavar="AMOUNT LENGTH", help='Tip relief of both gears, e.g. "20 um" "4 mm".'),
     ] = None,
     lead_error: Annotated[
-        str | None, typer.Option("--lead-error", metavar="LENGTH", help='Helical pairs: over the face, e.g. "10 um".')
+        str | None,
+        typer.Option(
+            "--lead-error", metavar="LENGTH", help='Helical pairs: helix deviation over the face width, e.g. "10 um".'
+        ),
     ] = None,
     example: Annotated[
         str | None,
-        typer.Option("--example", help="Copy a case that comes with fegear.", autocompletion=complete_examples),
+        typer.Option("--example", help="Copy an example case of fegear.", autocompletion=complete_examples),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
-    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors next to it.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
+    no_schema: Annotated[bool, typer.Option("--no-schema", help="Do not write a schema file for editors.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a commented case that runs; on a terminal and without options, ask for what it needs.
@@ -102,7 +108,12 @@ def new(
     told = {key: text for key, text in given.items() if text}
     if example is not None:
         if told or kind:
-            raise InputError("--example", shown(example), "is a whole case", "give it alone, and change its keys after")
+            raise InputError(
+                "--example",
+                shown(example),
+                "is a complete case",
+                "use it without other options and edit the keys afterwards",
+            )
         _copy_example(example, path, voice, force=force)
         return
     if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
@@ -114,8 +125,8 @@ def new(
     _check(text, path)
     if not no_schema:
         beside = path.with_name(SCHEMA_FILE)
-        write_schema(beside, "schema", remedy="move it elsewhere, or write none with --no-schema")
-        voice.say(f"Wrote {beside}, by which editors complete and check case files")
+        write_schema(beside, "schema", remedy="move it, or use --no-schema")
+        voice.say(f"Wrote {beside}, for completion and checks in editors")
     write_file(path, text.encode(), "NAME")
     voice.say(f"Wrote {path}; next: fegear run {path}")
 
@@ -140,7 +151,7 @@ def _copy_example(name: str, path: Path, voice: Voice, *, force: bool) -> None:
                 undone.callback(place.unlink)
         undone.pop_all()
     for place in beside:
-        voice.say(f"Wrote {place}, which the case reads")
+        voice.say(f"Wrote {place} (input of the case)")
     voice.say(f"Wrote {path}; next: fegear run {path}")
 
 
@@ -150,15 +161,15 @@ def _check_place(place: Path, content: bytes, *, force: bool) -> None:
     try:
         state = place.stat()
         if not stat.S_ISREG(state.st_mode):
-            raise InputError("NAME", told, "is no file, and the example needs one there", "move it away")
+            raise InputError("NAME", told, "is not a file, but required by the example", "rename or move it")
         same = state.st_size == len(content) and place.read_bytes() == content
     except FileNotFoundError:
         return
     except OSError as error:
-        raise InputError("NAME", told, f"cannot be looked at ({error.strerror})", "choose another folder") from None
+        raise InputError("NAME", told, f"cannot be read ({error.strerror})", "choose another folder") from None
     if not same and not force:
         raise InputError(
-            "NAME", told, "is there already, and is not the example's", "move it away, or replace it with --force"
+            "NAME", told, "already exists and differs from the example", "rename it, or overwrite it with --force"
         )
 
 
@@ -166,7 +177,7 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir()
     except OSError as error:
-        rule = f"can be no folder ({error.strerror})"
+        rule = f"cannot be used as a folder ({error.strerror})"
         raise InputError("NAME", shown(str(folder), PATH), rule, "choose another folder for the case") from None
 
 
@@ -176,7 +187,7 @@ def case_file(name: str, *, force: bool) -> Path:
 
     path = named_path(name, "NAME")
     if path.name in ("", ".."):
-        raise InputError("NAME", shown(name), "is a folder, not the name of a case", "write for example drive")
+        raise InputError("NAME", shown(name), "is a folder, not the name of a case", "for example drive")
     path = path if path.name.endswith(".toml") and path.stem != ".toml" else path.with_name(f"{path.name}.toml")
     told = shown(str(path), PATH)
     try:
@@ -184,13 +195,13 @@ def case_file(name: str, *, force: bool) -> Path:
     except FileNotFoundError:
         state = None
     except OSError as error:
-        raise InputError("NAME", told, f"can be no file ({error.strerror})", "choose another name") from None
+        raise InputError("NAME", told, f"cannot be used as a file ({error.strerror})", "choose another name") from None
     if state is not None and stat.S_ISDIR(state.st_mode):
         raise InputError("NAME", told, "is a folder", "choose another name")
     if state is not None and not force:
-        raise InputError("NAME", told, "is there already", "choose another name, or replace it with --force")
+        raise InputError("NAME", told, "already exists", "choose another name, or overwrite it with --force")
     if not path.parent.is_dir():
-        raise InputError("NAME", told, "lies in a folder that is not there", "make it first")
+        raise InputError("NAME", told, "is in a folder that does not exist", "create it first")
     return path
 
 
@@ -211,7 +222,7 @@ def _asked() -> Answers:
 
     for line in two_columns([(name, kind.about) for name, kind in KINDS.items()], max(map(len, KINDS))):
         typer.echo(line)
-    typer.echo("An empty answer takes the value in brackets.")
+    typer.echo("Press Enter to accept the value in brackets.")
     try:
         kind = ask("Kind", "pair", lambda text: Answers(text, {})) or "pair"
         told: dict[str, str] = {}
@@ -224,7 +235,7 @@ def _asked() -> Answers:
     except KeyboardInterrupt:
         leave("interrupted; nothing was written.", 130)
     except EOFError:
-        leave("there were no more answers; nothing was written.", 2)
+        leave("input ended; nothing was written.", 2)
     return Answers(kind, told)
 
 

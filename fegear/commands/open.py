@@ -11,17 +11,18 @@ from fegear.commands.common import leave
 
 
 def open(  # noqa: A001 - it is the name of the command
-    case: Annotated[
-        Path | None, typer.Argument(metavar="CASE", help="Case file (TOML); without it, templates.")
-    ] = None,
-    port: Annotated[int | None, typer.Option("--port", help="Port to listen on; a free one by default.")] = None,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, and open no browser.")] = False,
+    case: Annotated[Path | None, typer.Argument(metavar="CASE", help="Case file (TOML). Default: templates.")] = None,
+    port: Annotated[int | None, typer.Option("--port", help="Port. Default: a free port.")] = None,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address without opening a browser.")
+    ] = False,
     folder: Annotated[
         list[Path] | None,
         typer.Option(
             "--folder",
             metavar="FOLDER",
-            help="Folder whose files the page may open and write, besides this one and that of CASE; repeatable.",
+            help="Additional folder the page may read and write (besides the current one and that of CASE); "
+            "repeatable.",
         ),
     ] = None,
 ) -> None:
@@ -34,4 +35,4 @@ def open(  # noqa: A001 - it is the name of the command
     try:
         serve(case, port, browser=not no_browser, say=typer.echo, folders=folder or ())
     except KeyboardInterrupt:
-        leave("closed; what is not saved is kept for the next time.", 130)
+        leave("closed; unsaved changes are kept for the next start.", 130)

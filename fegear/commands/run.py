@@ -39,22 +39,20 @@ def run(
     scheduler: Scheduler = None,
     cache: Annotated[
         bool,
-        typer.Option(
-            "--cache", help="Recall tooth shapes and chart points from the disk cache, and keep new ones there."
-        ),
+        typer.Option("--cache", help="Use the disk cache for tooth FE solutions and chart points."),
     ] = False,
     fields: Annotated[
         bool,
         typer.Option(
             "--fields",
-            help="Name the files of displacement and stress fields (VTU), write them with --no-plots too, and draw "
-            "plane gears in space where pyvista is installed.",
+            help="List the files of displacement and stress fields (VTU), write them with --no-plots as well, and "
+            "draw plane gears in 3D if pyvista is installed.",
         ),
     ] = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
     only_needs: Annotated[
-        bool, typer.Option("--needs", hidden=True, help="Name missing extras, compute nothing.")
+        bool, typer.Option("--needs", hidden=True, help="List missing extras without computing.")
     ] = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
@@ -108,7 +106,7 @@ def run(
     for file in files or ():
         voice.say(f"Field {target / str(file)}")
     if fields and not files:
-        voice.note("No result of this case has a field: request root-stress, or stiffness with face_positions.")
+        voice.note("No requested result has a field: request root-stress, or stiffness with face_positions.")
     for remark in (*remarks, beyond_tolerance(results.values, scene.case.accuracy.tolerance)):
         if remark:
             voice.note(remark)

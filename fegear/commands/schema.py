@@ -23,8 +23,8 @@ SCHEMA_FILE = "fegear.schema.json"
 
 
 def schema(
-    out: Annotated[Path | None, out_option(f"File, e.g. {SCHEMA_FILE}; default stdout.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace a file of that name, whatever is in it.")] = False,
+    out: Annotated[Path | None, out_option(f"File, e.g. {SCHEMA_FILE}. Default: stdout.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
 ) -> None:
     """Print the JSON schema of case files: keys, units, choices.
 
@@ -38,7 +38,7 @@ def schema(
 
 
 def write_schema(
-    path: Path, key: str, *, force: bool = False, remedy: str = "choose another name, or replace it with --force"
+    path: Path, key: str, *, force: bool = False, remedy: str = "choose another name, or overwrite it with --force"
 ) -> None:
     """Write the schema; a file in its place is replaced if it is an earlier schema.
 
@@ -62,7 +62,7 @@ def write_schema(
     there = os.path.isfile(path)  # noqa: PTH113  (the method of Path raises where a name is too long)
     if there and not force and not _is_schema(read_text(path, key)):
         raise InputError(
-            key, shown(str(path), PATH), "is there already and is no schema of fegear",
+            key, shown(str(path), PATH), "already exists and is not a fegear schema",
             remedy,
         )  # fmt: skip
     write_file(path, schema_text().encode(), key)
@@ -97,7 +97,7 @@ def results(as_json: AsJson = False) -> None:
     voice = Voice(as_json=as_json)
     subjects = {subject: [STAGES.called(entry.name) for entry in entries] for subject, entries in SUBJECTS.items()}
     if added := STAGES.with_added[len(STAGES) :]:
-        subjects["Of other distributions"] = list(added)
+        subjects["From other distributions"] = list(added)
     column = max(map(len, (*RESULTS, *(name for stage in added for name in stage.results))))
     for subject, stages in subjects.items():
         voice.say(f"{subject}:")
@@ -107,7 +107,7 @@ def results(as_json: AsJson = False) -> None:
             voice.say(line)
     for error in STAGES.with_added.broken.values():
         voice.note(str(error))
-    voice.say('Ask for them by results = ["geometry", ...] in a case, or by --results geometry,stiffness.')
+    voice.say('Request them with results = ["geometry", ...] in a case, or with --results geometry,stiffness.')
     found = [
         (subject, stage, name) for subject, stages in subjects.items() for stage in stages for name in stage.results
     ]
@@ -121,8 +121,8 @@ def results(as_json: AsJson = False) -> None:
 
 def _meaning(stage: Stage, name: str) -> str:
     first, needed = stage.results[0], _needed(stage, name)
-    about = stage.about if name == first else f"the same as {first}"
-    return f"{about} (needs the effect{'s' * (len(needed) > 1)} {' and '.join(needed)})" if needed else about
+    about = stage.about if name == first else f"same as {first}"
+    return f"{about} (requires the effect{'s' * (len(needed) > 1)} {' and '.join(needed)})" if needed else about
 
 
 def _needed(stage: Stage, name: str) -> list[str]:

@@ -46,10 +46,8 @@ if TYPE_CHECKING:
 def cost(
     case: CaseFile,
     overrides: Overrides = None,
-    out: Annotated[Path | None, out_option("Output folder; default results/<case>_cost.")] = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="A few configurations instead of all, for a first look.")
-    ] = False,
+    out: Annotated[Path | None, out_option("Output folder. Default: results/<case>_cost.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A few configurations only, for a quick overview.")] = False,
     no_plots: NoPlots = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -65,7 +63,7 @@ def cost(
     try:
         scene = read_scene(case, overrides or ())
         if not scene.gears:
-            voice.say("Cost study: the case describes no gears, so there is no mesh, formula or tolerance to choose.")
+            voice.say("Cost study: the case has no gears, so there is no mesh, formula or tolerance to choose.")
             voice.tell({"configurations": 0, "quantities": []})
             return
         studied = asked(scene)
@@ -73,9 +71,7 @@ def cost(
         ladder = ladder_of(studied, quick=quick)
         quantities = ", ".join(q.name for q in studied.quantities)
         voice.say(f"Cost study: {len(ladder.configurations)} configurations for {quantities}.")
-        voice.say(
-            f"Predicted: about {forecast(studied, ladder, quick=quick):.2g} s of one core, measured on a usual machine."
-        )
+        voice.say(f"Estimated CPU time: about {forecast(studied, ladder, quick=quick):.2g} s on a reference machine.")
         with whole_or_nothing(target) as scratch:
             with voice.watcher() as watching:
                 results = study_cost(studied, quick=quick, watcher=watching)
@@ -98,13 +94,13 @@ def effects(
     case: CaseFile,
     overrides: Overrides = None,
     wanted: Wanted = None,
-    out: Annotated[Path | None, out_option("Output folder; default results/<case>_effects.")] = None,
+    out: Annotated[Path | None, out_option("Output folder. Default: results/<case>_effects.")] = None,
     only: Annotated[
         list[str] | None,
         typer.Option(
             "--effect",
             metavar="NAME",
-            help="An effect to study; default all that influence the results.",
+            help="Effect to study. Default: all that influence the results.",
             autocompletion=complete_effects,
         ),
     ] = None,
@@ -143,20 +139,20 @@ def sweep(
         typer.Option(
             "--over",
             metavar="KEY=START:STOP:COUNT",
-            help="An axis, e.g. gear.a.profile_shift=-0.4:0.8:25, =10:20:6:mm, =1:1000:4:log or =0.1,0.2,0.5.",
+            help="Axis of the grid, e.g. gear.a.profile_shift=-0.4:0.8:25, =10:20:6:mm, =1:1000:4:log or =0.1,0.2,0.5.",
         ),
     ],
     overrides: Overrides = None,
     wanted: Wanted = None,
-    out: Annotated[Path | None, out_option("Output folder; default results/<case>_sweep.")] = None,
+    out: Annotated[Path | None, out_option("Output folder. Default: results/<case>_sweep.")] = None,
     scheduler: Scheduler = None,
     workers: Annotated[
-        int | None, typer.Option("--workers", min=1, help="Processes on this machine; default one for each core.")
+        int | None, typer.Option("--workers", min=1, help="Number of processes. Default: one per core.")
     ] = None,
     no_plots: NoPlots = False,
     no_cache: Annotated[
         bool,
-        typer.Option("--no-cache", help="Recompute everything and keep nothing: a killed sweep starts again."),
+        typer.Option("--no-cache", help="Do not use the cache; an interrupted sweep cannot be resumed."),
     ] = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -195,11 +191,11 @@ def sweep(
     for line in best_lines(results, varying(list(swept_values(results)))):
         voice.say(line)
     solved, read, spared = results.shapes
-    voice.say(f"{count - len(results.failures)} of {count} points have results.")
+    voice.say(f"{count - len(results.failures)} of {count} points computed.")
     if results.kept:
-        voice.say(f"{results.kept} points were finished by an earlier sweep.")
+        voice.say(f"{results.kept} points taken from an earlier sweep.")
     if read:
-        voice.say(f"Tooth shapes: {solved} solved now; {read} recalled ({spared:.2f} s when solved).")
+        voice.say(f"Tooth shapes: {solved} solved, {read} from the cache ({spared:.2f} s saved).")
     voice.say(f"Wrote {target} in {results.seconds:.2f} s.")
     voice.tell_folder(target)
     if len(results.failures) == count:
@@ -212,7 +208,7 @@ def check(
     positions: Annotated[
         int,
         typer.Option(
-            "--positions", min=1, max=1000, help="Load positions over the flank, evenly spaced in roll angle."
+            "--positions", min=1, max=1000, help="Number of load positions on the flank, equally spaced in roll angle."
         ),
     ] = 3,
     quiet: Quiet = False,
@@ -231,18 +227,18 @@ def check(
     try:
         with voice.watcher() as watching:
             for number, name in enumerate(names, start=1):
-                watching.begin(f"Gear {name}, whole, by scikit-fem alone", number, len(names))
+                watching.begin(f"Gear {name}, full gear by scikit-fem", number, len(names))
                 found.append(check_gear(scene, name, positions))
                 watching.end(found[-1].seconds)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
     for gear in found:
-        voice.say(f"Gear {gear.gear}: {gear.unknowns} unknowns by scikit-fem alone, {gear.seconds:.2g} s.")
+        voice.say(f"Gear {gear.gear}: {gear.unknowns} unknowns by scikit-fem, {gear.seconds:.2g} s.")
         solvers = gear.solvers
         voice.say(
-            f"  accuracy.solver: scikit-fem gives the same influence functions to {solvers.difference:.0e}, in "
-            f"{solvers.scikit_fem:.2g} s of CPU time; nested dissection takes {solvers.condensed:.2g} s, "
-            f"{solvers.ratio:.1f} times less."
+            f"  accuracy.solver: scikit-fem agrees within {solvers.difference:.0e}, CPU time "
+            f"{solvers.scikit_fem:.2g} s; nested dissection {solvers.condensed:.2g} s, {solvers.ratio:.1f} times "
+            "faster."
         )
         voice.say(f"{'':18}{'radius':>12}{'fegear':>14}{'scikit-fem':>14}{'':10}{'difference':>12}{'stated':>9}")
         for one in gear.compared:
@@ -253,7 +249,7 @@ def check(
             )
     compared = [one for gear in found for one in gear.compared]
     covered = sum(one.covered for one in compared)
-    voice.say(f"{covered} of {len(compared)} differences are covered by the stated error.")
+    voice.say(f"{covered} of {len(compared)} differences are within the estimated error.")
     gears = {
         gear.gear: {
             "unknowns": gear.unknowns,
@@ -268,7 +264,7 @@ def check(
         raise typer.Exit(1)
 
 
-Compared = Annotated[Path, typer.Argument(help="A folder that fegear run wrote, or a case file, which is run.")]
+Compared = Annotated[Path, typer.Argument(help="Results folder of fegear run, or a case file (will be computed).")]
 
 
 def compare(
@@ -277,9 +273,9 @@ def compare(
     overrides: Overrides = None,
     wanted: Wanted = None,
     tolerance: Annotated[
-        float, typer.Option("--tolerance", metavar="SHARE", help="Changes up to this share of a value are none.")
+        float, typer.Option("--tolerance", metavar="SHARE", help="Relative changes up to this value are ignored.")
     ] = 1e-9,
-    out: Annotated[Path | None, out_option("Output folder; default results/<a>_<b>_compare.")] = None,
+    out: Annotated[Path | None, out_option("Output folder. Default: results/<a>_<b>_compare.")] = None,
     no_plots: NoPlots = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -294,11 +290,13 @@ def compare(
     from fegear.studies.comparison import compare as comparison
 
     if not (math.isfinite(tolerance) and tolerance >= 0.0):
-        raise InputError("--tolerance", tolerance, "must be zero or greater", "write for example 1e-6")
+        raise InputError("--tolerance", tolerance, "must be zero or greater", "for example 1e-6")
     voice = Voice(quiet, as_json)
     asked = changes(overrides, wanted)
     if asked and all(leads_to(path, stat.S_ISDIR) for path in (a, b)):
-        raise InputError("--set", ", ".join(asked), "changes cases, and both are folders", "give a case file")
+        raise InputError(
+            "--set", ", ".join(asked), "applies to case files, but both are folders", "specify a case file"
+        )
     try:
         target = out or default_folder(f"{a.resolve().stem}_{b.resolve().stem}", "_compare")
         _refuse_to_replace(target, a, b)
@@ -320,7 +318,7 @@ def _refuse_to_replace(target: Path, *compared: Path) -> None:
     for path in compared:
         if os.path.realpath(target) == os.path.realpath(path):
             raise InputError(
-                "--out", shown(str(target), PATH), "is one of the runs that are compared, which it would replace",
+                "--out", shown(str(target), PATH), "is one of the runs to be compared and would be overwritten",
                 "choose another folder with --out",
             )  # fmt: skip
 

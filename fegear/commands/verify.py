@@ -13,13 +13,11 @@ if TYPE_CHECKING:
 
 
 def verify(
-    rows: Annotated[
-        list[str] | None, typer.Argument(metavar="[ROW]...", help="Rows to repeat; all without any.")
-    ] = None,
+    rows: Annotated[list[str] | None, typer.Argument(metavar="[ROW]...", help="Checks to run. Default: all.")] = None,
     against: Annotated[
-        str | None, typer.Option("--against", help="Only rows of a kind: printed, program or own.")
+        str | None, typer.Option("--against", help="Only checks of one kind: printed, program or own.")
     ] = None,
-    only_list: Annotated[bool, typer.Option("--list", help="Name the rows, and repeat none.")] = False,
+    only_list: Annotated[bool, typer.Option("--list", help="List the checks without running them.")] = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
@@ -61,7 +59,7 @@ def verify(
         return
     holding, numbers = sum(one.holds for one in found), sum(len(one.compared) for one in found)
     seconds = sum(one.seconds for one in found)
-    voice.say(f"\n{holding} of {len(found)} rows hold, {numbers} numbers, {seconds:.0f} s of processor.")
+    voice.say(f"\n{holding} of {len(found)} checks passed, {numbers} values, {seconds:.0f} s CPU time.")
     voice.tell({"rows": [one.plain() for one in found], "holding": holding, "seconds": seconds})
     if holding < len(found):
         raise typer.Exit(1)

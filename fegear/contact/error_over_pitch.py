@@ -138,20 +138,20 @@ class ErrorOverPitch:
     integrated: str
     series: tuple[FourierSeries, ...]
     shift: TransmissionErrorShift | None
-    x: Array = shown("mm", "roll position: the pair that is last to come into contact", table="pitch")
+    x: Array = shown("mm", "mesh position: position of the last tooth pair to come into contact", table="pitch")
     te: Array = shown("um", "loaded transmission error", label="transmission error", table="pitch")
     mesh_stiffness: Array = shown(
-        "N/um", "secant, sum over the pairs in contact", label="mesh stiffness", table="pitch"
+        "N/um", "mesh stiffness (secant), sum over the pairs in contact", label="mesh stiffness", table="pitch"
     )
-    pairs_in_contact: Array = shown("", "tooth pairs that carry load", table="pitch")
-    local_stiffness: Array = shown("N/um", "slope of load over transmission error", table="pitch")
+    pairs_in_contact: Array = shown("", "number of tooth pairs in contact", table="pitch")
+    local_stiffness: Array = shown("N/um", "local (tangent) mesh stiffness dF/dTE", table="pitch")
     te_mean: Array = shown("um", "mean transmission error over the base pitch", label="mean", table="loads")
-    te_peak_to_peak: Array = shown("um", "peak to peak", label="peak to peak", table="loads")
-    te_effective: Array = shown("um", "A_e of NASA TM-89901, 0-peak", table="loads")
-    local_stiffness_mean: Array = shown("N/um", "slope of load, mean over the base pitch", table="loads")
-    mesh_stiffness_mean: float = shown("N/um", "secant stiffness, mean")
+    te_peak_to_peak: Array = shown("um", "peak-to-peak value", label="peak-to-peak value", table="loads")
+    te_effective: Array = shown("um", "effective transmission error A_e (amplitude, NASA TM-89901)", table="loads")
+    local_stiffness_mean: Array = shown("N/um", "tangent mesh stiffness, mean over the base pitch", table="loads")
+    mesh_stiffness_mean: float = shown("N/um", "secant mesh stiffness, mean over the base pitch")
     mesh_compliance_mean: float | None = shown(
-        "um/N", "mean of 1/K_T, perfect flanks with every pair of the path in contact (Mark, A.11)"
+        "um/N", "mean of 1/K_T, ideal flanks, all tooth pairs on the path in contact (Mark, A.11)"
     )
     te_error: Array | None = shown("um", "estimated error of te", default=None)
     rotational: FourierSeries | None = None
@@ -170,7 +170,7 @@ class ErrorOverPitch:
         return np.array(self.loads)
 
     @property
-    @shows("N.m", "torque on the driver under that load", label="torque on the driver", table="loads")
+    @shows("N.m", "driver torque at this load", label="torque on the driver", table="loads")
     def driver_torque(self) -> Array:
         """Under each load, shape (L,) [N m]."""
         return self.total_load * self.pair.driver.base_radius

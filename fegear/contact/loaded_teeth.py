@@ -255,7 +255,7 @@ class LoadHistory:
     found: PairHistory
     at: int
     load_error: Array | None
-    corner: Array | None = shown("", "1 where a tip corner touches off the path")
+    corner: Array | None = shown("", "1: corner contact outside the path of contact")
     where: str = ""
     positions: int = 0
     largest: Largest | None = None
@@ -277,13 +277,13 @@ class LoadHistory:
         return int(np.argmax(self._smooth_pressure))
 
     @property
-    @shows("N", "on one tooth pair")
+    @shows("N", "load on one tooth pair")
     def largest_load(self) -> float:
         """At the nominal load [N]."""
         return float(self.found.load[self.most_loaded, self.at])
 
     @property
-    @shows("", "of one tooth pair")
+    @shows("", "load of one tooth pair")
     def largest_share(self) -> float:
         """Of the nominal load."""
         return self.largest.share if self.largest else float(self.found.share[self.most_loaded, self.at])

@@ -28,26 +28,28 @@ class FlankSurface:
     """
 
     x: Array = shown("mm", "on the line of action, from the pitch point")
-    z: Array = shown("mm", "along the face, from its middle", label="face position z")
+    z: Array = shown("mm", "face position from mid-face", label="face position z")
     line_load: Array = shown("N/mm", "with load factors", label="line load")
     pressure: Array = shown("MPa", "with load factors", name="hertz_pressure", label="Hertzian pressure")
-    friction: Array = shown("", "coefficient with which heat is computed")
-    flash: Array = shown("K", "rise above the teeth", name="flash_temperature", label="flash temperature")
+    friction: Array = shown("", "coefficient of friction used for frictional heat")
+    flash: Array = shown(
+        "K", "flash temperature (rise above bulk temperature)", name="flash_temperature", label="flash temperature"
+    )
     contact: Array = shown("degC", name="contact_temperature", label="contact temperature")
     film: Array = shown("um", name="film_thickness", label="film thickness")
-    ratio: Array = shown("", "lambda_GF", name="film_ratio", label="film ratio λ_{GF}")
-    bulk: float = shown("degC", "of the teeth, computed load, as ISO/TS 6336-20", name="bulk_temperature")
-    film_bulk: float = shown("degC", "of the teeth, for the film")
-    mean_flash: float = shown("K", "mean over path and face")
+    ratio: Array = shown("", "lambda_GF", name="film_ratio", label="specific film thickness λ_{GF}")
+    bulk: float = shown("degC", "bulk temperature of the teeth, FE load, to ISO/TS 6336-20", name="bulk_temperature")
+    film_bulk: float = shown("degC", "bulk temperature of the teeth, for the film")
+    mean_flash: float = shown("K", "mean over path of contact and face width")
 
     @property
-    @shows("degC", "computed load", name="largest_contact_temperature")
+    @shows("degC", "FE load", name="largest_contact_temperature")
     def largest(self) -> float:
         """Largest contact temperature [degC]."""
         return max(self.bulk, float(np.nanmax(self.contact)))
 
     @property
-    @shows("", "lambda_GF,min, computed load", name="least_film_ratio")
+    @shows("", "lambda_GF,min, FE load", name="least_film_ratio")
     def least_ratio(self) -> float:
         """Least film ratio."""
         return float(np.nanmin(self.ratio))

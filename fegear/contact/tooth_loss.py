@@ -37,22 +37,22 @@ class ToothLoss:
         That a coefficient of 1 would take over the power transmitted.
     """
 
-    x: Array = shown("mm", "of the tooth pair on the line of action, from the pitch point")
-    load: Array = shown("N", "on the tooth pair", label="load on the pair")
+    x: Array = shown("mm", "position of the tooth pair on the line of action, from the pitch point")
+    load: Array = shown("N", "load on the tooth pair", label="load on the pair")
     coefficient: Array = shown("", "friction coefficient", name="friction_coefficient")
-    power: Array = shown("W", "that this tooth pair takes", name="power_loss", label="power lost")
-    loss: float = shown("W", "mean power that tooth friction takes", name="tooth_loss")
+    power: Array = shown("W", "power loss of this tooth pair", name="power_loss", label="power lost")
+    loss: float = shown("W", "mean gear mesh power loss", name="tooth_loss")
     transmitted: float = shown("W", "", name="transmitted_power")
-    loss_factor: float = shown("", "H_V by the computed load")
+    loss_factor: float = shown("", "tooth loss factor H_V with FE load")
 
     @property
-    @shows("", "coefficient that takes as much everywhere", name="mean_friction")
+    @shows("", "equivalent constant friction coefficient (same loss)", name="mean_friction")
     def mean_coefficient(self) -> float:
         """Coefficient that would take as much, were it the same everywhere."""
         return self.loss / (self.loss_factor * self.transmitted) if self.loss_factor else 0.0
 
     @property
-    @shows("", "of the teeth alone")
+    @shows("", "efficiency of the gear mesh only")
     def efficiency(self) -> float:
         """Of the teeth alone."""
         return 1.0 - self.loss / self.transmitted

@@ -43,27 +43,29 @@ class ReliefChart:
     driver.
     """
 
-    amounts: Array = shown("um", "removal at both tips", name="amount", label="amount at both tips")
+    amounts: Array = shown(
+        "um", "amount of relief at both tips", name="amount", label="amount of tip relief (both gears)"
+    )
     lengths: Array = shown(
-        "", "in lengths from tip to HPSTC along the line of action", name="length",
+        "", "relief length relative to the length from tip to HPSTC on the line of action", name="length",
         label="length of tip relief (1: tip to HPSTC)",
     )  # fmt: skip
     loads: Array = shown("N", "total load along the line of action", name="total_load")
-    unit_length: float = shown("mm", "length 1 of the chart on the line of action")
+    unit_length: float = shown("mm", "length 1 of the chart, on the line of action")
     effective_error: Array = shown(
-        "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}",
-        table="chart",
+        "um", "effective transmission error A_e (amplitude, NASA TM-89901)", name="te_effective",
+        label="effective transmission error A_{e}", table="chart",
     )  # fmt: skip
-    peak_to_peak: Array = shown("um", "peak to peak", name="te_peak_to_peak", table="chart")
+    peak_to_peak: Array = shown("um", "peak-to-peak value", name="te_peak_to_peak", table="chart")
 
     @property
-    @shows("", "length with the least A_e", table="optimum")
+    @shows("", "length with minimum A_e", table="optimum")
     def length_effective(self) -> Array:
         """For each amount and load, shape (A, L)."""
         return self.optimum_lengths("effective_error")
 
     @property
-    @shows("", "length with the least peak to peak", table="optimum")
+    @shows("", "length with minimum peak-to-peak transmission error", table="optimum")
     def length_peak_to_peak(self) -> Array:
         """For each amount and load, shape (A, L)."""
         return self.optimum_lengths("peak_to_peak")
@@ -164,7 +166,7 @@ def meaning_of_unit(pair: GearPair) -> str:
     """What `unit_amount` of a pair is."""
     if 1.0 <= pair.contact_ratio < 2.0:
         return "Welbourn's Delta, the deflection at the HPSTC"
-    return "largest transmission error without relief"
+    return "maximum transmission error without relief"
 
 
 def unit_amount(engagement: Engagement, load: float) -> float:

@@ -24,8 +24,8 @@ class Robustness:
     """
 
     load_factors: Array = shown("", "load over design load", name="load_factor", label="load over design load")
-    spacing_errors: Array = shown("um", "of every second pair", name="spacing_error")
-    relief_errors: Array = shown("", "relative error of the relief's depth", name="relief_error")
+    spacing_errors: Array = shown("um", "pitch deviation of every second tooth pair", name="spacing_error")
+    relief_errors: Array = shown("", "relative error of the relief amount", name="relief_error")
     values: Array = shown("um", "excitation")
     nominal: float = shown("um", "without deviations")
 

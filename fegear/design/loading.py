@@ -55,8 +55,8 @@ class Ramp:
             raise InputError(
                 "design.slope",
                 self.slope,
-                f"must lie between 0 and {top:g} for the loading to rise all the way",
-                "choose the polynomial family with a larger exponent for steeper loading",
+                f"must be between 0 and {top:g} for a monotonic load ramp",
+                'use family = "polynomial" with a larger exponent for steeper loading',
             )
 
     def load(self, x: ArrayLike) -> Array:
@@ -115,7 +115,7 @@ class LoadingFunction:
     centre: float = 0.0
     ramp: Ramp = Ramp()
     inner_ramp: Ramp = Ramp()
-    peak: float = shown("", "F, largest load over the design load", default=math.nan)
+    peak: float = shown("", "F, peak load relative to the design load", default=math.nan)
 
     def __post_init__(self) -> None:
         """Refuse loadings that cannot carry the load at every position."""
@@ -124,7 +124,7 @@ class LoadingFunction:
             raise RangeError(
                 "design.length",
                 f"{self.length * 1e3:.6g} mm",
-                f"is {ratio:.4f} base pitches: below 1 no pair is left to carry the load at some positions",
+                f"is {ratio:.4f} base pitches; must be at least 1",
                 f"choose at least the base pitch, {self.base_pitch * 1e3:.6g} mm",
             )
         low, high = self.peak_range
@@ -132,7 +132,7 @@ class LoadingFunction:
             object.__setattr__(self, "peak", 0.5 * (low + high))
         if not low - 1e-12 <= self.peak <= high + 1e-12:
             raise RangeError(
-                "design.peak", self.peak, f"must lie between {low:.6g} and {high:.6g} at contact ratio {ratio:.4f}"
+                "design.peak", self.peak, f"must be between {low:.6g} and {high:.6g} for contact ratio {ratio:.4f}"
             )
 
     @property
@@ -311,11 +311,11 @@ class ToothResponse:
     """Deflection of a tooth without damping, over that under the design load at rest; arrays of shape (G,)."""
 
     residual: Array = shown(
-        "", "0-peak, left when contact ends, without damping, over the deflection under the design load",
-        label="vibration left, 0-peak",
+        "", "residual vibration amplitude after contact (undamped), relative to the deflection under the design load",
+        label="residual vibration amplitude",
     )  # fmt: skip
-    envelope: Array = shown("", "what it does not exceed at high frequency (4.22)")
-    largest: Array = shown("", "largest deflection during contact", label="largest deflection")
+    envelope: Array = shown("", "high-frequency asymptote (4.22)")
+    largest: Array = shown("", "maximum deflection during contact", label="maximum deflection")
 
 
 def tooth_response(function: LoadingFunction, orders: ArrayLike) -> ToothResponse:
@@ -362,6 +362,6 @@ def refuse_beyond_path(loading: LoadingFunction, pair: GearPair) -> None:
         raise RangeError(
             "design.length",
             f"{loading.x_start * 1e3:.6g} to {loading.x_end * 1e3:.6g} mm",
-            f"reaches beyond the path of contact, {pair.x_start * 1e3:.6g} to {pair.x_end * 1e3:.6g} mm",
+            f"extends beyond the path of contact, {pair.x_start * 1e3:.6g} to {pair.x_end * 1e3:.6g} mm",
             "choose a shorter design length or another centre",
         )

@@ -70,14 +70,16 @@ def minimum_excitation(
 class ReliefTable:
     """Relief of one gear over its path, as a drawing gives it; arrays of shape (P,)."""
 
-    x: Array = shown("mm", "position on the line of action, positive toward the driver's tip", table="flank")
+    x: Array = shown("mm", "position on the line of action, positive towards the driver's tip", table="flank")
     radius: Array = shown("mm", "radius of the flank point", table="flank")
     roll_angle: Array = shown("deg", "roll angle of the flank point", label="roll angle", table="flank")
-    load: Array = shown("N", "design load on the pair there", label="load", table="flank")
-    relief: Array = shown("um", "material to remove, along the normal", label="material to remove", table="flank")
+    load: Array = shown("N", "design load on the tooth pair", label="load", table="flank")
+    relief: Array = shown(
+        "um", "amount of modification, normal to the flank", label="amount of modification", table="flank"
+    )
     deflection: Array = shown(
         "um",
-        "of this flank under the design loads, which the relief makes up for",
+        "deflection of this flank under the design load (compensated by the relief)",
         label="deflection of the flank",
         table="flank",
     )

@@ -38,8 +38,8 @@ def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
     loading, pair = worst.loading, worst.compliance.pair
     ratio, middle = loading.length / loading.base_pitch, 0.5 * (pair.x_start + pair.x_end)
     rule = (
-        f"asks for a relief of {_most(worst) * 1e6:.4g} um on the {worst.member}, {depth:.3g} times what its tooth can "
-        f"take ({DEEPEST_RELIEF:g} module, to the middle of the tooth at most)"
+        f"requires a relief of {_most(worst) * 1e6:.4g} um on the {worst.member}, {depth:.3g} times the maximum of "
+        f"{DEEPEST_RELIEF:g} module (at most half the tooth thickness)"
     )
     room = 2.0 * min(loading.centre - pair.x_start, pair.x_end - loading.centre)
     longest = max(loading.length, room)
@@ -68,7 +68,7 @@ def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
         load *= 0.9
     raise RangeError(
         "design.load", f"{worst.load:.6g} N", rule,
-        f"lower the load: the whole path of contact as design length allows {load:.3g} N "
+        f"reduce the load: with the full path of contact as design length the limit is {load:.3g} N "
         f"({load / worst.compliance.face_width * 1e-3:.3g} N/mm)",
     )  # fmt: skip
 

@@ -104,7 +104,7 @@ def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStr
         if found:
             kernels[member] = found
     if not kernels:
-        raise InputError("design", "root stress", "is unknown to these compliance sources", 'set source = "fe"')
+        raise InputError("design", "root stress", "is not available with these compliance sources", 'set source = "fe"')
     curves = {member: compliance.source(member).fillet_curve(0, "tension") for member in kernels}
     return DesignStress(compliance, x, kernels, curves)
 
@@ -153,7 +153,7 @@ def least_root_stress(
     low, high = loading.peak_range
     if high - low <= 0.0:
         raise InputError(
-            "design.peak", loading.peak, "is fixed for contact ratios up to 2", "choose a longer design length"
+            "design.peak", loading.peak, "is determined for contact ratios up to 2", "choose a longer design length"
         )
     slope = loading.ramp.slope
     found: list[tuple[float, LoadingFunction, int | None]] = []
@@ -176,7 +176,7 @@ def least_root_stress(
         peak = float(result.x) if result.fun < values[i] else float(scan[i])
         found.append((worst(peak), replace(base, peak=peak), r))
     if not found:
-        raise InputError("design.exponent", tuple(exponents), f"has none that allows the initial slope {slope}")
+        raise InputError("design.exponent", tuple(exponents), f"has no solution for the initial slope {slope}")
     best = min(found, key=lambda item: item[0])
     candidates = tuple((r, f.peak, stress.worst(f), stress.pressure(f)) for _, f, r in found)
     return StressOptimum(best[1], stress.worst(best[1]), stress.pressure(best[1]), candidates)

@@ -45,7 +45,7 @@ def on_cluster(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply
         import dask.distributed  # noqa: F401
     except ImportError:
         raise MissingLibraryError(
-            "--scheduler needs Dask; install it with: pip install 'fegear[distributed]'"
+            "--scheduler requires Dask; install it with: pip install 'fegear[distributed]'"
         ) from None
     with _quiet("distributed"):
         yield from _computed(job, todo, address)
@@ -75,16 +75,16 @@ def _refused(address: str, rule: str, remedy: str) -> InputError:
 
 
 def _gone(address: str) -> InputError:
-    return _refused(address, "has gone away", "start it again; finished points are kept")
+    return _refused(address, "is no longer available", "start it again; finished points are kept")
 
 
 def _connected(address: str) -> Client:
     """Connect to a scheduler, or say why that fails."""
     from dask.distributed import Client
 
-    remedy = "start one with `dask scheduler` and give its address, for example tcp://10.0.0.5:8786"
+    remedy = "start one with `dask scheduler` and specify its address, for example tcp://10.0.0.5:8786"
     client = Client.__new__(Client)
-    problems = ["it takes the connection and says nothing"]
+    problems = ["connection accepted but no reply"]
 
     def connect() -> None:
         try:
@@ -130,8 +130,8 @@ def _check_workers(client: Client, address: str) -> None:
         without = [name for name, spec in found.items() if spec is None]
         if without:
             raise MissingLibraryError(
-                f"--scheduler {address}: fegear is not installed where {', '.join(without)} runs; "
-                "scheduler and workers need the same environment as this program."
+                f"--scheduler {address}: fegear is not installed for {', '.join(without)}; scheduler and workers "
+                "need the same environment as this program."
             )
         # One that is too old to say what it is answers with an error.
         told = client.run(lambda: dict(import_module("fegear.base.code_version").made_by()), on_error="return")
@@ -146,7 +146,7 @@ def _check_workers(client: Client, address: str) -> None:
         if differ:
             raise _refused(
                 address, f"worker {name} has {differ[1]} where this program has {differ[0]}",
-                "start its workers with the code and the libraries of this program",
+                "start its workers with the same code and libraries",
             )  # fmt: skip
 
 
@@ -163,6 +163,6 @@ def _finished(client: Client, futures: list[Future], address: str) -> Iterator[F
         if batch or client.scheduler_info()["workers"]:
             seen = now
         elif now - seen > _WITHOUT_WORKERS:
-            raise _refused(address, "has lost all its workers", "start some again; finished points are kept")
+            raise _refused(address, "has lost all its workers", "restart them; finished points are kept")
         if not batch:
             time.sleep(_PAUSE)

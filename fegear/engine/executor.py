@@ -44,8 +44,8 @@ class Executor:
         """Refuse an address that is none: it is what an unset variable of a shell leaves."""
         if self.scheduler is not None and not self.scheduler.strip():
             raise InputError(
-                "--scheduler", f'"{self.scheduler}"', "is no address",
-                "write for example tcp://10.0.0.5:8786, or leave --scheduler out to compute on this machine",
+                "--scheduler", f'"{self.scheduler}"', "is not a valid address",
+                "for example tcp://10.0.0.5:8786, or remove --scheduler to compute on this machine",
             )  # fmt: skip
 
 
@@ -146,8 +146,8 @@ def _keep(store: Store, key: str, payload: bytes) -> None:
         raise InputError(
             "FEGEAR_CACHE",
             store.folder,
-            f"cannot be written to ({error.strerror or error})",
-            "set FEGEAR_CACHE to a folder with room, or take --no-cache",
+            f"is not writable ({error.strerror or error})",
+            "set FEGEAR_CACHE to a folder with free space, or use --no-cache",
         ) from None
 
 

@@ -48,4 +48,4 @@ def refuse_joined(subjects: Iterable[str]) -> None:
                 rule = (
                     f"joins to names of tables that {shown(other)} has, such as those of its {word.replace('_', ' ')}"
                 )
-                raise InputError("gear, pair", shown(name), rule, "give one of them another name")
+                raise InputError("gear, pair", shown(name), rule, "rename one of them")

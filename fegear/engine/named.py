@@ -39,7 +39,7 @@ class Named(tuple[T, ...]):
             try:
                 return super().__getitem__(key)
             except (IndexError, TypeError):
-                rule, remedy = f"is no place among these {len(self)} results", nearest("", self.keys())
+                rule, remedy = f"is not a position among these {len(self)} results", nearest("", self.keys())
                 raise UnknownPlaceError("name", shown(key), rule, remedy) from None
         for one in self:
             if one.name == key:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from fegear.base.arrays import Alike
+from fegear.base.printed import with_its_error
 from fegear.engine.least_errors import _NAMED, _ROUGH, _is_rough, with_least_error_columns, with_least_errors
 from fegear.engine.value import Value
 
@@ -56,7 +57,10 @@ class Outcome(Alike):
         rough = [value for value in self.values if _is_rough(value, self.values)] if self.sharper_by else []
         if not rough:
             return ()
-        shown = [f"{one.name} ({one.value:.4g} +- {one.error:.2g} {one.unit}".rstrip() + ")" for one in rough[:_NAMED]]
+        shown = [
+            f"{one.name} ({with_its_error(one.value, one.error or 0.0)} {one.unit}".rstrip() + ")"
+            for one in rough[:_NAMED]
+        ]
         more = f" and {len(rough) - _NAMED} more" if len(rough) > _NAMED else ""
-        return (f"{', '.join(shown)}{more}: estimated error above {_ROUGH:.0%} of the value".replace("%", " %")
-                + f"; {self.sharper_by}.",)  # fmt: skip
+        limit = f"{100.0 * _ROUGH:g} % of the value"
+        return (f"{', '.join(shown)}{more}: estimated error above {limit}; {self.sharper_by}.",)

@@ -62,7 +62,7 @@ class Plan:
 def _straight(scene: Scene) -> str:
     """What a case of helical gears alone should know of results that are about spur gears."""
     alone = bool(scene.gears) and not scene.spur_gears
-    return ": it may be about spur gears, and those of this case are helical" if alone else ""
+    return " (possibly available for spur gears only; the gears of this case are helical)" if alone else ""
 
 
 def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) -> Plan:
@@ -106,7 +106,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         stage.check(scene, task.subject)
         reasons[task], needs = [reason], stage.needs(scene, task.subject)
         for need in needs:
-            require(need, f"needed by {task}", result)
+            require(need, f"required by {task}", result)
         order.append(task)
         under[task] = dict.fromkeys((*(below for need in needs for below in under[need]), *needs))
 
@@ -118,8 +118,8 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
             raise InputError(
                 "results",
                 f'"{result}"',
-                "asks for something that this case does not describe",
-                "add the gear, pair or train that it is about" + _straight(scene),
+                "cannot be computed: the case does not define the required objects",
+                "add the required gear, pair or train" + _straight(scene),
             )
         for stage, subject in described:
             task = Task(stage.name, subject)
@@ -148,7 +148,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     used |= {effect for entry in known.entries if entry.name in scene.case.cost.stages for effect in entry.effects}
     idle = tuple(effect for effect in on if effect not in used)
     said = [
-        f'results: "{result}" is called "{former[result]}" now; fegear migrate writes it anew.'
+        f'results: "{result}" was renamed "{former[result]}"; update the case with fegear migrate.'
         for result in scene.case.results if result in former
     ]  # fmt: skip
     # What the description calls for, and no wanted result uses, was not asked for.
@@ -161,7 +161,7 @@ def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -
     if result in known.broken:
         raise known.broken[result]
     if result not in by_result:
-        rule, remedy = "is no result that fegear knows", nearest(result, by_result, '"fegear results"', of_result)
+        rule, remedy = "unknown result", nearest(result, by_result, '"fegear results"', of_result)
         raise InputError("results", f'"{result}"', rule, remedy)
 
 
@@ -174,8 +174,8 @@ def _refuse_circle(task: Task, reason: str, result: str, finished: Collection[Ta
 
 def _idle(effect: str, stages: Sequence[Entry]) -> str:
     results = dict.fromkeys(f'"{result}"' for one in stages if effect in one.effects for result in one.results)
-    who = f"ask for {' or '.join(results)}, or leave the effect out"
-    return f"effects.{effect} is on, but no requested result uses it; {who}."
+    who = f"request {' or '.join(results)}, or switch the effect off"
+    return f"effects.{effect} has no influence on the requested results; {who}."
 
 
 def _require_effects(scene: Scene, stage: Stage, results: Sequence[str]) -> None:
@@ -187,8 +187,9 @@ def _require_effects(scene: Scene, stage: Stage, results: Sequence[str]) -> None
         raise InputError(
             f"effects.{need.effect}",
             "(off)",
-            f"is needed by {who}: {need.reason}",
-            f"write {need.effect} = {scene.case.effects.example(need.effect)} under [effects], or do not ask for {who}",
+            f"is required by {who}: {need.reason}",
+            f"set {need.effect} = {scene.case.effects.example(need.effect)} under [effects], or remove {who} from "
+            "results",
         )
 
 
@@ -198,7 +199,7 @@ def _refuse_twice(stage: Stage, results: Sequence[str]) -> None:
         if other in results:
             raise InputError(
                 "results", f'"{other}"', f"and {stage.name} would write the same tables",
-                f"ask for {stage.name} alone: it holds what {other} has",
+                f"request {stage.name} only; it includes {other}",
             )  # fmt: skip
 
 
@@ -228,17 +229,17 @@ def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> N
     gears = [name for name, gear in scene.gears.items() if gear.tooth.internal and alone and subject in (name, "")]
     for key in (*(f"pair.{name}" for name in pairs), *(f"gear.{name}" for name in gears)):
         named = result or (stage.results[0] if stage.results else stage.name)
-        wide = " where gears are helical or have a width" if subject in scene.wide_pairs else ""
+        wide = " for helical or 3D gears" if subject in scene.wide_pairs else ""
         why = f" ({stage.why_external})" if stage.why_external else ""
         raise InputError(
-            key, "internal", f'is not taken by "{named}", which is computed for external gears alone{wide}{why}',
-            "do not ask for it, or describe the external gears in a case of their own",
+            key, "internal", f'is not supported by "{named}" (external gears only{wide}){why}',
+            "remove it from results, or use a separate case for the external gears",
         )  # fmt: skip
 
 
 def _why_not(stage: Entry, wanted: Sequence[str]) -> str:
     if not stage.results:
-        return "needed by no requested result"
+        return "not required by the requested results"
     if any(result in wanted for result in stage.results):
-        return "no gear or pair of this case is computed this way"
-    return f'not requested (results does not list "{stage.results[0]}")'
+        return "not applicable to the gears and pairs of this case"
+    return f'not requested ("{stage.results[0]}" is not in results)'

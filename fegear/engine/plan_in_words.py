@@ -23,23 +23,23 @@ def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
 
 def plan_lines(scene: Scene, plan: Plan) -> list[str]:
     """Lines for the terminal."""
-    lines, seconds = ["Will compute:"], forecast_seconds(scene, plan)
+    lines, seconds = ["Computed:"], forecast_seconds(scene, plan)
     for number, (step, predicted) in enumerate(zip(plan.steps, seconds, strict=True), start=1):
         effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
         lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
         ahead = step.stage.forecast(scene, step.task.subject)
         if ahead.settings:
             lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in ahead.settings.items()))
-        lines.append("     run time unknown" if predicted is None else f"     about {predicted:.2g} s")
+        lines.append("     CPU time unknown" if predicted is None else f"     about {predicted:.2g} s")
     if plan.skipped:
-        lines.append("Will not compute:")
+        lines.append("Not computed:")
         lines += _folded(plan.skipped)
     unknown = [str(step.task) for step, predicted in zip(plan.steps, seconds, strict=True) if predicted is None]
-    without = f", without {', '.join(unknown)}, whose run time is unknown" if unknown else ""
+    without = f", excluding {', '.join(unknown)} (CPU time unknown)" if unknown else ""
     total = sum(predicted or 0.0 for predicted in seconds)
     lines.append(
-        f"Predicted: about {total:.2g} s of one core, measured on a usual machine{without}; tables, pictures and "
-        "report come on top, some seconds."
+        f"Estimated CPU time: about {total:.2g} s on a reference machine{without}, plus some seconds for tables, "
+        "figures and report."
     )
     return lines + [f"Note: {remark}" for remark in plan.remarks]
 

@@ -110,8 +110,8 @@ class Job:
         differ = unlike(self.made_by, made_by())
         if differ:
             raise FegearError(
-                f"A worker has {differ[1]} where this program has {differ[0]}; start it again with the code and the "
-                "libraries of this program."
+                f"A worker has {differ[1]} where this program has {differ[0]}; restart it with the same code and "
+                "libraries."
             )
         # A worker that somebody else started may have loaded its BLAS with many threads, and sums with other last bits.
         with _alone, one_thread():
@@ -278,7 +278,7 @@ def on_cores(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]
                 try:
                     ((_, reply),) = _pool(job, {i: left[i]}, 1)
                 except BrokenProcessPool:
-                    died = FegearError("the process died while it computed this point (out of memory?)")
+                    died = FegearError("the process terminated while computing this point (out of memory?)")
                     reply = Reply(failed(died), lasting=False)
                 del left[i]
                 yield i, reply

@@ -24,8 +24,8 @@ from fegear.engine.table import Table
 from fegear.engine.value import Value
 
 NOTHING_FOR_A_CLUSTER = (
-    "--scheduler is of no use here: no result of this run consists of points that a cluster could compute, and this "
-    "machine computed all; sweeps, design-chart and robustness with [robustness] do."
+    "--scheduler has no effect: no result of this run can be distributed. Use it with sweeps, design-chart or "
+    "robustness ([robustness])."
 )
 
 
@@ -139,10 +139,10 @@ class Results(Alike):
         said = []
         if recalled:
             spared = sum(timing.when_computed for timing in recalled.values())
-            said.append(f"From cache: {', '.join(map(str, recalled))}; computing them took {spared:.2f} s then.")
+            said.append(f"From cache: {', '.join(map(str, recalled))} ({spared:.2f} s saved).")
         said += [
-            f"{task}: {timing.from_disk} solved tooth shapes came from the disk cache; solving them took "
-            f"{timing.spared:.2f} s then, which the seconds given here do not contain."
+            f"{task}: {timing.from_disk} tooth shapes taken from the disk cache; their {timing.spared:.2f} s are not "
+            "included in the times reported here."
             for task, timing in self.timings.items()
             if timing.from_disk
         ]
@@ -228,7 +228,7 @@ def _refuse_one_name_for_two(done: Mapping[Task, _Finished], task: Task) -> None
             if other != task and same:
                 raise InputError(
                     "gear, pair", f"{other.subject}, {task.subject}", f"both have a {kind} {min(same)}",
-                    "give one of them another name",
+                    "rename one of them",
                 )  # fmt: skip
 
 

@@ -125,7 +125,7 @@ class Table(Alike):
             if name in (column.name, column.head):
                 return column
         heads = [column.head for column in self.columns]
-        raise UnknownNameError("column", f'"{name}"', f"is none of table {self.name}", nearest(name, heads))
+        raise UnknownNameError("column", f'"{name}"', f"is not a column of table {self.name}", nearest(name, heads))
 
     def __len__(self) -> int:
         """Return the number of rows."""

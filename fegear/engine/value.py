@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.arrays import Alike
+from fegear.base.printed import plain, with_its_error
 from fegear.base.units import from_si, quantity
 
 if TYPE_CHECKING:
@@ -36,9 +37,9 @@ class Value(Alike):
     meaning: str = ""
 
     def __repr__(self) -> str:
-        """Name, number, error and unit on one line."""
-        error = f" +- {self.error:.2g}" if self.error else ""
-        return f"{self.name} = {self.value:.9g}{error} {self.unit}".rstrip()
+        """Name, number with the digits of its error, error and unit on one line."""
+        number = with_its_error(self.value, self.error) if self.error else plain(self.value)
+        return f"{self.name} = {number} {self.unit}".rstrip()
 
     def __float__(self) -> float:
         """Return the value in its unit."""

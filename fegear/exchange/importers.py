@@ -106,12 +106,12 @@ def importer_for(path: Path, name: str | None) -> Importer:
         others.refuse_broken(name)
         if name not in others.found:
             remedy = f"choose from {', '.join((*IMPORTERS, *others.found))}"
-            raise InputError("--as", shown(name), "is no kind of model that fegear reads", remedy)
+            raise InputError("--as", shown(name), "is not a supported model format", remedy)
     suffix = path.suffix.lower()
     fitting = [one for one, kind in others.found.items() if (suffix in kind.suffixes if name is None else one == name)]
     if len(fitting) > 1:
-        rule = f"may be read as {' or '.join(fitting)}"
-        raise InputError("MODEL", shown(path.name), rule, f"say which: --as {fitting[0]}")
+        rule = f"can be read as {' or '.join(fitting)}"
+        raise InputError("MODEL", shown(path.name), rule, f"specify one: --as {fitting[0]}")
     if not fitting:
         if others.broken and suffix not in _SUFFIXES:  # one of them may be meant
             raise next(iter(others.broken.values()))

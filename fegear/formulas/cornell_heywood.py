@@ -124,14 +124,14 @@ def lever(section: RootSection, roll: ArrayLike) -> tuple[Array, Array, Array]:
     """Load angle phi' = eps - beta (B.5), half load-point thickness h_W/2 (B.6), l_0 (B.9) at roll angles eps [rad]."""
     eps = np.asarray(roll, dtype=float)
     if not np.all(eps >= 0.0):
-        raise RangeError("roll angle", f"{np.min(eps):.6g} rad", "must not be negative: the involute starts at zero")
+        raise RangeError("roll angle", f"{np.min(eps):.6g} rad", "must not be negative")
     angle = eps - section.base_half_angle
     if not np.all(angle < 0.5 * math.pi):
-        raise RangeError("roll angle", f"{np.max(eps):.6g} rad", "puts the load along the tooth's centre line")
+        raise RangeError("roll angle", f"{np.max(eps):.6g} rad", "gives a load along the tooth centre line")
     gamma = section.base_half_angle - eps + np.arctan(eps)
     load_radius = section.base_radius * np.hypot(1.0, eps)
     if not np.all(gamma > 0.0):
-        raise RangeError("roll angle", f"{np.max(eps):.6g} rad", "lies beyond the point where the flanks meet")
+        raise RangeError("roll angle", f"{np.max(eps):.6g} rad", "is beyond the intersection of the flanks")
     # R_W [cos gamma - sin gamma tan phi'] is R_b / cos phi': the line of action crosses the centre line there
     return angle, load_radius * np.sin(gamma), section.base_radius / np.cos(angle) - section.fillet_height
 
@@ -177,12 +177,14 @@ def critical_angle(
         if step <= tolerance:
             break
     else:
-        raise ConvergenceError(f"Cornell's iteration for the root-stress place still moved by {step:.3g} rad")
+        raise ConvergenceError(
+            f"Cornell's iteration for the critical section did not converge (last step {step:.3g} rad)"
+        )
     if not np.all((gamma > 0.0) & (gamma < 0.5 * math.pi)):
         raise RangeError(
             "load point",
             f"{float(np.min(arm)):.4g} above the fillet's centre",
-            "acts so low that the root stress has no maximum on the fillet",
+            "acts too low on the flank: no stress maximum in the fillet",
         )
     return gamma, count
 
@@ -235,7 +237,7 @@ def modified_heywood(
     """
     h, lp, ls, hw, radius, phi = (np.asarray(x, dtype=float) for x in (h_s, l_primed, l_s, h_w, r, angle))
     if not (np.all(ls > 0.0) and np.all(lp > 0.0)):
-        raise RangeError("load point", f"{float(np.min(ls)):.4g} above the section", "must lie above the root section")
+        raise RangeError("load point", f"{float(np.min(ls)):.4g} above the section", "must be above the root section")
     t = np.tan(phi)
     bending = 6.0 * lp / h**2 + np.sqrt(0.72 / (h * ls)) * (1.0 - hw / h * v * t) - t / h
     return np.asarray(np.cos(phi) * (1.0 + 0.26 * (h / (2.0 * radius)) ** 0.7) * bending)

@@ -52,7 +52,7 @@ def concentration_factor(
         "pressure angle",
         f"{degrees:.6g} deg",
         "was not tested by Dolan and Broghamer (14.5 and 20 deg)",
-        "AGMA 908 interpolates their constants",
+        "use AGMA 908 (interpolated constants)",
     )
 
 

@@ -90,20 +90,20 @@ class FlankSpeeds:
     """
 
     x: Array
-    radius_driver: Array = shown("mm", "radius of curvature of the driver's flank")
-    radius_driven: Array = shown("mm", "of the driven gear's flank")
-    relative_radius: Array = shown("mm", "of both in the normal section")
-    rolling_driver: Array = shown("m/s", "of the driver's flank through the contact")
-    rolling_driven: Array = shown("m/s", "of the driven gear's flank through the contact")
+    radius_driver: Array = shown("mm", "radius of curvature of the driver flank")
+    radius_driven: Array = shown("mm", "radius of curvature of the driven flank")
+    relative_radius: Array = shown("mm", "relative radius of curvature in the normal section")
+    rolling_driver: Array = shown("m/s", "rolling velocity of the driver flank")
+    rolling_driven: Array = shown("m/s", "rolling velocity of the driven flank")
 
     @property
-    @shows("m/s", "of the driver's flank on the driven one", name="sliding_velocity")
+    @shows("m/s", "sliding velocity", name="sliding_velocity")
     def sliding(self) -> Array:
         """Speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point."""
         return np.asarray(self.rolling_driver - self.rolling_driven)
 
     @property
-    @shows("m/s", "of both flanks through the contact", name="sum_velocity")
+    @shows("m/s", "sum of the rolling velocities", name="sum_velocity")
     def sum(self) -> Array:
         """v_Sigma, sum of both speeds [m/s]."""
         return np.asarray(self.rolling_driver + self.rolling_driven)
@@ -129,7 +129,7 @@ def flank_speeds(pair: GearPair, x: ArrayLike, speed: float) -> FlankSpeeds:
         raise RangeError(
             "speed",
             f"{speed:.6g} rad/s",
-            "must be above zero: flanks that stand still have no film and no friction heat",
+            "must be greater than zero: no film and no frictional heat at zero speed",
         )
     place = np.asarray(x, dtype=float)
     one, other = (np.asarray(pair.flank_curvature_radius(place, member)) for member in ("driver", "driven"))

@@ -182,9 +182,9 @@ def ohlendorf(pair: GearPair) -> float:
     """
     one, two = contact_ratios(pair)
     if min(one, two) < 0.0:
-        raise RangeError("path of contact", "(beside the pitch point)", "is not known to Ohlendorf's H_V")
+        raise RangeError("path of contact", "(not containing the pitch point)", "is not covered by H_V of Ohlendorf")
     if not 1.0 <= one + two <= 2.0:
-        raise RangeError("contact ratio", f"{one + two:.4g}", "must lie between 1 and 2 for Ohlendorf's H_V")
+        raise RangeError("contact ratio", f"{one + two:.4g}", "must be between 1 and 2 for Ohlendorf's H_V")
     return teeth_factor(pair) * (1.0 - one - two + one * one + two * two)
 
 

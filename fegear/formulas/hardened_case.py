@@ -89,7 +89,7 @@ def lang_hardness(depth: ArrayLike, surface: float, core: float, case_depth: flo
     for name, side, value in (("core hardness", -1.0, core), ("hardness", 1.0, surface)):
         if side * (value - AT_CASE_DEPTH) <= 0.0:
             rule = f"must be {'above' if side > 0.0 else 'below'} the {AT_CASE_DEPTH:g} HV of the case depth"
-            raise RangeError(name, f"{value:.4g} HV", rule, "give hardness_profile in place of case_depth")
+            raise RangeError(name, f"{value:.4g} HV", rule, "specify hardness_profile instead of case_depth")
     decades = math.log10((surface - core) / (AT_CASE_DEPTH - core))
     # c1 t + c2 t^2 = decades, stable for decades -> 0
     at_case = 2.0 * decades / (_LINEAR + math.sqrt(_LINEAR**2 + 4.0 * _SQUARE * decades))

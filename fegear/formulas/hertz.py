@@ -73,7 +73,7 @@ def relative_curvature(radius_a: ArrayLike, radius_b: ArrayLike) -> Array:
     """
     a, b = np.broadcast_arrays(np.asarray(radius_a, dtype=float), np.asarray(radius_b, dtype=float))
     if not np.all((np.abs(a) > 0.0) & (np.abs(b) > 0.0)):
-        raise RangeError("radius of curvature", 0.0, "must not be zero", "a corner has no Hertzian contact")
+        raise RangeError("radius of curvature", 0.0, "must not be zero", "edges have no Hertzian contact")
     finite = np.isfinite(a) & np.isfinite(b)
     fa, fb = np.where(finite, a, 1.0), np.where(finite, b, 1.0)
     # one division after the other: the product of two large or two tiny radii may leave the range of floats
@@ -100,13 +100,13 @@ def line_contact(line_load: ArrayLike, curvature: ArrayLike, modulus: float) -> 
     """
     w, kappa = np.broadcast_arrays(np.asarray(line_load, dtype=float), np.asarray(curvature, dtype=float))
     if not np.all(w >= 0.0):
-        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must not be negative: flanks do not pull")
+        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must not be negative (no tension in the contact)")
     if not np.all(kappa > 0.0):
         raise RangeError(
             "relative curvature",
             f"{np.min(kappa):.6g} 1/m",
             "must be positive",
-            "two flats or a concave flank of the same or a smaller radius touch over their whole width",
+            "flats, or a concave flank of equal or smaller radius, have conformal contact",
         )
     if not (math.isfinite(modulus) and modulus > 0.0):
         raise RangeError("contact modulus", modulus, "must be positive and finite")
@@ -117,7 +117,7 @@ def line_contact(line_load: ArrayLike, curvature: ArrayLike, modulus: float) -> 
             "half-width times relative curvature",
             f"{np.max(wide):.4g}",
             f"exceeds {LARGEST_WIDTH_RATIO}: the contact is too wide for Hertz's half-planes",
-            "lower the load or solve the contact with finite elements",
+            "reduce the load or solve the contact by FE",
         )
     return LineContact(w, a, np.sqrt(w / math.pi * modulus * kappa))
 
@@ -192,7 +192,9 @@ def approach(
             raise RangeError(name, f"{np.min(value):.6g}", "must not be negative")
     loaded = w > 0.0
     if np.any(loaded & (a == 0.0)):
-        raise RangeError("half-width", 0.0, "gives an infinite deflection under a load", "take it from line_contact")
+        raise RangeError(
+            "half-width", 0.0, "gives an infinite deflection under a load", "use the value from line_contact"
+        )
     width = np.where(loaded, a, 1.0)
     bracket = np.arcsinh(d / width) - lateral_ratio(poisson_ratio, plane) * d / (d + np.hypot(width, d))
     return np.where(loaded, 2.0 * w / math.pi * flexibility(young_modulus, poisson_ratio, plane) * bracket, 0.0)
@@ -212,4 +214,4 @@ def _check_material(young_modulus: float, poisson_ratio: float, name: str) -> No
     if not (math.isfinite(young_modulus) and young_modulus > 0.0):
         raise RangeError(f"young_modulus ({name})", young_modulus, "must be positive and finite")
     if not -1.0 < poisson_ratio < 0.5:
-        raise RangeError(f"poisson_ratio ({name})", poisson_ratio, "must lie inside (-1, 0.5)")
+        raise RangeError(f"poisson_ratio ({name})", poisson_ratio, "must be inside (-1, 0.5)")

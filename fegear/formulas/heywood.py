@@ -35,7 +35,7 @@ def concentration_factor(half_thickness: ArrayLike, fillet_radius: ArrayLike) ->
     if not np.all(e >= 0.0):
         raise RangeError("half thickness", f"{np.min(e):.6g}", "must not be negative")
     if not np.all(r > 0.0):
-        raise RangeError("fillet radius", f"{np.min(r):.6g}", "must be positive: a sharp corner has no finite factor")
+        raise RangeError("fillet radius", f"{np.min(r):.6g}", "must be positive (no finite factor for a sharp corner)")
     return np.asarray(1.0 + 0.26 * (e / r) ** 0.7)
 
 
@@ -53,7 +53,9 @@ def fillet_stress(
     """
     e, a, b, pull = (np.asarray(v, dtype=float) for v in (half_thickness, moment_arm, distance, pull))
     if not (np.all(e > 0.0) and np.all(b > 0.0)):
-        raise RangeError("section", f"{float(np.min(e)):.6g}", "must have a thickness and lie apart from the load")
+        raise RangeError(
+            "section", f"{float(np.min(e)):.6g}", "must have positive thickness and a distance from the load"
+        )
     factor = concentration_factor(e, fillet_radius)
     return np.asarray(factor * (1.5 * a / e**2 + pull / (2.0 * e) + 0.45 / np.sqrt(b * e)))
 
@@ -77,7 +79,7 @@ def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
         raise RangeError(
             "load radius",
             f"{radius:.6g} modules",
-            "gives no maximum inside the fillet: the stress grows to its end beside the load or at the root circle",
+            "gives no stress maximum inside the fillet (increases to its end)",
         )
     i = int(inner[np.argmax(values[inner])])
     # where the slope of a polynomial through it is zero: the largest value itself knows half of the place's digits

@@ -139,5 +139,5 @@ def _inside(key: str, value: float) -> None:
     if not least - slack <= value <= most + slack:
         raise RangeError(
             key, f"{value:.6g}{unit}", f"must be {least:g} to {most:g}{unit}, the range of ISO 1328-1:2013",
-            "give deviations of your own",
+            "specify deviations of your own",
         )  # fmt: skip

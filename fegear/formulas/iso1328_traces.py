@@ -125,8 +125,8 @@ def evaluate(x: Array, deviation: Array, start: float, end: float) -> TraceDevia
     if inside.sum() < 5 or x[0] > start + 1e-9 or x[-1] < end - 1e-9:
         raise InputError(
             "evaluation range", f"{start * 1e3:.6g} to {end * 1e3:.6g} mm",
-            f"is not covered by a trace from {x[0] * 1e3:.6g} to {x[-1] * 1e3:.6g} mm with five places or more in it",
-            "measure further, or give another range",
+            f"is not covered by at least five points of the trace, {x[0] * 1e3:.6g} to {x[-1] * 1e3:.6g} mm",
+            "extend the measurement, or specify another range",
         )  # fmt: skip
     at = np.concatenate([[start], x[inside], [end]])
     y = np.interp(at, x, deviation)

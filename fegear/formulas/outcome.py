@@ -139,7 +139,7 @@ class ComplianceSource:
     tooth: ComplianceFormula
     contact: ContactFormula
     citation: str
-    remark: str = "one tooth on its own: no coupling to the neighbouring teeth"
+    remark: str = "single tooth, no coupling to neighbouring teeth"
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ def approach(line_load: ArrayLike, face_width: float, young_modulus: float) -> N
     """
     w = np.asarray(line_load, dtype=float)
     if not np.all(w >= 0.0):
-        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must not be negative: flanks do not pull")
+        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must not be negative (no tension in the contact)")
     for name, value in (("face width", face_width), ("young_modulus", young_modulus)):
         if not (math.isfinite(value) and value > 0.0):
             raise RangeError(name, value, "must be positive and finite")

@@ -114,14 +114,14 @@ def coefficients(radius_ratio: float, root_half_angle: float) -> tuple[float, fl
         raise RangeError(
             "root radius / bore radius",
             f"{h:.4g}",
-            f"must lie between {RANGE_H[0]} and {RANGE_H[1]}, where Sainsot's polynomials were fitted",
-            "use the finite elements for thin rims and solid bodies",
+            f"must be between {RANGE_H[0]} and {RANGE_H[1]}, the fitted range of Sainsot's polynomials",
+            "use FE for thin rims and solid bodies",
         )
     if not RANGE_THETA[0] <= theta <= RANGE_THETA[1]:
         raise RangeError(
             "half tooth angle at the root",
             f"{theta:.4g} rad",
-            f"must lie between {RANGE_THETA[0]} and {RANGE_THETA[1]} rad, where Sainsot's polynomials were fitted",
+            f"must be between {RANGE_THETA[0]} and {RANGE_THETA[1]} rad, the fitted range of Sainsot's polynomials",
             "use another compliance source for gears with few teeth",
         )
     big_l, m, p, q = (float(v) for v in TABLE_1 @ np.array([1.0 / theta**2, h * h, h / theta, 1.0 / theta, h, 1.0]))

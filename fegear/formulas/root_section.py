@@ -96,7 +96,7 @@ def fillet_radii(tooth: Filleted, parameter: ArrayLike) -> NDArray[np.float64]:
         raise RangeError(
             "fillet radius",
             f"{np.min(radii):.3g} modules",
-            "is that of a sharp corner, where no root-stress formula holds",
+            "is a sharp corner: no root-stress formula is valid",
             "give the rack a tip radius",
         )
     return np.asarray(radii)
@@ -125,7 +125,7 @@ def fillet_parameter(tooth: Filleted, tangent_angle: float) -> float:
         raise RangeError(
             "tangent angle",
             f"{math.degrees(tangent_angle):.6g} deg",
-            f"does not occur on the fillet, where it runs from {math.degrees(low):.4g} to {math.degrees(high):.4g} deg",
+            f"does not occur on the fillet, {math.degrees(low):.4g} to {math.degrees(high):.4g} deg",
         )
     f = tooth.trochoid
 
@@ -204,7 +204,9 @@ def refuse_helix(tooth: Tooth) -> None:
     """
     if tooth.helix_angle != 0.0:
         angle = f"{math.degrees(tooth.helix_angle):.6g} deg"
-        raise RangeError("helix angle", angle, "must be zero: this formula is for spur teeth; ISO 6336's rating is not")
+        raise RangeError(
+            "helix angle", angle, "must be zero (formula for spur gears; the rating to ISO 6336 covers helical gears)"
+        )
 
 
 def load_line(tooth: Tooth, radius: ArrayLike) -> LoadLine:
@@ -224,7 +226,7 @@ def load_line(tooth: Tooth, radius: ArrayLike) -> LoadLine:
         raise RangeError(
             "load radius",
             f"{r[bad].flat[0]:.6g} modules",
-            f"is not on the involute, which runs from {low:.6g} to {high:.6g} modules",
+            f"is outside the involute, {low:.6g} to {high:.6g} modules",
         )
     roll = tooth.roll(np.clip(r, max(low, tooth.base_radius), high))
     angle = roll - tooth.base_half_angle

@@ -96,7 +96,7 @@ def pair_compliance(source: ComplianceSource, pair: GearPair, x: ArrayLike, line
         pair.flank_curvature_radius(position, "driver"), pair.flank_curvature_radius(position, "driven")
     )
     if not np.all(w > 0.0):
-        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must be positive: no load has no secant")
+        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must be positive")
     modulus = 1.0 / (1.0 / a.plane_modulus + 1.0 / b.plane_modulus)
     half_width = hertz.line_contact(w, curvature, modulus).half_width
     contact = (source.contact(a, radii[0], w, half_width) + source.contact(b, radii[1], w, half_width)) / w

@@ -80,10 +80,10 @@ def gear_checks(name: str, gear: Gear, *, assumed_rim: bool = False) -> tuple[Ch
     """
     tooth, m = gear.tooth, gear.module
     depth = tooth.side * (tooth.tip_radius - tooth.root_radius) * m
-    hole = "take a larger outer radius" if tooth.internal else "take a smaller bore"
+    hole = "increase the outer radius" if tooth.internal else "reduce the bore"
     checks = [
         Check(name, "tooth thickness at the tip", tip_thickness(gear), LEAST_TIP_THICKNESS * m, "mm",
-              "take less profile shift or a smaller tip diameter"),
+              "reduce the profile shift or the tip diameter"),
     ]  # fmt: skip
     if not assumed_rim:
         checks.append(Check(name, "rim below the teeth", backup_ratio(gear) * depth, LEAST_RIM * depth, "mm", hole))
@@ -115,9 +115,9 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
     """
     checks = [
         Check(name, "transverse contact ratio" if pair.overlap_ratio == 0.0 else "total contact ratio",
-              pair.total_contact_ratio, LEAST_CONTACT_RATIO, "", "lengthen the teeth or raise their number"),
+              pair.total_contact_ratio, LEAST_CONTACT_RATIO, "", "increase tooth depth or number of teeth"),
         Check(name, "backlash along the line of action", pair.normal_backlash, 0.0, "mm",
-              "widen the centre distance or thin the teeth",
+              "increase the centre distance or reduce the tooth thickness",
               2.0 * ROUNDED_SHIFTS * pair.driver.module * math.sin(pair.driver.normal_pressure_angle)),
     ]  # fmt: skip
     module = pair.driver.module
@@ -125,12 +125,12 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
         found = interference(pair, member)
         checks.append(
             Check(name, f"tip clearance of the {member}", pair.tip_clearance(member), LEAST_TIP_CLEARANCE * module,
-                  "mm", "deepen the mating root or shorten this tip")
+                  "mm", "increase the mating dedendum or reduce this tip diameter")
         )  # fmt: skip
         if math.isfinite(found.fillet_gap):
             checks.append(
-                Check(name, f"gap of the {member}'s tip to the mating fillet", found.fillet_gap, 0.0, "mm",
-                      "shorten this tip or take a smaller rack tip radius on the mate")
+                Check(name, f"clearance of the {member} tip to the mating fillet", found.fillet_gap, 0.0, "mm",
+                      "reduce this tip diameter or the rack tip radius of the mating gear")
             )  # fmt: skip
     checks += [
         Check(name, one.name, one.margin * module, 0.0, "mm", one.trouble)

@@ -229,10 +229,10 @@ def protuberance_fillet(
         raise GeometryError(
             "rack.protuberance",
             rack.protuberance,
-            "takes away the whole flank"
+            "removes the entire flank"
             if spare(tip_radius) >= 0.0
             else "does not reach the flank above its base circle",
-            "lower it, or raise the protuberance angle",
+            "reduce it, or increase the protuberance angle",
         )
     meets = brentq(spare, low, tip_radius, xtol=1e-15, rtol=9e-16)
     involute = Involute(second.base_radius, second.half_angle, roll, second.roll(meets))

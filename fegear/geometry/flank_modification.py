@@ -96,7 +96,7 @@ class LeadEndRelief:
         if not 0.0 < self.length <= self.face_width * (1.0 + 1e-9):
             raise InputError(
                 "lead.end_relief.length", f"{self.length * 1e3:.6g} mm",
-                f"must lie inside (0, face width = {self.face_width * 1e3:.6g} mm]",
+                f"must be above 0 and at most the face width {self.face_width * 1e3:.6g} mm",
             )  # fmt: skip
 
     @property
@@ -192,11 +192,11 @@ class Topography(ReadOnlyArrays):
         """Refuse what is no grid."""
         ReadOnlyArrays.__post_init__(self)
         if min(self.roll.size, self.z.size) < 2 or self.values.shape != (self.roll.size, self.z.size):
-            raise InputError("topography", f"{self.values.shape} removals", "must be a grid of two or more a side")
+            raise InputError("topography", f"{self.values.shape} removals", "must be a grid of at least 2 x 2")
         if not all(np.isfinite(a).all() for a in (self.roll, self.z, self.values)):
             raise InputError("topography", "an entry", "must be finite")
         if (np.diff(self.roll) <= 0.0).any() or (np.diff(self.z) <= 0.0).any():
-            raise InputError("topography", "its grid", "must ascend without repetition")
+            raise InputError("topography", "its grid", "must be strictly increasing")
 
     @property
     def face_kinks(self) -> tuple[float, ...]:

@@ -48,7 +48,7 @@ class Material:
             raise InputError("material.young_modulus", self.young_modulus, "must be positive")
         if not -1.0 < self.poisson_ratio < 0.5:
             raise InputError(
-                "material.poisson_ratio", self.poisson_ratio, "must lie inside (-1, 0.5)", "steel has about 0.3"
+                "material.poisson_ratio", self.poisson_ratio, "must be inside (-1, 0.5)", "steel has about 0.3"
             )
         if not (math.isfinite(self.density) and self.density > 0.0):
             raise InputError("material.density", self.density, "must be positive")
@@ -96,7 +96,7 @@ class Gear:
 
     tooth: InvoluteTooth
     module: float = shown("mm", "module")
-    bore_radius: float = shown("mm", "radius at which the body is held")
+    bore_radius: float = shown("mm", "radius at which the gear body is fixed")
     face_width: float = shown("mm", "face width", default=1e-3)
     material: Material = field(default_factory=Material)
     plane: Literal["strain", "stress", "auto"] = "strain"
@@ -113,7 +113,7 @@ class Gear:
                 "hand",
                 f'"{self.hand}" at a helix angle of {math.degrees(self.helix_angle):.6g} deg',
                 "contradicts the helix angle",
-                'give "left" or "right" for a helical gear and "spur" for a helix angle of zero',
+                'specify "left" or "right" for a helical gear and "spur" for a helix angle of zero',
             )
         for name in ("module", "face_width", "bore_radius"):
             value = getattr(self, name)
@@ -127,7 +127,7 @@ class Gear:
             self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius, self.teeth)
         if self.support is not None:
             if not self.tooth.internal:
-                raise GeometryError("rim_support", "of an external gear", "has a meaning only for internal gears")
+                raise GeometryError("rim_support", "of an external gear", "applies only to internal gears")
             self.support.check(self.module, self.bore_radius, self.teeth)
         if self.plane not in ("strain", "stress", "auto"):
             raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
@@ -140,8 +140,8 @@ class Gear:
             raise InputError(
                 "material.poisson_ratio",
                 nu,
-                "is incompressible, which plane strain with displacements alone cannot distinguish from rigid",
-                f"choose at most {_LARGEST_POISSON_RATIO}, which is within 1e-4 of the limit, or plane stress",
+                "is too close to 0.5 (incompressible) for plane strain elements",
+                f"use at most {_LARGEST_POISSON_RATIO}, or plane stress",
             )
 
     def _check_held_radius(self) -> None:
@@ -151,7 +151,7 @@ class Gear:
             raise GeometryError(
                 "bore_radius",
                 f"{held * 1e3:.6g} mm",
-                f"must lie inside (0, root radius = {root * 1e3:.6g} mm)",
+                f"must be between 0 and the root radius {root * 1e3:.6g} mm",
                 f"half the root radius, {root * 500:.4g} mm, is a usual start",
             )
         if internal and held <= root:
@@ -159,7 +159,7 @@ class Gear:
             raise GeometryError(
                 "bore_radius",
                 f"{held * 1e3:.6g} mm",
-                f"must lie outside the root circle of an internal gear, whose radius is {root * 1e3:.6g} mm",
+                f"must be outside the root circle of the internal gear, radius {root * 1e3:.6g} mm",
                 f"{usual * 1e3:.4g} mm, a rim of {USUAL_RING_RIM:g} modules, is a usual start",
             )
 
@@ -174,8 +174,8 @@ class Gear:
         """
         if not isinstance(self.tooth, Tooth):
             raise GeometryError(
-                "internal", "true", "is an internal gear; this result is computed for external gears alone",
-                "ask for the finite-element results of the gear",
+                "internal", "true", "is an internal gear; this result is available for external gears only",
+                "request the FE results of the gear",
             )  # fmt: skip
         return self.tooth
 
@@ -259,7 +259,7 @@ class Gear:
         return self.tooth.pressure_angle
 
     @property
-    @shows("mm", "pitch circle")
+    @shows("mm", "reference circle")
     def pitch_radius(self) -> float:
         """Pitch radius r [m]."""
         return self.tooth.pitch_radius * self.module
@@ -283,13 +283,13 @@ class Gear:
         return self.tooth.tip_radius * self.module
 
     @property
-    @shows("mm", "where the involute starts")
+    @shows("mm", "root form circle")
     def form_radius(self) -> float:
         """r_Ff, where the involute starts [m]."""
         return self.tooth.form_radius * self.module
 
     @property
-    @shows("mm", "where the involute ends")
+    @shows("mm", "tip form circle")
     def involute_tip_radius(self) -> float:
         """r_Fa, where the involute ends [m]."""
         return self.tooth.involute_tip_radius * self.module

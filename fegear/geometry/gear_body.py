@@ -66,45 +66,49 @@ class WebHoles:
         least, key = _THINNEST * module, "body.holes.diameter"
         size = f"{2e3 * self.radius:.6g} mm"
         if self.count < 1:
-            raise GeometryError("body.holes.count", self.count, "must be at least 1", "leave holes out for none")
+            raise GeometryError(
+                "body.holes.count", self.count, "must be at least 1", "remove holes for a web without holes"
+            )
         if body.lean:
             raise GeometryError(
-                "body.holes", self.count, "are not computed in an inclined web", "leave web_inclination or holes out"
+                "body.holes", self.count, "are not supported in an inclined web", "remove web_inclination or holes"
             )
         if self.tooth is not None and teeth is not None and not 0 <= self.tooth < teeth:
-            rule = f"must lie between 0 and {teeth - 1}"
+            rule = f"must be between 0 and {teeth - 1}"
             raise GeometryError("body.holes.tooth", self.tooth, rule, "count clockwise from tooth 0")
         if not math.isfinite(self.angle):
             raise GeometryError("body.holes.angle", self.angle, "must be finite")
         if 2.0 * self.radius < least:
             raise GeometryError(
                 key, size, f"must be at least {least * 1e3:.6g} mm ({_THINNEST:g} modules)",
-                "smaller holes change nothing that is computed: leave them out",
+                "smaller holes have no influence: remove them",
             )  # fmt: skip
         reach, least = self.radius + least, least * 1e3
-        circle = f"on their circle of {2e3 * self.circle_radius:.6g} mm, {least:.6g} mm off it ({_THINNEST:g} modules)"
+        circle = (
+            f"on their circle of {2e3 * self.circle_radius:.6g} mm, {least:.6g} mm away from it ({_THINNEST:g} modules)"
+        )
         if self.circle_radius + reach > body.rim_radius * (1.0 + _ROUND_OFF):
             raise GeometryError(
                 key, size, f"leaves no web to the inside of the rim, {2e3 * body.rim_radius:.6g} mm across, {circle}",
-                "make holes or circle_diameter smaller",
+                "reduce hole diameter or circle_diameter",
             )  # fmt: skip
         if self.circle_radius - reach < body.hub_radius * (1.0 - _ROUND_OFF):
             raise GeometryError(
                 key, size, f"leaves no web to the hub, {2e3 * body.hub_radius:.6g} mm across, {circle}",
-                "make holes smaller or circle_diameter larger",
+                "reduce the hole diameter or increase circle_diameter",
             )  # fmt: skip
         apart = 2.0 * self.circle_radius * math.sin(math.pi / min(self.count, _MANY))
         if self.count > 1 and apart < 2.0 * self.radius + least * 1e-3:
             raise GeometryError(
-                key, size, f"leaves no web between {shown(self.count)} holes, whose middles lie {apart * 1e3:.6g} mm "
-                f"apart {circle}", "make holes smaller or fewer",
+                key, size, f"leaves no web between {shown(self.count)} holes "
+                           f"spaced {apart * 1e3:.6g} mm {circle}", "reduce diameter or number of holes",
             )  # fmt: skip
         edge = self.circle_radius + self.radius
         if root_radius - edge < _NEAREST * root_radius:
             raise GeometryError(
-                key, size, f"must stay {_NEAREST * root_radius * 1e3:.4g} mm ({_NEAREST:.0%} of its radius) below the "
-                f"root circle; these reach within {(root_radius - edge) * 1e3:.4g} mm",
-                "what is so near to the teeth takes too many waves round the gear",
+                key, size, f"must stay {_NEAREST * root_radius * 1e3:.4g} mm ({100.0 * _NEAREST:g} % of its radius) "
+                           f"below the root circle; these reach within {(root_radius - edge) * 1e3:.4g} mm",
+                "holes this close to the teeth need too many circumferential harmonics",
             )  # fmt: skip
 
 
@@ -202,50 +206,49 @@ class GearBody:
         if not -0.5 * width - near <= low < high <= 0.5 * width + near:
             raise GeometryError(
                 "body.web", f"{low * 1e3:.6g} to {high * 1e3:.6g} mm",
-                f"must lie on the face, from {-500 * width:.6g} to {500 * width:.6g} mm",
+                f"must be within the face width, {-500 * width:.6g} to {500 * width:.6g} mm",
                 "reduce web_thickness or web_offset",
             )  # fmt: skip
         if high - low < min(_THINNEST * module, width) - near:
             raise GeometryError(
                 "body.web_thickness", f"{(high - low) * 1e3:.6g} mm",
                 f"must be at least {_THINNEST * module * 1e3:.6g} mm ({_THINNEST:g} modules)",
-                "a thinner web is a shell, which is not computed",
+                "thinner webs (shells) are not supported",
             )  # fmt: skip
         if not abs(self.lean) <= math.tan(STEEPEST) * (1.0 + _ROUND_OFF):
             raise GeometryError(
                 "body.web_inclination", f"{math.degrees(math.atan(self.lean)):.6g} deg",
-                f"must lie between {-math.degrees(STEEPEST):.6g} and {math.degrees(STEEPEST):.6g} deg, for which "
-                "inclined webs were compared with other programs",
+                f"must be between {-math.degrees(STEEPEST):.6g} and {math.degrees(STEEPEST):.6g} deg (verified range)",
             )  # fmt: skip
         start, end = self.hub
         low, high = self.foot
         if self.lean and not -0.5 * width - near <= low < high <= 0.5 * width + near:
             raise GeometryError(
                 "body.web_inclination", f"{math.degrees(math.atan(self.lean)):.6g} deg",
-                f"leads the web off the face, which runs from {-500 * width:.6g} to {500 * width:.6g} mm: it would end "
-                f"at {low * 1e3:.6g} to {high * 1e3:.6g} mm",
-                "reduce web_inclination, or move the web (web_offset)",
+                f"places the web outside the face width, {-500 * width:.6g} to {500 * width:.6g} mm: it would extend "
+                f"from {low * 1e3:.6g} to {high * 1e3:.6g} mm",
+                "reduce web_inclination, or change web_offset",
             )  # fmt: skip
         if not -0.5 * width - near <= start <= low + near or not high - near <= end <= 0.5 * width + near:
             raise GeometryError(
                 "body.hub", f"{start * 1e3:.6g} to {end * 1e3:.6g} mm",
-                f"must reach over the web, {'there ' if self.lean else ''}from {low * 1e3:.6g} to {high * 1e3:.6g} mm, "
-                "and not beyond the face",
+                f"must cover the web, {'there ' if self.lean else ''}{low * 1e3:.6g} to {high * 1e3:.6g} mm, within "
+                "the face width",
                 f"change {'web_inclination, ' if self.lean else ''}hub_width or hub_offset",
             )  # fmt: skip
         thin = _THINNEST * module
         if not thin - _ROUND_OFF * root_radius <= root_radius - self.rim_radius <= root_radius - bore_radius - thin:
             raise GeometryError(
                 "body.rim_thickness", f"{(root_radius - self.rim_radius) * 1e3:.6g} mm",
-                f"must be at least {thin * 1e3:.6g} mm ({_THINNEST:g} modules) and leave as much of the "
-                f"{(root_radius - bore_radius) * 1e3:.6g} mm between bore and root circle for a web",
+                f"must be at least {thin * 1e3:.6g} mm ({_THINNEST:g} modules) and leave at least as much for a web, "
+                f"of {(root_radius - bore_radius) * 1e3:.6g} mm between bore and root circle",
             )  # fmt: skip
         hubless = abs(self.hub_radius - bore_radius) <= _ROUND_OFF * bore_radius
         if not (hubless or bore_radius + thin <= self.hub_radius) or not self.hub_radius <= self.rim_radius - thin:
             raise GeometryError(
                 "body.hub_radius", f"{self.hub_radius * 1e3:.6g} mm",
-                f"must lie between the bore, {bore_radius * 1e3:.6g} mm, and the inside of the rim, "
-                f"{self.rim_radius * 1e3:.6g} mm, {thin * 1e3:.6g} mm off both ({_THINNEST:g} modules)",
+                f"must be between the bore, {bore_radius * 1e3:.6g} mm, and the inside of the rim, "
+                f"{self.rim_radius * 1e3:.6g} mm, at least {thin * 1e3:.6g} mm from both ({_THINNEST:g} modules)",
             )  # fmt: skip
         self._check_beside(width)
         if self.holes is not None:
@@ -257,8 +260,8 @@ class GearBody:
         for room, hub in ((low + half, start - self.hub[0]), (half - high, self.hub[1] - end)) if self.lean else ():
             if hub > _NEAR * width and room < _LEAST_RIM * hub:
                 raise GeometryError(
-                    "body.web_offset", f"with {room * 1e3:.6g} mm of the face beside the web",
-                    f"is not computed where the hub reaches {hub * 1e3:.6g} mm beyond an inclined web: there the rim "
-                    f"must by at least {_LEAST_RIM * hub * 1e3:.6g} mm",
-                    "move the web, or let the hub begin where the web meets it (hub_width, hub_offset)",
+                    "body.web_offset", f"with {room * 1e3:.6g} mm of face width next to the web",
+                    f"is not supported if the hub extends {hub * 1e3:.6g} mm beyond an inclined web and the rim by "
+                    f"less than {_LEAST_RIM * hub * 1e3:.6g} mm",
+                    "change web_offset, or start the hub at the web (hub_width, hub_offset)",
                 )  # fmt: skip

@@ -58,7 +58,7 @@ class InvoluteHelicoid:
         """
         r = np.asarray(radius, dtype=float)
         if np.any(r < self.base_radius * (1.0 - 1e-15)):
-            raise RangeError("radius", float(r.min()), f"lies below the base circle of {self.base_radius:.9g} m")
+            raise RangeError("radius", float(r.min()), f"is below the base circle of {self.base_radius:.9g} m")
         return np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))
 
     def roll_direction(self, t: ArrayLike, z: ArrayLike) -> Array:

@@ -28,7 +28,9 @@ def span(gear: Gear, teeth: int) -> float:
         W_k sin(beta_b).
     """
     if gear.tooth.internal:
-        raise GeometryError("internal", "true", "has no room for the discs of a span", "measure between balls")
+        raise GeometryError(
+            "internal", "true", "cannot be measured over teeth (span)", "use the measurement between balls"
+        )
     if teeth < 1:
         raise GeometryError("teeth", teeth, "must be at least 1")
     lean = math.cos(gear.base_helix_angle)
@@ -38,8 +40,8 @@ def span(gear: Gear, teeth: int) -> float:
         raise GeometryError(
             "teeth",
             teeth,
-            f"puts the discs at radius {radius * 1e3:.6g} mm, outside the involute from "
-            f"{gear.form_radius * 1e3:.6g} mm to {gear.involute_tip_radius * 1e3:.6g} mm",
+            f"gives contact at radius {radius * 1e3:.6g} mm, outside the involute, {gear.form_radius * 1e3:.6g} mm "
+            f"to {gear.involute_tip_radius * 1e3:.6g} mm",
             f"measure over {span_teeth(gear)} teeth",
         )
     apart = length * math.sin(gear.base_helix_angle)
@@ -47,8 +49,8 @@ def span(gear: Gear, teeth: int) -> float:
         raise GeometryError(
             "face_width",
             f"{gear.face_width * 1e3:.6g} mm",
-            f"is too narrow for a span over {teeth} teeth, whose discs touch {apart * 1e3:.6g} mm apart along the axis",
-            "measure over fewer teeth, or over balls",
+            f"is too small for a span over {teeth} teeth (axial distance of the contact points {apart * 1e3:.6g} mm)",
+            "measure over fewer teeth or over balls",
         )
     return length
 

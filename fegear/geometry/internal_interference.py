@@ -53,7 +53,7 @@ class InternalCheck:
     def sentence(self, module: float) -> str:
         """What a designer should know of it, with the margin [m at `module`]."""
         if self.margin >= 0.0:
-            return f"{self.name}: free by {self.margin * module * 1e3:.4g} mm"
+            return f"{self.name}: clearance {self.margin * module * 1e3:.4g} mm"
         return f"{self.name}: {self.trouble}, by {-self.margin * module * 1e3:.4g} mm"
 
     def fouls(self, module: float) -> bool:
@@ -103,8 +103,13 @@ def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float)
     base1, base3 = planet.base_radius, ring.base_radius
     if not 0.0 < base3 - base1 < distance:
         raise GeometryError(
-            "centre_distance", f"{distance:.6g} modules", f"must exceed {base3 - base1:.6g} modules, and the ring's "
-            "base circle the planet's", "raise it, or check the numbers of teeth",
+            "centre_distance", f"{distance:.6g} modules", "must exceed "
+                                                          f"{base3 - base1:.6g} "
+                                                          "modules, and the "
+                                                          "base circle of "
+                                                          "the ring must "
+                                                          "exceed that of "
+                                                          "the planet", "increase it, or check the numbers of teeth",
         )  # fmt: skip
     along = math.sqrt((distance - base3 + base1) * (distance + base3 - base1))  # between the feet on the base circles
     tip1, tip3 = planet.tip_radius, ring.tip_radius
@@ -114,24 +119,26 @@ def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float)
     past_ring, past_planet = _past_fillets(planet, ring, distance)
     feed = radial_room(TipCorner(*cutter), ring.cutter.teeth, ring, ring.generating_distance)
     return (
-        InternalCheck("clearance of the planet's tip", ring.root_radius - distance - tip1,
-                      "it cuts into the ring's root circle", refused=True),
-        InternalCheck("clearance of the ring's tip", tip3 - distance - planet.root_radius,
-                      "it cuts into the planet's root circle", refused=True),
-        InternalCheck("ring tip on planet root", rho3 - along - float(planet.base_radius * planet.involute.start),
-                      "it runs into the planet's fillet, and the path of contact ends before it", refused=False),
+        InternalCheck("tip clearance of the planet", ring.root_radius - distance - tip1,
+                      "interference with the root circle of the ring", refused=True),
+        InternalCheck("tip clearance of the ring", tip3 - distance - planet.root_radius,
+                      "interference with the root circle of the planet", refused=True),
+        InternalCheck("ring tip, planet root", rho3 - along - float(planet.base_radius * planet.involute.start),
+                      "ring tip interferes with the planet fillet; path of contact shortened", refused=False),
         InternalCheck("planet tip in ring fillet", ring.form_radius - math.hypot(base3, along + rho1),
-                      "it runs into the ring's fillet, and the path of contact ends before it", refused=False),
-        InternalCheck("ring's corner past the planet's fillet", past_planet, "it cuts into the fillet", refused=True),
-        InternalCheck("planet's corner past the ring's fillet", past_ring, "it cuts into the fillet", refused=True),
-        InternalCheck("tips on leaving", passed / ring.teeth * tip3,
-                      "tips of planet and ring meet as the teeth part", refused=True),
+                      "planet tip interferes with the ring fillet; path of contact shortened", refused=False),
+        InternalCheck("ring tip corner, planet fillet", past_planet,
+            "interference with the fillet", refused=True),
+        InternalCheck("planet tip corner, ring fillet", past_ring,
+            "interference with the fillet", refused=True),
+        InternalCheck("trochoidal tip interference", passed / ring.teeth * tip3,
+                      "tips of planet and ring interfere outside the path of contact", refused=True),
         InternalCheck("radial assembly", radial_room(_tip_corner(planet), planet.teeth, ring, distance),
-                      "the planet cannot be put in across the axis at every angle; put it in along the axis",
+                      "radial assembly of the planet is not possible at every angle; assemble axially",
                       refused=False),
-        InternalCheck("feed of the cutter", feed,
-                      f"a cutter of {ring.cutter.teeth} teeth fed straight across the axis trims tips of the ring; "
-                      "take one of fewer teeth, or feed it otherwise", refused=False),
+        InternalCheck("infeed of the cutter", feed,
+                      f"radial infeed of a cutter with {ring.cutter.teeth} teeth trims the ring tips (infeed "
+                      "interference); use fewer cutter teeth or a different infeed", refused=False),
     )  # fmt: skip
 
 

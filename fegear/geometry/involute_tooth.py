@@ -153,11 +153,11 @@ class InvoluteTooth(ABC):
             raise GeometryError("teeth", z, "must be a whole number")
         if not 0.0 <= self.helix_angle <= LARGEST_HELIX_ANGLE:
             angle = f"{math.degrees(self.helix_angle):.6g} deg"
-            raise GeometryError("helix_angle", angle, "must lie between 0 and 60 deg", "the hand carries the sign")
+            raise GeometryError("helix_angle", angle, "must be between 0 and 60 deg", "the hand defines the sign")
         fewest = max(3, math.ceil(5.0 * math.cos(self.helix_angle) ** 3 - 1e-9))  # as many as five of a spur gear
         if not fewest <= z <= 1000:
             remedy = "model a rack as a gear with many teeth"
-            raise GeometryError("teeth", z, f"must lie between {fewest} and 1000", remedy)
+            raise GeometryError("teeth", z, f"must be between {fewest} and 1000", remedy)
         object.__setattr__(self, "teeth", int(z))
         for name in ("profile_shift", "thickness_allowance", "tip_rounding", "tip_chamfer"):
             if not math.isfinite(getattr(self, name)):
@@ -169,7 +169,10 @@ class InvoluteTooth(ABC):
                 raise GeometryError(name, getattr(self, name), "must not be negative")
         if self.tip_rounding > 0.0 and self.tip_chamfer > 0.0:
             raise GeometryError(
-                "tip_chamfer", self.tip_chamfer, "contradicts a tip rounding", "give either the rounding or the chamfer"
+                "tip_chamfer",
+                self.tip_chamfer,
+                "contradicts a tip rounding",
+                "specify either the rounding or the chamfer",
             )
 
     @property
@@ -181,13 +184,13 @@ class InvoluteTooth(ABC):
         if size == 0.0 or self._edge_fits(key, size):
             return
         left = self.side * (self._involute_end(key, size) - self.form_radius)
-        rule = "takes away the whole involute" if not left > 0.0 else "is wider than the tip allows"
+        rule = "removes the entire involute" if not left > 0.0 else "is too large for the tip"
         low, high = 0.0, size
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self._edge_fits(key, middle) else (low, middle)
         fits = math.floor(low * 1e4) * 1e-4
-        raise GeometryError(key, f"{size:.6g}", rule, f"choose at most {fits:.4f} modules")
+        raise GeometryError(key, f"{size:.6g}", rule, f"use at most {fits:.4f} modules")
 
     def _edge_fits(self, key: str, size: float) -> bool:
         """Whether a rounding or chamfer of this size leaves some involute and some tip land."""

@@ -65,10 +65,10 @@ class MassProperties:
         Estimated error of the integration, relative.
     """
 
-    mass: float = shown("kg", "mass, teeth integrated")
+    mass: float = shown("kg", "mass (teeth integrated)")
     inertia: float = shown("kg.m^2", "moment of inertia about the axis")
-    transverse_inertia: float = shown("kg.m^2", "moment of inertia across the axis through the centre of gravity")
-    centre_of_gravity: float = shown("mm", "centre of gravity along the axis from the middle of the face")
+    transverse_inertia: float = shown("kg.m^2", "transverse moment of inertia through the centre of gravity")
+    centre_of_gravity: float = shown("mm", "axial position of the centre of gravity from mid-face")
     error: float = 0.0
 
     @property

@@ -111,7 +111,7 @@ def tool_in_gear(tooth: InvoluteTooth, rolled: float) -> Array:
         return _cutter_in_gear(tooth, rolled)
     if isinstance(tooth, Tooth):
         return rack_in_gear(tooth, rolled)
-    raise TypeError(f"no tool is known of a {type(tooth).__name__}")
+    raise TypeError(f"no tool available for a {type(tooth).__name__}")
 
 
 def tool_in_space(tooth: InvoluteTooth, count: int) -> Array:
@@ -182,7 +182,7 @@ def relieved_outline(gear: Gear, relief: Relief) -> list[Drawn]:
     after: list[Drawn] = [] if tooth.tip_edge is None else [_turned_edge(tooth.tip_edge, angle)]
     left = tooth.tip_land.start - angle
     if left < 0.0:
-        raise InputError("relief", f"{float(relief.removal(end)) * 1e6:.6g} um at the tip", "leaves no tip")
+        raise InputError("relief", f"{float(relief.removal(end)) * 1e6:.6g} um at the tip", "removes the entire tip")
     after.append(replace(tooth.tip_land, start=left))
     return [*before, *flank, *after]
 
@@ -198,7 +198,7 @@ def _roll_at_radius(flank: RelievedFlank, radius: float) -> float:
         t0, t1 = t1, t1 - off[1] * (t1 - t0) / (off[1] - off[0])
         off = [off[1], float(np.hypot(*flank.points(t1))) - radius]
     if not (math.isfinite(t1) and abs(off[1]) < 1e-9 * radius and t1 > flank.involute.start):
-        raise InputError("relief", f"{float(flank.relief.removal(t0)) * 1e6:.6g} um", "takes the tooth away")
+        raise InputError("relief", f"{float(flank.relief.removal(t0)) * 1e6:.6g} um", "removes the entire tooth")
     return t1
 
 

@@ -59,20 +59,20 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     lean, side = math.cos(gear.base_helix_angle), gear.tooth.side
     rise = side * (0.5 * ball_diameter / lean / base - space)
     if rise <= 0.0:
-        size = "small that it falls between the base circle's points" if side > 0 else "large that it has no room"
+        size = "small that it has no contact above the base circle" if side > 0 else "large that it does not fit"
         raise _refused(gear, ball_diameter, f"is so {size}")
     angle = float(pressure_angle_of_inv(rise))
     length = base * math.tan(angle) - side * 0.5 * ball_diameter * lean
     contact = math.hypot(base, length)
     if length < 0.0 or side * contact < side * gear.form_radius:
-        raise _refused(gear, ball_diameter, "touches the flanks below the start of the involute")
+        raise _refused(gear, ball_diameter, "contacts the flanks below the root form circle")
     if side * contact > side * gear.involute_tip_radius:
-        raise _refused(gear, ball_diameter, "touches no involute: it lies on the tips")
+        raise _refused(gear, ball_diameter, "does not touch the involute: it rests on the tips")
     centre = base / math.cos(angle)
     if side * (centre - gear.root_radius) <= 0.5 * ball_diameter:
         raise _refused(gear, ball_diameter, "rests on the root circle")
     if side * (centre - gear.tip_radius) <= -0.5 * ball_diameter:
-        raise _refused(gear, ball_diameter, "stays below the tip circle, where no gauge reaches it")
+        raise _refused(gear, ball_diameter, "lies below the tip circle and cannot be measured")
     across = centre if gear.teeth % 2 == 0 else centre * math.cos(0.5 * math.pi / gear.teeth)
     return OverBalls(2.0 * across + side * ball_diameter, ball_diameter, contact)
 

@@ -84,7 +84,7 @@ class GearPair:
                 "pair",
                 f"base pitches {a.base_pitch * 1e3:.6g} mm and {b.base_pitch * 1e3:.6g} mm",
                 "must be equal for the gears to mesh",
-                "give both gears the same module and pressure angle",
+                "use the same module and pressure angle for both gears",
             )
         tight = self.tight_centre_distance
         if math.isnan(self.centre_distance):
@@ -97,41 +97,43 @@ class GearPair:
             raise GeometryError(
                 "centre_distance",
                 f"{distance * 1e3:.6g} mm",
-                f"jams the teeth: they touch on both flanks at {tight * 1e3:.6g} mm",
-                "lower the centre distance, the profile shifts or give a thickness allowance"
+                f"leaves no backlash: both flanks are in contact at {tight * 1e3:.6g} mm",
+                "reduce the centre distance or the profile shifts, or specify a thickness allowance"
                 if self.internal
-                else "raise the centre distance, lower the profile shifts or give a thickness allowance",
+                else "increase the centre distance, reduce the profile shifts or specify a thickness allowance",
             )
         if distance < self._base_radii * (1.0 - 1e-12):
             raise GeometryError(
                 "centre_distance",
                 f"{distance * 1e3:.6g} mm",
                 f"is below the difference of the base radii, {self._base_radii * 1e3:.6g} mm",
-                "raise it, for without a common tangent of the base circles there is no line of action",
+                "increase it (no line of action)",
             )
         if self.x_end <= self.x_start:
             raise GeometryError(
-                "centre_distance", f"{distance * 1e3:.6g} mm", "is so large that the flanks never meet", "lower it"
+                "centre_distance", f"{distance * 1e3:.6g} mm", "is too large: no flank contact", "reduce it"
             )
         if not self.face_width > 1e-3 * min(a.face_width, b.face_width):
             raise GeometryError(
-                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces next to each other",
-                f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
+                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "leaves no common face width",
+                f"reduce it below {0.5e3 * (a.face_width + b.face_width):.6g} mm",
             )  # fmt: skip
 
     def _check_hands(self) -> None:
         """Refuse two ring gears, and hands that do not mesh on parallel axes."""
         a, b = self.driver, self.driven
         if a.tooth.internal and b.tooth.internal:
-            raise GeometryError("internal", "true of both gears", "leaves no pair: a ring gear meshes with a pinion")
+            raise GeometryError(
+                "internal", "true of both gears", "not possible: an internal gear must mesh with an external gear"
+            )
         opposite = {a.hand, b.hand} == {"left", "right"}
         if {a.hand, b.hand} != {"spur"} and opposite == self.internal:
-            hands = "the same hand in an internal pair" if self.internal else "opposite hands"
+            hands = "equal hands in an internal pair" if self.internal else "opposite hands"
             raise GeometryError(
                 "hand",
                 f"{a.hand} driver, {b.hand} driven",
-                f"parallel axes need {hands}, or two spur gears",
-                "turn the hand of one gear",
+                f"parallel axes require {hands}, or two spur gears",
+                "change the hand of one gear",
             )
 
     def refuse_fouling(self) -> None:
@@ -146,7 +148,7 @@ class GearPair:
             if one.fouls(self.driver.module):
                 raise GeometryError(
                     "pair", one.of_pinion.name,
-                    f"fails: {one.of_pinion.trouble}, by {-one.margin * self.driver.module * 1e3:.4g} mm",
+                    f"is not possible: {one.of_pinion.trouble}, by {-one.margin * self.driver.module * 1e3:.4g} mm",
                     self.clearing or "change profile shifts, centre distance or numbers of teeth",
                 )  # fmt: skip
 
@@ -179,7 +181,7 @@ class GearPair:
                     "normal_module" if key == "module" else key,
                     f"{mine:.9g} (driver), {other:.9g} (driven)",
                     "must be equal by design",
-                    "give both gears the same normal module, pressure angle and helix angle",
+                    "use the same normal module, pressure angle and helix angle for both gears",
                 )
 
     @property
@@ -216,7 +218,7 @@ class GearPair:
             raise GeometryError(
                 "profile_shift",
                 f"sum {shifts:.6g}",
-                f"is so {'large' if self.internal else 'negative'} that the pair has no working pressure angle",
+                f"is too {'large' if self.internal else 'negative'}: no working pressure angle",
             )
         return float(pressure_angle_of_inv(value))
 
@@ -367,7 +369,7 @@ class GearPair:
         return 0.5 * (low + high) - (0.0 if member == "driver" else self.axial_offset)
 
     @property
-    @shows("", "overlap ratio, faces middle to middle")
+    @shows("", "overlap ratio, faces centred")
     def overlap_ratio(self) -> float:
         """epsilon_beta: how many pitches the helix advances over the common face; zero for spur gears."""
         return self.face_width * abs(self.driver.twist) / self.driver.angular_pitch

@@ -48,7 +48,7 @@ def refuse_shaft(length: float, diameter: float, longest: float = LONGEST_SHAFT)
     for key, value, most in (("length", length, longest), ("diameter", diameter, THICKEST_SHAFT)):
         if not 0.0 <= value <= most:
             raise GeometryError(
-                key, f"{value:.6g} m", f"is beyond the shafts of gears, up to {most:g} m",
+                key, f"{value:.6g} m", f"exceeds the plausible maximum of {most:g} m",
                 "check the unit: 40 mm are 40e-3 m in SI",
             )  # fmt: skip
 
@@ -68,6 +68,6 @@ def refuse_material(young_modulus: float, density: float) -> None:
 def _refuse(key: str, value: float, ends: tuple[float, float], unit: str, what: str, remedy: str) -> None:
     if not ends[0] <= value <= ends[1]:
         raise GeometryError(
-            key, f"{value:.6g} {unit}", f"is beyond {what}, {ends[0]:.3g} to {ends[1]:.3g} {unit}",
+            key, f"{value:.6g} {unit}", f"is outside {what}, {ends[0]:.3g} to {ends[1]:.3g} {unit}",
             f"check the unit: {remedy} in SI",
         )  # fmt: skip

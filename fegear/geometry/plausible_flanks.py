@@ -67,7 +67,7 @@ def refuse_deep_relief(gear: Gear, relief: Relief, low: float, high: float) -> N
         radius = float(gear.tooth.radius_of_roll(roll[worst])) * gear.module
         raise InputError(
             "relief", f"{removal[worst] * 1e6:.4g} um at radius {radius * 1e3:.6g} mm",
-            f"is {share[worst]:.3g} times what the tooth can take ({DEEPEST_RELIEF:g} module, to its middle at most)",
+            f"is {share[worst]:.3g} times the maximum of {DEEPEST_RELIEF:g} module (at most half the tooth thickness)",
             "check the unit: reliefs are some tens of micrometres",
         )  # fmt: skip
 
@@ -90,14 +90,14 @@ def refuse_relief_elsewhere(relief: EndRelief | Crowning | TabulatedRelief, low:
     if hasattr(relief, "amount") and 0.0 < last - first < _SHORTEST_RELIEF * room:
         raise InputError(
             "relief", f"from roll angle {math.degrees(first):.7g} to {math.degrees(last):.7g} deg",
-            f"is {(last - first) / room:.2g} of the active profile long, which cannot be ground",
-            "check the unit of its length or its start; write tip_chamfer for a broken edge",
+            f"is {(last - first) / room:.2g} of the active profile long: too short to be ground",
+            "check the unit of its length or its start; use tip_chamfer for a chamfered edge",
         )  # fmt: skip
     missed = hasattr(relief, "roll") and (first >= high or last <= low)
     if missed or (not hasattr(relief, "roll") and (first < low - room or last > high + room)):
         raise InputError(
             "relief", f"from roll angle {math.degrees(first):.5g} to {math.degrees(last):.5g} deg",
-            f"lies elsewhere than the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
+            f"lies outside the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
             "check the units of its radii, lengths and angles",
         )  # fmt: skip
 
@@ -114,8 +114,8 @@ def refuse_spacing_errors(errors: ArrayLike, module: float) -> None:
     if spread > _LARGEST_SPACING_ERROR * module:
         raise InputError(
             "spacing_errors", f"up to {spread * 1e6:.4g} um",
-            f"is {spread / module:.3g} modules, and teeth are {0.5 * math.pi:.3g} modules thick",
-            "check the unit: spacing errors are some micrometres",
+            f"is {spread / module:.3g} modules; the tooth thickness is {0.5 * math.pi:.3g} modules",
+            "check the unit: pitch deviations are some micrometres",
         )  # fmt: skip
 
 
@@ -135,8 +135,9 @@ def refuse_load(pair: GearPair, load: float) -> None:
     share, width = _load_share(pair, load), pair.face_width
     if share > _ABSURD_LOAD:
         raise InputError(
-            "load", f"{load:.6g} N on a face of {width * 1e3:.6g} mm",
-            f"is {load / width * 1e-3:.4g} N/mm, {share:.2g} times module and Young's modulus: the teeth would fold",
+            "load", f"{load:.6g} N on {width * 1e3:.6g} mm face width",
+            f"gives a line load of {load / width * 1e-3:.4g} N/mm ({share:.2g} times m E), far above the strength of "
+            "any tooth",
             "check the units of load, torque and face_width",
         )  # fmt: skip
 
@@ -158,12 +159,12 @@ def heavy_load(pair: GearPair, load: float, pressure: float = 0.0) -> str:
         return ""
     if _load_share(pair, load) > _HEAVY_LOAD:
         return (
-            f"{line_load * 1e-3:.4g} N/mm are {line_load / pair.driver.module * 1e-6:.4g} MPa of load over face width "
-            "and module, some three times that at the root: no metal carries it. Check load and face_width."
+            f"line load {line_load * 1e-3:.4g} N/mm: F/(b m) = {line_load / pair.driver.module * 1e-6:.4g} MPa, root "
+            "stress about three times that, above the strength of any metal. Check load and face_width."
         )
     if pressure > _HEAVY_PRESSURE * stiff:
         return (
-            f"under {load:.4g} N the largest Hertzian pressure is {pressure * 1e-6:.4g} MPa, under which the hardest "
-            "flanks of metal yield. Check the load, and crowning and misalignment."
+            f"maximum Hertzian pressure {pressure * 1e-6:.4g} MPa at {load:.4g} N exceeds the yield limit of the "
+            "hardest steels. Check load, crowning and misalignment."
         )
     return ""

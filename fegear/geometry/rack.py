@@ -55,7 +55,7 @@ class BasicRack:
                 raise GeometryError(f"rack.{name}", getattr(self, name), "must be finite")
         if not math.radians(5.0) <= self.pressure_angle <= math.radians(45.0):
             raise GeometryError(
-                "rack.pressure_angle", f"{math.degrees(self.pressure_angle):.6g} deg", "must lie between 5 and 45 deg"
+                "rack.pressure_angle", f"{math.degrees(self.pressure_angle):.6g} deg", "must be between 5 and 45 deg"
             )
         if not self.addendum > 0.0:
             raise GeometryError("rack.addendum", self.addendum, "must be positive (in modules)", "1.0 is usual")
@@ -70,14 +70,14 @@ class BasicRack:
                 raise GeometryError(
                     "rack.dedendum",
                     self.dedendum,
-                    "makes the rack tooth pointed before it reaches its full depth",
-                    f"choose at most {math.pi / 4 / math.tan(self.pressure_angle):.4f} modules",
+                    "gives a pointed rack tooth",
+                    f"use at most {math.pi / 4 / math.tan(self.pressure_angle):.4f} modules",
                 )
             fits = math.floor(fits * 1e6) * 1e-6  # never given as more than what is accepted
             raise GeometryError(
                 "rack.tip_radius",
                 self.tip_radius,
-                f"is wider than the rack's tip, which has room for {fits:.6f} modules (full fillet)",
+                f"exceeds the maximum of {fits:.6f} modules (full fillet)",
                 f"choose a tip radius of at most {fits:.6f} or a smaller dedendum",
             )
         if self.tip_radius > self.dedendum:
@@ -91,8 +91,8 @@ class BasicRack:
             raise GeometryError(
                 "rack.grinding_allowance",
                 self.grinding_allowance,
-                f"is more than the protuberance of {self.protuberance:.6g} modules: grinding would leave a step",
-                "give a protuberance at least as large",
+                f"exceeds the protuberance of {self.protuberance:.6g} modules (grinding step)",
+                "specify a protuberance at least as large",
             )
         if self.protuberance == 0.0:
             return
@@ -101,13 +101,13 @@ class BasicRack:
             raise GeometryError(
                 "rack.protuberance_angle",
                 f"{degrees:.6g} deg",
-                "must lie between 1 deg and 1 deg below the pressure angle",
+                "must be between 1 deg and 1 deg below the pressure angle",
                 '"10 deg" is usual',
             )
         if self.residual_undercut >= self.tip_radius:
             raise GeometryError(
-                "rack.protuberance", self.protuberance, f"leaves more than the tip radius of {self.tip_radius:.6g}",
-                "lower the protuberance or raise the tip radius",
+                "rack.protuberance", self.protuberance, f"exceeds the tip radius of {self.tip_radius:.6g}",
+                "reduce the protuberance or increase the tip radius",
             )  # fmt: skip
 
     @classmethod
@@ -115,7 +115,7 @@ class BasicRack:
         """Return the ISO 53 profile A, B, C or D (also "ISO 53 A")."""
         letter = name.upper().removeprefix("ISO").strip().removeprefix("53").strip(" .-_")
         if letter not in ISO_53:
-            raise GeometryError("rack", f'"{name}"', "is no ISO 53 profile", 'choose "A", "B", "C" or "D"')
+            raise GeometryError("rack", f'"{name}"', "is not an ISO 53 profile", 'choose "A", "B", "C" or "D"')
         return cls(*ISO_53[letter], pressure_angle)
 
     @classmethod

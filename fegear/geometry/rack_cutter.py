@@ -149,14 +149,14 @@ class RackFlank:
         half = 0.5 * self.gear.face_width
         if abs(self.crown) * half**2 > 0.1 * self.gear.angular_pitch:
             raise GeometryError(
-                "crown", f"{self.crown:.6g} rad/m^2", "takes more than a tenth of the pitch off at the face ends",
-                "lower it",
+                "crown", f"{self.crown:.6g} rad/m^2", "removes more than a tenth of the pitch at the face ends",
+                "reduce it",
             )  # fmt: skip
         s = np.linspace(self.s_form, self.s_tip, 65)
         if not (self.s_tip > self.s_form and np.all(np.diff(np.abs(self.profile(s)[0])) > 0.0)):
             raise GeometryError(
-                "parabola", f"{self.parabola:.6g} 1/m", "leaves no regular flank between form circle and tip",
-                "lower it",
+                "parabola", f"{self.parabola:.6g} 1/m", "gives no regular flank between form circle and tip",
+                "reduce it",
             )  # fmt: skip
 
     def _cutter(self, s: Array) -> tuple[Complex, Complex, Complex]:

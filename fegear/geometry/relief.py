@@ -49,7 +49,7 @@ class EndRelief:
     for linear, 2 for parabolic relief.
     """
 
-    amount: float = shown("um", "removal where the relief ends")
+    amount: float = shown("um", "amount at the end of the relief")
     start: float = shown("deg", "roll angle at which the relief starts", name="start_roll_angle")
     end: float = shown("deg", "roll angle at which the relief ends", name="end_roll_angle")
     power: float = 1.0
@@ -59,7 +59,7 @@ class EndRelief:
         if not (math.isfinite(self.amount) and math.isfinite(self.start) and math.isfinite(self.end)):
             raise InputError("relief", f"amount {self.amount}, from {self.start} to {self.end}", "must be finite")
         if abs(self.end - self.start) < 1e-12:
-            raise InputError("relief.start", self.start, "coincides with the end of the relief", "give it a length")
+            raise InputError("relief.start", self.start, "coincides with the end of the relief", "specify a length")
         if not self.power >= 1.0:
             raise InputError("relief.shape", self.power, "must be a power of at least 1", "1 is linear, 2 parabolic")
 
@@ -127,7 +127,7 @@ class TabulatedRelief:
         if not (np.isfinite(roll).all() and np.isfinite(values).all()):
             raise InputError("relief.table", "an entry", "must be finite")
         if (np.diff(roll) <= 0.0).any():
-            raise InputError("relief.table", "roll angles", "must ascend without repetition")
+            raise InputError("relief.table", "roll angles", "must be strictly increasing")
         if self.interpolation not in ("linear", "cubic"):
             raise InputError("relief.interpolation", f'"{self.interpolation}"', 'must be "linear" or "cubic"')
         roll.setflags(write=False)
@@ -214,7 +214,7 @@ def tip_relief(
     end = _roll(gear, gear.involute_tip_radius if at_radius is None else at_radius, "tip.at_radius")
     start = _start(gear, end, -1.0, start_roll, start_radius, length, "tip")
     if not start < end:
-        raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must lie below the tip's {end:.6g} rad")
+        raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must be below the tip, {end:.6g} rad")
     return EndRelief(amount, start, end, _power(shape))
 
 
@@ -232,7 +232,7 @@ def root_relief(
     end = _roll(gear, end_radius, "root.end_radius")
     start = _start(gear, end, 1.0, start_roll, start_radius, length, "root")
     if not start > end:
-        raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must lie above its end at {end:.6g} rad")
+        raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must be above its end at {end:.6g} rad")
     return EndRelief(amount, start, end, _power(shape))
 
 
@@ -296,13 +296,13 @@ def normalised_tip_relief(
         L_n, positive.
     """
     if not normalised_length > 0.0:
-        raise InputError("relief.length", normalised_length, "must be positive", "leave the relief out instead")
+        raise InputError("relief.length", normalised_length, "must be positive", "remove the relief instead")
     if not 1.0 <= pair.contact_ratio < 2.0:
         raise InputError(
             "relief.length",
             normalised_length,
-            f"is in lengths from tip to HPSTC, which contact ratio {pair.contact_ratio:.4f} does not have",
-            "give the start as a roll angle or radius",
+            f"refers to the length from tip to HPSTC, which does not exist for contact ratio {pair.contact_ratio:.4f}",
+            "specify the start as a roll angle or radius",
         )
     gear = pair.gear(member)
     highest = pair.x_hpstc if member == "driver" else pair.x_lpstc

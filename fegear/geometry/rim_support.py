@@ -50,15 +50,15 @@ class RimSupport:
             return
         if not _FEWEST_PINS <= self.pins <= teeth:
             raise GeometryError(
-                "rim_support.pins", self.pins, f"must lie between {_FEWEST_PINS} and the number of teeth, {teeth}",
-                "a rim that is held all round needs no rim_support",
+                "rim_support.pins", self.pins, f"must be between {_FEWEST_PINS} and the number of teeth, {teeth}",
+                "remove rim_support for a rim fixed over the full circumference",
             )  # fmt: skip
         least, room = _NARROWEST * module, 2.0 * math.pi * outer_radius / self.pins
         if not least <= self.width <= room:
             raise GeometryError(
                 "rim_support.width", f"{self.width * 1e3:.6g} mm",
-                f"must lie between {least * 1e3:.6g} mm ({_NARROWEST:g} modules) and {room * 1e3:.6g} mm, the way from "
-                "pin to pin on the outer circle", "change the width or the number of pins",
+                f"must be between {least * 1e3:.6g} mm ({_NARROWEST:g} modules) and {room * 1e3:.6g} mm (pin spacing "
+                "on the outer circle)", "change the width or the number of pins",
             )  # fmt: skip
         if not math.isfinite(self.angle):
             raise GeometryError("rim_support.angle", self.angle, "must be finite")

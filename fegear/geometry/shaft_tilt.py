@@ -43,7 +43,7 @@ class ShaftTilt:
             value = getattr(self, key)
             if not abs(value) <= LARGEST_TILT:
                 raise RangeError(
-                    key, f"{math.degrees(value):.4g} deg", "is no small error",
+                    key, f"{math.degrees(value):.4g} deg", "is not small",
                     f"keep it within {math.degrees(LARGEST_TILT):g} deg",
                 )  # fmt: skip
 

@@ -37,11 +37,11 @@ class Interference:
         """What a designer should know, in one sentence; empty when all is well."""
         tip = f"the tip of the {self.tip_of} gear"
         if self.root_clearance <= 0.0:
-            return f"{tip} cuts {-self.root_clearance * 1e3:.4g} mm into the mating root circle"
+            return f"{tip} interferes with the mating root circle by {-self.root_clearance * 1e3:.4g} mm"
         if self.fillet_gap < 0.0:
-            return f"{tip} cuts {-self.fillet_gap * 1e3:.4g} mm into the mating fillet"
+            return f"{tip} interferes with the mating fillet by {-self.fillet_gap * 1e3:.4g} mm"
         if self.below_form_circle:
-            return f"{tip} reaches below the start of the mating involute; the path of contact ends there"
+            return f"{tip} contacts the mating flank below the root form circle; the path of contact is shortened"
         return ""
 
 

@@ -78,25 +78,25 @@ class Tooth(InvoluteTooth):
     def _check_root(self) -> None:
         if self.base_half_angle <= 0.0:
             raise GeometryError(
-                "profile_shift", self.profile_shift, "leaves a tooth of no thickness", "raise the profile shift"
+                "profile_shift", self.profile_shift, "gives zero tooth thickness", "increase the profile shift"
             )
         if self.root_radius <= 0.0:
-            raise GeometryError("rack.dedendum", self.rack.dedendum, "cuts through the gear's centre")
+            raise GeometryError("rack.dedendum", self.rack.dedendum, "extends to the centre of the gear")
         if self.root_land_half_angle > math.pi / self.teeth or self.root_land_half_angle < -1e-12:
-            raise GeometryError("rack.tip_radius", self.rack.tip_radius, "leaves a negative root land")
+            raise GeometryError("rack.tip_radius", self.rack.tip_radius, "gives a negative root land")
         if max(self.rack.tip_radius, abs(self.rack.tip_centre_depth - self.profile_shift)) < _SMALLEST_FILLET:
             raise GeometryError(
                 "rack.tip_radius",
                 self.rack.tip_radius,
-                "is a sharp corner that rolls on the pitch line itself: it generates a notch, no fillet",
-                "give the rack a tip radius, or a profile shift unlike its dedendum",
+                "is a sharp corner on the pitch line and would generate a notch instead of a fillet",
+                "specify a tip radius of the rack, or a profile shift different from its dedendum",
             )
         fillet = self._full_trochoid()
         if np.min(fillet.speed(np.linspace(fillet.start, fillet.end, 65))) < 0.0:
             raise GeometryError(
                 "profile_shift",
                 self.profile_shift,
-                "is so large that the rack's tip rounding loops over the pitch line",
+                "is too large: the rack tip rounding crosses the pitch line",
                 f"choose a profile shift below {self.rack.tip_centre_depth:.4f} or a larger rack tip radius",
             )
 
@@ -106,22 +106,22 @@ class Tooth(InvoluteTooth):
                 "tip_radius",
                 f"{self.tip_radius:.6g}",
                 f"must exceed the base radius of {self.base_radius:.6g} modules",
-                "raise the tip diameter",
+                "increase the tip diameter",
             )
         pointed = self.base_radius * math.hypot(1.0, float(roll_of_polar_angle(self.base_half_angle)))
         if self.tip_radius >= pointed:
             raise GeometryError(
                 "tip_radius",
                 f"{self.tip_radius:.6g}",
-                f"is beyond the point where the flanks meet, {pointed:.6g} modules: the tooth is pointed",
+                f"exceeds the intersection of the flanks at {pointed:.6g} modules (pointed tooth)",
                 f"choose a tip diameter below {2 * pointed * (1.0 - 1e-6):.6g} modules or a smaller profile shift",
             )
         if self.tip_radius <= self.form_radius:
             raise GeometryError(
                 "tip_radius",
                 f"{self.tip_radius:.6g}",
-                f"leaves no involute: it starts at {self.form_radius:.6g} modules",
-                "raise the tip diameter or the profile shift",
+                f"gives no involute (starts at {self.form_radius:.6g} modules)",
+                "increase the tip diameter or the profile shift",
             )
         self._check_tip_edge()
         neck = float(self.fillet.points(np.linspace(self.fillet.start, self.fillet.end, 257))[0].min())
@@ -129,9 +129,9 @@ class Tooth(InvoluteTooth):
             raise GeometryError(
                 "profile_shift",
                 self.profile_shift,
-                "lets the rack undercut the tooth from both sides until "
-                + ("it is cut off" if neck <= 0.0 else f"a neck of {2.0 * neck:.2g} modules is left"),
-                "raise the profile shift or the number of teeth",
+                "causes undercut from both sides until "
+                + ("the tooth is cut off" if neck <= 0.0 else f"a neck of {2.0 * neck:.2g} modules remains"),
+                "increase the profile shift or the number of teeth",
             )
 
     # ---- circles and angles -------------------------------------------------------------------------------------

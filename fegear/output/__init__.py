@@ -1,1 +1,1 @@
-"""What a run writes: tables, summary, dataset, pictures, report, exports. Nothing numerical imports this."""
+"""What a run writes: tables, summary, dataset, figures, report, exports. Nothing numerical imports this."""

@@ -21,7 +21,7 @@ def comparison_page(comparison: Comparison) -> Page:
     first, second = comparison.first, comparison.second
     tables = tuple(joined.table for joined in comparison.different_tables)
     inputs = [(one.key, *(_shown(text) for text in (one.first, one.second))) for one in comparison.inputs or ()]
-    none = "The inputs of a side are not known: its folder was not written by this version."
+    none = "Inputs not available for both runs (written by an older version)."
     none = none if comparison.inputs is None else "None."
     values = [
         (
@@ -32,9 +32,9 @@ def comparison_page(comparison: Comparison) -> Page:
         )
         for one in comparison.different_values
     ]
-    alone = [f"Only {label} has the table {name}." for name, label in comparison.alone]
+    alone = [f"Table {name} only in {label}." for name, label in comparison.alone]
     alone += [
-        f"Only {label} has the column {name} of table {joined.table.name}."
+        f"Column {name} of table {joined.table.name} only in {label}."
         for joined in comparison.different_tables for name, label in joined.alone
     ]  # fmt: skip
     return Page(
@@ -45,10 +45,10 @@ def comparison_page(comparison: Comparison) -> Page:
                 Grid(("Key", "A", "B"), inputs) if inputs else Paragraph(none),
             )),
             Section("Values that differ", (
-                Grid(("Value", "A", "B", "B over A", "Within the estimated errors"), values) if values
+                Grid(("Value", "A", "B", "Ratio B / A", "Within the estimated errors"), values) if values
                 else Paragraph(f"None of {len(comparison.values)}."),
             )),
-            Section("Curves over each other", tuple(map(Plot, comparison_figures(comparison)))),
+            Section("Curves overlaid", tuple(map(Plot, comparison_figures(comparison)))),
             Section("Tables that differ", (*((Notes(alone),) if alone else ()), *map(DataTable, tables))),
         ),
         tables=tables,

@@ -127,8 +127,8 @@ def cost_page(results: CostResults, figures: Sequence[Figure]) -> Page:
     scene = results.asked.scene
     total = f"{results.finished} of {results.planned} configurations in {results.seconds:.0f} s"
     lead: list[Block] = [Paragraph(
-        "Every configuration computes the same quantities in another way. Errors are relative, the largest over "
-        "the load positions, against a converged solution; seconds are those of one core and wander on a busy machine."
+        "All configurations compute the same quantities with different settings. Maximum relative errors over the "
+        "load positions, relative to a converged solution; CPU time on one core (varies on a busy machine)."
     )]  # fmt: skip
     if results.remarks:
         lead.insert(0, Notes(results.remarks))
@@ -138,8 +138,8 @@ def cost_page(results: CostResults, figures: Sequence[Figure]) -> Page:
     sections += [Section(f"Cost of {q.name}", (Plot(by_key[f"cost_{q.name}"]),)) for q in results.quantities]
     knobs_drawn = (Plot(by_key["cost_knobs"]),) if "cost_knobs" in by_key else ()
     if len(orders.columns[0]):
-        sections.append(Section("What each setting does", (*knobs_drawn, DataTable(orders), DataTable(knobs))))
+        sections.append(Section("Influence of each setting", (*knobs_drawn, DataTable(orders), DataTable(knobs))))
     reference = Facts({"reference": results.reference.label, **settings})
-    sections.append(Section("Every configuration", (DataTable(cost), reference)))
-    title = f"What accuracy costs: {scene.case.title or scene.name}"
+    sections.append(Section("All configurations", (DataTable(cost), reference)))
+    title = f"Accuracy versus computing time: {scene.case.title or scene.name}"
     return Page(title, total, tuple(sections), (cost, orders, knobs, cheapest), name=f"{scene.name}-cost")

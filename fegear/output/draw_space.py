@@ -37,7 +37,7 @@ def offscreen_pyvista() -> Any:
     if sys.platform.startswith("linux"):
         if ctypes.util.find_library("EGL") is None:
             raise MissingLibraryError(
-                "pictures in space cannot be drawn without a screen; on Debian or Ubuntu run: apt-get install libegl1"
+                "3D figures cannot be drawn without a display; on Debian or Ubuntu run: apt-get install libegl1"
             )
         # Else VTK first asks for an X server and warns that there is none.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")

@@ -140,5 +140,5 @@ def written_dxf(request: Request) -> Written:
     flanks = AS_GENERATED if found.relief is None else "with the relief of the case, both flanks"
     flanks += f", as in pair {found.pair}" if found.pair else ""
     spur = name in request.scene.spur_gears
-    remarks = () if spur else (f"Gear {name}, DXF: the section across the axis.",)
+    remarks = () if spur else (f"Gear {name}, DXF: transverse section.",)
     return write_dxf(request.gear, request.folder, file_name(name), found.relief, flanks), remarks

@@ -52,16 +52,16 @@ def _values(found: Switched) -> Block:
         change = f"{100.0 * pair.share:+.3g} %" if pair.resolved else f"not resolved ({stated_errors(pair)})"
         rows.append((a.name, a.value, b.value, pretty_unit(a.unit), change))
     if not rows:
-        return Paragraph("It changes no value.")
+        return Paragraph("No value changes.")
     grid = Grid(("Value", "Without", "With", "Unit", "Change"), rows)
-    return Folded(f"The {len(rows)} values that it changes", (grid,))
+    return Folded(f"The {len(rows)} values it changes", (grid,))
 
 
 def _kernels(found: Switched) -> Block:
     names = sorted({*found.without.kernels, *found.with_it.kernels})
     calls = {name: (found.without.kernels.get(name, 0), found.with_it.kernels.get(name, 0)) for name in names}
     changed = {name: f"{a} without, {b} with" for name, (a, b) in calls.items() if a != b}
-    facts = Facts(changed or {"every kernel": "called as often without as with"})
+    facts = Facts(changed or {"all kernels": "same number of calls with and without"})
     return Folded("Calls of the kernels", (facts,))
 
 
@@ -100,7 +100,7 @@ def effects_page(
         sections.append(Section(f"{found.effect} ({state} in the case)", tuple(blocks)))
     stuck = [(one.effect, one.reason) for one in fixed]
     rows = [(found.effect, "on" if found.named else "off", *_largest(found)) for found in switched]
-    summary = Grid(("Effect", "In the case", "Value that it changes most", "Change", "Processor seconds"), rows)
+    summary = Grid(("Effect", "In the case", "Largest change", "Change", "CPU time [s]"), rows)
     return Page(
         title=f"Effects: {scene.case.title or scene.name}",
         note=f"Case {scene.name} with each of {len(switched)} effects switched, one at a time.",
@@ -121,7 +121,7 @@ def _largest(found: Switched) -> tuple[str, str, str]:
     cost = f"{found.without.seconds:.2f} without, {found.with_it.seconds:.2f} with"
     most = found.largest_change()
     if most is None:
-        return "none by more than its error" if any(pair.change for pair in found.changes()) else "none", "", cost
+        return "none above the estimated error" if any(pair.change for pair in found.changes()) else "none", "", cost
     a, b = most.both
     unit = f" {pretty_unit(a.unit)}".rstrip()
     return most.name, f"{plain_number(a.value, 5)} to {plain_number(b.value, 5)}{unit}", cost
@@ -133,18 +133,18 @@ Curve = tuple[Table, Table, str, str]
 #: Name, unit and meaning of the columns.
 _HEADS = (
     ("effect", "", "which effect"),
-    ("in_the_case", "", "whether the case has it on"),
+    ("in_the_case", "", "1: effect is on in the case"),
     ("result", "", "name of the value"),
-    ("unit", "", "of the value"),
+    ("unit", "", "unit of the value"),
     ("without", "", "value without the effect"),
     ("with", "", "value with the effect"),
-    ("change", "", "with less without"),
-    ("share", "", "change over the larger of the two"),
+    ("change", "", "change (with - without)"),
+    ("share", "", "change relative to the larger value"),
     ("error_without", "", "estimated error of the value without the effect"),
     ("error_with", "", "estimated error of the value with the effect"),
-    ("resolved", "", "whether the change exceeds the sum of both errors, or 1e-9 of a value without one"),
-    ("processor_without", "s", "processor seconds without the effect"),
-    ("processor_with", "s", "processor seconds with the effect"),
+    ("resolved", "", "1: change exceeds the sum of both estimated errors (or 1e-9 of a value without one)"),
+    ("processor_without", "s", "CPU time without the effect"),
+    ("processor_with", "s", "CPU time with the effect"),
     ("kernels", "", "calls of the kernels without -> with"),
 )
 
@@ -164,7 +164,7 @@ def effects_table(switched: Sequence[Switched]) -> Table:
             )  # fmt: skip
     columns = list(zip(*rows, strict=True)) if rows else [()] * len(_HEADS)
     made = [Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(_HEADS, columns, strict=True)]
-    return Table("effects", tuple(made), "What each effect changes and what it costs")
+    return Table("effects", tuple(made), "Influence and cost of each effect")
 
 
 def kernel_changes(found: Switched) -> str:
@@ -231,17 +231,17 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
 
 def sentence(found: Switched) -> str:
     """The value that an effect changes most, of those by more than their errors, and what that costs."""
-    cost = f"processor time {found.without.seconds:.2f} s without, {found.with_it.seconds:.2f} s with"
+    cost = f"CPU time {found.without.seconds:.2f} s without, {found.with_it.seconds:.2f} s with"
     most = found.largest_change()
     if most is not None:
         a, b = most.both
-        return f"{found.effect} changes {a.name} most: {a.value:.5g} -> {b.value:.5g} {a.unit}; {cost}.".replace(
+        return f"{found.effect}: largest change in {a.name}: {a.value:.5g} -> {b.value:.5g} {a.unit}; {cost}.".replace(
             " ;", ";"
         )
     unresolved = [pair for pair in found.changes() if pair.change != 0.0]
     if not unresolved:
-        return f"{found.effect} changes no value; {cost}."
+        return f"{found.effect}: no value changes; {cost}."
     most = max(unresolved, key=lambda pair: abs(pair.share))
     change = f"{most.change:+.3g} {most.both[0].unit}".rstrip()
     not_resolved = f"{most.name}: {change}, not resolved ({stated_errors(most)})"
-    return f"{found.effect} changes no value by more than its error; {not_resolved}; {cost}."
+    return f"{found.effect}: no change above the estimated error; {not_resolved}; {cost}."

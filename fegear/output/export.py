@@ -53,9 +53,11 @@ def wanted_formats(text: str) -> Mapping[str, Format]:
     known = {**FORMATS, **others.found}
     for name in sorted(wanted.difference(known)):
         others.refuse_broken(name)
-        raise InputError("--format", f'"{name}"', "is no format that fegear writes", nearest(name, known))
+        raise InputError("--format", f'"{name}"', "is not a supported format", nearest(name, known))
     if not wanted:
-        raise InputError("--format", f'"{text}"', "names no format", f"choose from {', '.join(FORMATS)}")
+        raise InputError(
+            "--format", f'"{text}"', "must contain at least one format", f"choose from {', '.join(FORMATS)}"
+        )
     return {name: row for name, row in known.items() if name in wanted}
 
 
@@ -129,8 +131,8 @@ def export_gears(
         raise InputError("--format", f'"{formats}"', rule, "ask for another format")
     if not written:
         raise InputError(
-            f"gear.{chosen[0]}.relief", "(not given)", "leaves no relief to write: no gear has one of known amount",
-            'give one: relief = { tip = { amount = "10 um", length = "2 mm" } }',
+            f"gear.{chosen[0]}.relief", "(not given)", "has nothing to write: no gear has a relief of known amount",
+            'specify one: relief = { tip = { amount = "10 um", length = "2 mm" } }',
         )  # fmt: skip
     return Exported(tuple(path.name for path in written), tuple(remarks))
 
@@ -139,7 +141,7 @@ def _chosen(scene: Scene, names: Sequence[str]) -> list[str]:
     """The gears that are asked for."""
     every = list(scene.gears)
     if not every:
-        raise InputError("gear", "(not given)", "is missing: the case describes no gear to export", "add [gear.NAME]")
+        raise InputError("gear", "(not given)", "is required for export", "add [gear.NAME]")
     for name in names:
         if name not in every:
             raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, every))

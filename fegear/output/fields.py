@@ -103,7 +103,7 @@ def in_space(figure: Figure, gear: Gear) -> Figure | None:
     return replace(
         figure,
         key=f"{figure.key}_in_space",
-        title=f"{figure.title} in space",
+        title=f"{figure.title}, 3D",
         panels=(Panel(Axis(), Axis(), (skin,), height=1.5, camera=camera),),
         views=(),
         columns=1,

@@ -58,20 +58,32 @@ _NEVER_USED_UP = 1.0
 #: Name, unit, causality and variability, description; in the order of the value references of `fmu_mesh.c`.
 _VARIABLES = (
     ("time", "s", "independent", "continuous", "Time"),
-    ("driver_angle", "rad", "input", "continuous", "Angle of the driver, positive as it turns"),
-    ("driven_angle", "rad", "input", "continuous", "Angle of the driven gear, positive as it turns"),
+    ("driver_angle", "rad", "input", "continuous", "Angle of the driver, positive in its direction of rotation"),
+    ("driven_angle", "rad", "input", "continuous", "Angle of the driven gear, positive in its direction of rotation"),
     ("driver_speed", "rad/s", "input", "continuous", "Speed of the driver"),
     ("driven_speed", "rad/s", "input", "continuous", "Speed of the driven gear"),
-    ("load", "N", "input", "continuous", "Mean mesh force about which the teeth are linear; not the momentary one"),
+    ("load", "N", "input", "continuous", "Mean mesh force used for linearisation (not the instantaneous force)"),
     ("backlash", "m", "parameter", "tunable", "Along the line of action"),
-    ("damping", "N.s/m", "parameter", "tunable", "Along the line of action, while teeth touch"),
+    ("damping", "N.s/m", "parameter", "tunable", "Along the line of action, with teeth in contact"),
     ("phase", "", "parameter", "tunable", "Base pitches from the pitch point at driver_angle = 0"),
-    ("mesh_force", "N", "output", "continuous", "Along the line of action, negative on the back flanks"),
-    ("driver_torque", "N.m", "output", "continuous", "Of the mesh on the driver, positive as it turns"),
-    ("driven_torque", "N.m", "output", "continuous", "Of the mesh on the driven gear, positive as it turns"),
+    ("mesh_force", "N", "output", "continuous", "Along the line of action, negative for back-side contact"),
+    (
+        "driver_torque",
+        "N.m",
+        "output",
+        "continuous",
+        "Mesh torque on the driver, positive in its direction of rotation",
+    ),
+    (
+        "driven_torque",
+        "N.m",
+        "output",
+        "continuous",
+        "Mesh torque on the driven gear, positive in its direction of rotation",
+    ),
     ("approach", "m", "output", "continuous", "Dynamic transmission error along the line of action"),
-    ("mesh_stiffness", "N/m", "output", "continuous", "Of the teeth that touch"),
-    ("static_transmission_error", "m", "output", "continuous", "Approach that carries the load at rest"),
+    ("mesh_stiffness", "N/m", "output", "continuous", "Mesh stiffness of the teeth in contact"),
+    ("static_transmission_error", "m", "output", "continuous", "Static deflection under load"),
 )
 _BASE_UNITS = {
     "s": 's="1"', "rad": 'rad="1"', "rad/s": 'rad="1" s="-1"', "N": 'kg="1" m="1" s="-2"', "m": 'm="1"',
@@ -160,8 +172,8 @@ def c_compiler() -> str:
         if one and (found := shutil.which(one)):
             return found
     raise InputError(
-        "--format", "fmu", "needs a C compiler, and neither cc, gcc nor clang is found",
-        "install one (Debian: apt-get install gcc), or name it in the environment variable CC",
+        "--format", "fmu", "requires a C compiler; cc, gcc and clang not found",
+        "install one (Debian: apt-get install gcc), or set the environment variable CC",
     )  # fmt: skip
 
 
@@ -182,7 +194,9 @@ def _library(parts: dict[str, bytes], ending: str) -> bytes:
         made = subprocess.run(words, cwd=scratch, capture_output=True, text=True, check=False)  # noqa: S603  (the user's)
         if made.returncode:
             last = (made.stderr.strip().splitlines() or ["no message"])[-1]
-            raise InputError("--format", "fmu", f"could not be compiled by {compiler}: {last}", "name another in CC")
+            raise InputError(
+                "--format", "fmu", f"could not be compiled by {compiler}: {last}", "set another compiler in CC"
+            )
         return (Path(scratch) / f"mesh{ending}").read_bytes()
 
 
@@ -302,7 +316,7 @@ def mesh_models(scene: Scene) -> list[tuple[MeshModel, str]]:
         If the case has no pair, or one cannot be loaded.
     """
     if not scene.pairs:
-        raise InputError("pair", "(not given)", "is missing: an FMU is of two gears in mesh", "add [pair.NAME]")
+        raise InputError("pair", "(not given)", "is required for an FMU", "add [pair.NAME]")
     tasks = [task for name in loaded_pairs(scene) for task in needs_teeth(scene, name)]
     alone = replace(scene, case=scene.case.model_copy(update={"results": []}), estimates=False)
     found = run_plan(alone, make_plan(alone, STAGES, tasks)).outcomes
@@ -316,12 +330,12 @@ def _model(scene: Scene, name: str, teeth: LoadedTeeth) -> tuple[MeshModel, str]
         number = list(part.mesh).index(of[0])
         forward = a_drives(build_train(train_inputs(scene)))[number]
     found = tuple(_springs(teeth, load, forward=forward) for load in teeth.loads)
-    about = "no damping is given, so it starts with none; set its parameter damping"
+    about = "no damping specified; set its parameter damping"
     if part and of:
         stiffness = 1.0 / found[teeth.loads.index(teeth.nominal)].mean_compliance()
         mesh = build_train(train_inputs(scene), {of[0]: stiffness}).meshes[number]
         found = tuple(replace(one, phase=part.mesh[of[0]].phase) for one in found)
-        about = f"damping and phase are those of train.mesh.{of[0]}"
+        about = f"damping and phase from train.mesh.{of[0]}"
     pair = teeth.pair if forward else teeth.pair.reversed()
     backlash = min(mesh.backlash, _NEVER_USED_UP) if mesh else pair.free_backlash
     model = MeshModel(
@@ -329,9 +343,8 @@ def _model(scene: Scene, name: str, teeth: LoadedTeeth) -> tuple[MeshModel, str]
         mesh is not None and mesh.damping_law == "momentary",
     )  # fmt: skip
     return model, (
-        f"Pair {name}, FMU: {about}; tooth friction is neglected, and teeth are linear about the "
-        f"{len(teeth.loads)} load{'s' if len(teeth.loads) > 1 else ''} of the pair, between which forces are "
-        "interpolated."
+        f"Pair {name}, FMU: {about}; tooth friction neglected; forces linearised at the {len(teeth.loads)} "
+        f"load{'s' if len(teeth.loads) > 1 else ''} of the pair and interpolated between them."
     )
 
 

@@ -80,7 +80,7 @@ def whole_or_nothing(target: Path, key: str = "--out", say: Callable[[str], None
         with undisturbed(at_the_end=True), _refusals(key, target):
             kept = exchange(work, scratch, target, all_of_it=(scratch / SUMMARY).is_file())
         for old, new in kept.items():
-            say(f"{target / old} was not what a run of fegear had written; it is kept as {new}.")
+            say(f"{target / old} was not written by fegear; kept as {new}.")
 
 
 @contextlib.contextmanager
@@ -91,17 +91,17 @@ def _refusals(key: str, target: Path, kinds: frozenset[int] = frozenset()) -> It
     except HeldError as holder:
         raise InputError(
             key, shown(str(target), PATH), f"is being written by another run ({holder})",
-            "wait until it has ended, or choose another folder with --out",
+            "wait until it has finished, or choose another folder with --out",
         ) from None  # fmt: skip
     except OSError as error:
         if kinds and error.errno not in kinds:
             raise
         reason = error.strerror or str(error)
-        remedy = "make room, or " if error.errno in NO_ROOM else ""
+        remedy = "free disk space, or " if error.errno in NO_ROOM else ""
         raise InputError(
             key,
             shown(str(target), PATH),
-            f"cannot be written to ({reason})",
+            f"is not writable ({reason})",
             f"{remedy}choose another folder with --out",
         ) from None
 

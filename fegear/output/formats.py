@@ -133,7 +133,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         seconds="fegear.output.step:seconds_of",
     ),
     "relief": Format(
-        "flanks", "relief to grind, as tables",
+        "flanks", "modifications for grinding, as tables",
         "fegear.output.grinding_tables:written_relief", "*_relief.csv, *_k_chart.csv",
         "for the grinder: material to remove over diameter, roll angle and roll length, from the start to the end of "
         "the involute, finely and as the points of a profile chart (K-chart)",
@@ -152,14 +152,14 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         "1 N/mm on tooth 0",
     ),
     "solid-inp": Format(
-        "solid mesh", "mesh of the gear with its width, Abaqus and CalculiX",
+        "solid mesh", "3D mesh of the gear, Abaqus and CalculiX",
         "fegear.output.solid_mesh_files:written_inp",
         "*_solid.inp",
         "CalculiX, Abaqus: the 3D gear: hexahedra and wedges of second order (C3D20, C3D15), bore fixed, 1 kN on a "
         "pressed band in the middle of the face of tooth 0",
     ),
     "solid-vtu": Format(
-        "solid mesh", "mesh of the gear with its width, ParaView", "fegear.output.solid_mesh_files:written_vtu",
+        "solid mesh", "3D mesh of the gear, ParaView", "fegear.output.solid_mesh_files:written_vtu",
         "*_solid.vtu", "ParaView: the same mesh and its nodal forces",
     ),
     "fmu": Format(

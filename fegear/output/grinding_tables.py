@@ -32,7 +32,7 @@ def written_relief(request: Request) -> Written:
     found = described_relief(scene, name).relief
     if found is None:
         given = scene.case.gear[name].relief is not None
-        return (), () if given else (f"Gear {name}, RELIEF: the case gives it none, so there is no table.",)
+        return (), () if given else (f"Gear {name}, RELIEF: no relief specified, no table written.",)
     return [write_table(request.folder, table) for table in relief_tables_of(scene, name, found)], ()
 
 
@@ -54,7 +54,9 @@ def relief_tables_of(scene: Scene, name: str, relief: Relief) -> tuple[Table, Ta
     kinks = [kink for kink in relief.kinks if low < kink < high]
     fine = np.unique(np.concatenate([np.linspace(low, high, _PLACES), kinks]))
     stem, base = file_name(name), gear.base_radius
-    point = Column("point", np.array(words), "", "end of the involute or of an active profile; empty: the relief bends")
+    point = Column(
+        "point", np.array(words), "", "end of the involute or of an active profile; empty: kink of the relief"
+    )
     return (
         Table(f"{stem}_relief", _columns(base, fine, relief), f"Relief of gear {name}"),
         Table(f"{stem}_k_chart", (point, *_columns(base, chart, relief)), f"Profile chart of gear {name}"),
@@ -63,8 +65,8 @@ def relief_tables_of(scene: Scene, name: str, relief: Relief) -> tuple[Table, Ta
 
 def _columns(base: float, roll: Array, relief: Relief) -> tuple[Column, ...]:
     return (
-        Column("diameter", 2.0 * base * np.hypot(1.0, roll), "mm", "of the flank point"),
-        Column("roll_angle", roll, "deg", "of the gear"),
-        Column("roll_length", base * roll, "mm", "along the line of action, from the base circle"),
-        Column("removal", relief.removal(roll), "um", "along the normal of the involute, from the involute"),
+        Column("diameter", 2.0 * base * np.hypot(1.0, roll), "mm", "radius of the flank point"),
+        Column("roll_angle", roll, "deg", "roll angle of the gear"),
+        Column("roll_length", base * roll, "mm", "roll length from the base circle, along the line of action"),
+        Column("removal", relief.removal(roll), "um", "profile deviation normal to the involute"),
     )

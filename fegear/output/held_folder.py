@@ -131,10 +131,10 @@ def _locked(folder: Path) -> TextIO | None:
 def _refuse_what_is_not_ours(folder: Path) -> None:
     """Refuse a link, a file, or a folder that fegear did not make: one with something in it, but no holder's file."""
     if not stat.S_ISDIR(folder.lstat().st_mode):
-        raise FileExistsError(errno.EEXIST, f"{folder.name}, where it works meanwhile, is a link or a file")
+        raise FileExistsError(errno.EEXIST, f"temporary folder {folder.name} is a link or a file")
     inside = {item.name for item in folder.iterdir()}  # at one moment: the holder removes his file last
     if inside and HOLDER not in inside:
-        raise FileExistsError(errno.EEXIST, f"{folder.name}, where it works meanwhile, is a folder of somebody else's")
+        raise FileExistsError(errno.EEXIST, f"temporary folder {folder.name} belongs to another user or program")
 
 
 def _opened(folder: Path) -> TextIO:

@@ -45,14 +45,14 @@ def check_room(target: Path, names: Iterable[str]) -> None:
         if folder == target or not os.path.lexists(folder):
             continue
         if folder.is_symlink() or not folder.is_dir():
-            raise OSError(f"its {part} is {'a link' if folder.is_symlink() else 'a file'} where a folder must be")
+            raise OSError(f"its {part} is {'a link' if folder.is_symlink() else 'a file'} instead of a folder")
         if folder.stat().st_dev != device:
-            raise OSError(f"its folder {part} lies on another file system")
+            raise OSError(f"its folder {part} is on another file system")
         if not os.access(folder, os.W_OK | os.X_OK):
             raise OSError(f"its folder {part} is read-only")
     for name in names:
         if (target / name).is_dir() and not (target / name).is_symlink():
-            raise OSError(f"its {name} is a folder where a file must be")
+            raise OSError(f"its {name} is a folder instead of a file")
 
 
 def exchange(work: Path, scratch: Path, target: Path, *, all_of_it: bool) -> dict[str, str]:

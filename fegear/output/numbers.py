@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from fegear.base.printed import percent
 from fegear.engine.value import Value
 
 _SIGNS = (("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
@@ -80,7 +81,7 @@ _ROUND_OFF = 1e-9
 
 
 def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
-    """Which values are known less well than the tolerance asks for and than 1 %, the worst first; empty if none is.
+    """Which values are known less well than the tolerance requires and than 1 %, the worst first; empty if none is.
 
     Parameters
     ----------
@@ -95,13 +96,10 @@ def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
     found = [(share, one) for share, one in found if share > max(tolerance, _MISLEADING)]
     if not found:
         return ""
-    named = "; ".join(f"{_in_a_line(one)} ({plain_number(100.0 * share, 3)} %)" for share, one in found[:_NAMED])
+    named = "; ".join(f"{one!r} ({percent(share)})" for share, one in found[:_NAMED])
     more = f"; and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
-    beyond = f"the tolerance of {tolerance:g}" if tolerance >= _MISLEADING else f"1 % (the tolerance is {tolerance:g})"
-    return f"Errors beyond {beyond}: {named}{more}."
-
-
-def _in_a_line(one: Value) -> str:
-    """A value with no more digits than its error leaves."""
-    value, error = with_error(one.value, one.error or 0.0)
-    return f"{one.name} = {value} +- {error} {one.unit}".rstrip()
+    limit = f"{100.0 * tolerance:g} %"
+    beyond = (
+        f"the tolerance of {limit}" if tolerance >= _MISLEADING else f"{100.0 * _MISLEADING:g} % (tolerance {limit})"
+    )
+    return f"Estimated errors above {beyond}: {named}{more}."

@@ -49,7 +49,7 @@ def write_results(
     """
     started = time.perf_counter()
     count = len(results.plan.steps) + STEPS
-    watcher.begin("Tables, pictures, report" if plots else "Tables and report", count, count)
+    watcher.begin("Tables, figures, report" if plots else "Tables and report", count, count)
     tables = folder / "tables"
     tables.mkdir()
     for table in results.tables:

@@ -27,7 +27,7 @@ from fegear.output.folder import SUMMARY
 from fegear.studies.comparison.compare import Side
 
 _HEAD = re.compile(r"(.*?)(?: \[(.*)\])?", re.DOTALL)
-_REMEDY = "give a folder that fegear run wrote, or a case file"
+_REMEDY = "specify a folder that fegear run wrote, or a case file"
 
 
 def read_side(folder: Path, key: str) -> Side:
@@ -46,14 +46,14 @@ def read_side(folder: Path, key: str) -> Side:
     """
     place = folder / SUMMARY
     if not leads_to(place, lambda _: True):
-        raise InputError(key, shown(str(folder), PATH), f"is no folder of a run: it has no {SUMMARY}", _REMEDY)
+        raise InputError(key, shown(str(folder), PATH), f"is not a results folder (no {SUMMARY})", _REMEDY)
     summary = read_json(place, key)
     values = summary.get("results")
     if not isinstance(values, dict):
         _refuse(place, key, "has no results")
     document = summary.get("inputs", {})
     if not isinstance(document, dict):
-        _refuse(place, key, "has inputs that are no case")
+        _refuse(place, key, "contains inputs that are not a case")
     found = [_value(name, one, place, key) for name, one in values.items() if not _of_a_sweep(one)]
     return Side(
         str(folder), document, {one.name: one for one in found},
@@ -89,7 +89,7 @@ def _number(given: object, name: str, path: Path, key: str) -> float | None:
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        _refuse(path, key, f"has {shown(given)} where the value {shown(name)} has a finite number or null")
+        _refuse(path, key, f"has {shown(given)} for the value {shown(name)}; must be a finite number or null")
     return number
 
 
@@ -111,13 +111,13 @@ def _read_table(path: Path, key: str) -> Table:
     try:
         rows = list(csv.reader(io.StringIO(read_text(path, key), newline=""), strict=True))
     except csv.Error as error:
-        _refuse(path, key, f"is no table that can be read ({error})")
+        _refuse(path, key, f"is not a readable table ({error})")
     if not rows or not rows[0]:
-        _refuse(path, key, "has no heads in its first line")
+        _refuse(path, key, "must have column heads in its first line")
     heads, rows = rows[0], rows[1:]
     for number, row in enumerate(rows, start=1):
         if len(row) != len(heads):
-            _refuse(path, key, f"has {len(row)} entries in row {number} under {len(heads)} heads")
+            _refuse(path, key, f"has {len(row)} entries in row {number} but {len(heads)} column heads")
     columns: dict[str, Column] = {}
     for head, cells in zip(heads, zip(*rows, strict=True) if rows else [()] * len(heads), strict=True):
         parted = _HEAD.fullmatch(head)

@@ -87,13 +87,13 @@ def pressed_gear(
     off = places[np.abs(places) > half * (1.0 + 1e-9)]
     if off.size:
         end = half * one * _MM
-        rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
+        rule = f"is outside the face width, {-end:.6g} to {end:.6g} mm"
         raise InputError("face_positions", f"{off[0] * one * _MM:.6g} mm", rule)
     hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
     body = gear.body_in_modules
     if body is not None and body.holes is not None:
         rule = "makes meshes of webs without holes only"
-        raise InputError("--format", "solid", rule, "leave body.holes out, or take another format")
+        raise InputError("--format", "solid", rule, "remove body.holes, or use another format")
     section = (
         gear_section(dict.fromkeys(range(gear.teeth), mesh))
         if mesh
@@ -103,8 +103,8 @@ def pressed_gear(
     stations = graded_stations(2.0 * half, through, _FIRST_LAYER, _GROWTH, _LAYER)
     nodes = int(1.3 * section.points.shape[1] * stations.size)
     if nodes > _MOST_NODES:
-        rule = f"would make a mesh of about {nodes:.1g} nodes, and {_MOST_NODES:.0e} is the most"
-        raise InputError("--format", "solid", rule, "choose a narrower face, fewer face positions or fewer teeth")
+        rule = f"would give a mesh of about {nodes:.1g} nodes (maximum {_MOST_NODES:.0e})"
+        raise InputError("--format", "solid", rule, "reduce face width, face positions or number of teeth")
     solid = extruded(section, stations, gear.twist * one, body)
     place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
     width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))

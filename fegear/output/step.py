@@ -27,7 +27,9 @@ def written_step(request: Request) -> Written:
     write_step(path, gear, None if relief is None else relieved_outline(gear, relief))
     remarks = []
     if part.face_width is None:
-        remarks.append(f"Gear {name}, STEP: {gear.face_width * 1e3:.6g} mm wide, for the case has no face_width.")
+        remarks.append(
+            f"Gear {name}, STEP: face width {gear.face_width * 1e3:.6g} mm assumed (face_width not specified)."
+        )
     if part.body is not None:
-        remarks.append(f"Gear {name}, STEP: a disc as wide as the face; its body is to be cut from it in CAD.")
+        remarks.append(f"Gear {name}, STEP: solid disc of full face width; add web and hub in CAD.")
     return [path], remarks

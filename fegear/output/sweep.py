@@ -63,7 +63,7 @@ def _draw(figures: Sequence[Figure], folder: Path, case: str) -> list[str]:
     for _ in draw_pictures(replace(figures[0], views=views[:_MOST_PICTURES], case=case), folder):
         pass
     left = len(views) - _MOST_PICTURES
-    return [f"Pictures are drawn of the first {_MOST_PICTURES} values; the report shows all."] if left > 0 else []
+    return [f"Figures show the first {_MOST_PICTURES} values; the report shows all."] if left > 0 else []
 
 
 def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> list[str]:

@@ -62,7 +62,7 @@ def _put_table(
     file.createDimension(row, max(rows.values()))
     if len(rows) < points or len(set(rows.values())) > 1:
         count = np.array([rows.get(i, 0) for i in range(points)]).reshape(sizes)
-        put(file, f"{name}.rows", axes, count, "", "rows of the table at this point; the others are empty")
+        put(file, f"{name}.rows", axes, count, "", "number of rows of the table at this point")
     for column, unit in dict.fromkeys((c.name, c.unit) for table in found.values() for c in table.columns):
         same = {i: c for i, table in found.items() for c in table.columns if (c.name, c.unit) == (column, unit)}
         values = _stacked(same, points, max(rows.values())).reshape(*sizes, -1)
@@ -106,7 +106,7 @@ def write_sweep_dataset(path: Path, results: SweepResults) -> None:
             file.createDimension(plain(axis.key), len(axis))
             places = np.array([str(value) for value in axis.values] if axis.numbers is None else axis.numbers)
             put(file, axis.key, (plain(axis.key),), places, axis.unit)
-        put(file, "failure", names, failures(results).reshape(sizes), "", "why the point has no result")
+        put(file, "failure", names, failures(results).reshape(sizes), "", "reason for missing result")
         for name, unit, meaning, number, error in swept_values(results):
             variable = put(file, name, names, number.reshape(sizes), unit, meaning)
             if error is not None:

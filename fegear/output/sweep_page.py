@@ -56,7 +56,7 @@ def sweep_page(
          else f"{axis.values[0]} to {axis.values[-1]}, {len(axis)} values")
         for axis in results.axes
     ]  # fmt: skip
-    summary = f"{count - failed} of {count} points have results." if failed else f"All {count} points have results."
+    summary = f"{count - failed} of {count} points computed." if failed else f"All {count} points computed."
     failures = [
         (len(group.members), group.kind, results.place(group.members[0]), group.reason) for group in results.failed()
     ]
@@ -65,9 +65,9 @@ def sweep_page(
         note=f"Case {results.name} over {' and '.join(axis.key for axis in results.axes)}. {summary}",
         sections=(
             Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
-            Section("What was varied", (Grid(("Key", "Values"), axes), Paragraph(summary))),
-            Section("Values over the axes", tuple(map(Plot, figures))),
-            Section("Values that do not change", (Facts(constant),) if constant else ()),
+            Section("Varied keys", (Grid(("Key", "Values"), axes), Paragraph(summary))),
+            Section("Values over the varied keys", tuple(map(Plot, figures))),
+            Section("Constant values", (Facts(constant),) if constant else ()),
             Section("Failures", (Grid(("Points", "Kind", "First at", "Message"), failures),) if failures else ()),
             Section("Table", (DataTable(table),)),
         ),

@@ -80,7 +80,7 @@ class NotebookLine:
         """Say how far it is, a few times a second."""
         if time.monotonic() - self._said > _OFTEN:
             self._said = time.monotonic()
-            self._say(f"{self._title}: {fraction:.0%}")
+            self._say(f"{self._title}: {100.0 * fraction:.0f} %")
 
     def end(self, seconds: float) -> None:
         """Count it."""

@@ -75,8 +75,9 @@ class Section:
         for key, hole, around in zip(("inner", "inner_end"), self.ends[1], self.ends[0], strict=True):
             if not 0.0 <= hole < around:
                 raise RangeError(
-                    key, f"{hole * 1e3:.6g} mm", f"leaves no wall in the outer diameter of {around * 1e3:.6g} mm",
-                    "give a smaller one",
+                    key, f"{hole * 1e3:.6g} mm", "leaves no wall thickness with the outer diameter of "
+                                                 f"{around * 1e3:.6g} mm",
+                    "specify a smaller one",
                 )  # fmt: skip
 
     @property
@@ -123,7 +124,7 @@ class Shaft:
     def __post_init__(self) -> None:
         """Refuse shafts without sections and impossible materials."""
         if not self.sections:
-            raise InputError("sections", "(none)", "leave no shaft", 'give { length = "50 mm", outer = "30 mm" }')
+            raise InputError("sections", "(none)", "specify no shaft", 'specify { length = "50 mm", outer = "30 mm" }')
         if not self.young_modulus > 0.0:
             raise RangeError("young_modulus", self.young_modulus, "must be positive")
         if not 0.0 <= self.poisson_ratio < 0.5:
@@ -150,8 +151,8 @@ class Shaft:
         length, slack = self.length, 1e-9 * self.length
         if not -slack <= z <= length + slack:
             raise RangeError(
-                key, f"{z * 1e3:.6g} mm", f"is off the shaft, which reaches from 0 to {length * 1e3:.6g} mm",
-                "move it, or lengthen a section",
+                key, f"{z * 1e3:.6g} mm", f"is outside the shaft, 0 to {length * 1e3:.6g} mm",
+                "correct its position, or the length of a section",
             )  # fmt: skip
         return min(max(z, 0.0), length)
 

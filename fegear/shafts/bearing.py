@@ -56,19 +56,27 @@ class StiffBearing:
         """Refuse matrices that are no stiffness."""
         m = np.asarray(self.matrix, dtype=float)
         if m.shape != (5, 5):
-            raise InputError("matrix", f"{m.shape}", "must have 5 rows of 5 numbers: x, y, z and turns about x and y")
+            raise InputError("matrix", f"{m.shape}", "must have 5 rows of 5 numbers: x, y, z and tilt about x and y")
         off = np.where(np.eye(5) > 0.0, 0.0, m)
         if not (np.isfinite(off).all() and not np.isnan(m).any()):
-            raise InputError("matrix", "(not finite)", "must be finite off its diagonal")
+            raise InputError("matrix", "(not finite)", "must have finite off-diagonal terms")
         if off[self.rigid].any():
-            raise InputError("matrix", "(infinite)", "is coupled where it is rigid", "write zeros off that diagonal")
+            raise InputError(
+                "matrix",
+                "(infinite)",
+                "has coupling terms for a rigid direction",
+                "set these off-diagonal terms to zero",
+            )
         if np.abs(off - off.T).max() > 1e-9 * max(np.abs(off).max(), 1e-300):
             raise InputError("matrix", "(not symmetric)", "must be symmetric", "average it with its transpose")
         soft = self.usual
         scale = np.sqrt(np.where(np.diag(soft) > 0.0, np.diag(soft), 1.0))
         if np.linalg.eigvalsh(soft / np.outer(scale, scale)).min() < -1e-9:
             raise InputError(
-                "matrix", "(indefinite)", "gives off energy", "give a stiffness that no motion makes negative"
+                "matrix",
+                "(indefinite)",
+                "is not positive semi-definite",
+                "specify a positive semi-definite matrix",
             )
 
     @property

@@ -33,20 +33,27 @@ _STRAIGHT = 1e-12
 class MeshMisalignment:
     """How far a mesh is misaligned: in all, then by `CAUSES`; arrays of shape (5,)."""
 
-    in_plane: Array = shown("arcsec", "tilt of the axes in their plane, apart toward end II")
-    out_of_plane: Array = shown("arcsec", "tilt across that plane, the driven gear ahead toward end II")
-    over_face: Array = shown("um", "gap at end II less that at end I, of the straight line through it")
-    curved: Array = shown("um", "what the gap departs from that line, peak to peak")
+    in_plane: Array = shown(
+        "arcsec", "misalignment in the plane of the axes (f_Sigma_delta), positive diverging towards end II"
+    )
+    out_of_plane: Array = shown(
+        "arcsec",
+        "misalignment perpendicular to that plane (f_Sigma_beta), positive if the driven gear leads towards end II",
+    )
+    over_face: Array = shown("um", "linear part of the gap: end II minus end I")
+    curved: Array = shown("um", "non-linearity of the gap (peak to peak deviation from the straight line)")
 
 
 @dataclass(frozen=True)
 class MeshGap:
     """What shafts open between the flanks of a mesh; arrays of shape (n,), by cause (4, n)."""
 
-    z: Array = shown("mm", "from the middle of the common face toward end II", label="face position z")
-    gap: Array = shown("um", "that the shafts open in the plane of action", label="gap of the flanks")
-    by_cause: Array = shown("um", "share of it")
-    line_load: Array = shown("N/mm", "load per face width, averaged over a base pitch", label="load per face width")
+    z: Array = shown(
+        "mm", "face position from the middle of the common face width, towards end II", label="face position z"
+    )
+    gap: Array = shown("um", "gap caused by the shafts in the plane of action", label="gap of the flanks")
+    by_cause: Array = shown("um", "contribution")
+    line_load: Array = shown("N/mm", "line load, mean over a base pitch", label="line load")
 
 
 @dataclass(frozen=True)

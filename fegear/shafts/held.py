@@ -146,7 +146,7 @@ def refuse_loose(shafts: tuple[LoadedShaft, ...]) -> None:
     held, bearings = held_by(shafts), [seat.bearing for one in shafts for seat in one.seats]
     for one, places in zip(shafts, held, strict=True):
         if not places.at.size:
-            raise InputError(f"{one.name}.bearings", "(none)", "leave the shaft without support", "give two bearings")
+            raise InputError(f"{one.name}.bearings", "(none)", "do not support the shaft", "specify two bearings")
     for group in groups_of(shafts):
         scale = np.concatenate([[1.0, 1.0, 1.0, *[1.0 / shafts[n].shaft.length] * 2] for n in group])
         stiff = np.zeros((scale.size, scale.size))
@@ -164,10 +164,10 @@ def refuse_loose(shafts: tuple[LoadedShaft, ...]) -> None:
         values, motions = np.linalg.eigh(stiff * np.outer(scale, scale))
         if not values[0] > _LOOSE * values[-1]:
             which, way = divmod(int(np.argmax(np.abs(motions[:, 0]))), 5)
-            ways = ("across along x", "across along y", "along its axis", "in tilt about x", "in tilt about y")
+            ways = ("radially (x)", "radially (y)", "axially", "in tilt about x", "in tilt about y")
             raise InputError(
                 f"{shafts[group[which]].name}.bearings", f"{held[group[which]].at.size} in number",
-                f"leave the shaft loose {ways[way]}", "give a bearing that holds it there",
+                f"do not support the shaft {ways[way]}", "specify a bearing that supports it",
             )  # fmt: skip
 
 
@@ -182,6 +182,6 @@ def refuse_torque(shafts: tuple[LoadedShaft, ...]) -> None:
         torque = one.loads[:, 5]
         if abs(torque.sum()) > _BALANCED * max(float(np.abs(torque).max(initial=0.0)), 1e-12):
             raise InputError(
-                one.name, f"{torque.sum():.6g} N m", "is a torque about its axis that nothing takes",
-                "give a coupling that takes it",
+                one.name, f"{torque.sum():.6g} N m", "is an unbalanced torque about the shaft axis",
+                "specify a coupling",
             )  # fmt: skip

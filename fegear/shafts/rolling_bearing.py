@@ -47,7 +47,7 @@ def point_contact(inverse_radii: tuple[float, float, float, float], plane_modulu
     along, across = inverse_radii[0] + inverse_radii[2], inverse_radii[1] + inverse_radii[3]
     total = along + across
     if not (along > 0.0 and across > 0.0):
-        raise RangeError("groove_ratio", min(along, across), "leaves no point contact", "give a ratio above 0.5")
+        raise RangeError("groove_ratio", min(along, across), "gives no point contact", "specify a ratio above 0.5")
     difference = abs(along - across) / total
     if difference < 1e-12:
         approach = 1.0
@@ -107,16 +107,16 @@ class RollingBearing:
         if not 0.0 < self.element_diameter < room:
             raise RangeError(
                 "element_diameter", f"{self.element_diameter * 1e3:.6g} mm",
-                f"does not fit: {self.count} elements on the pitch diameter have room for {room * 1e3:.6g} mm each",
-                "give fewer or smaller elements",
+                f"is too large: {self.count} elements on the pitch diameter have {room * 1e3:.6g} mm each",
+                "specify fewer or smaller elements",
             )  # fmt: skip
         if self.count < 3:
-            raise RangeError("count", self.count, "elements hold no shaft", "give at least 3")
+            raise RangeError("count", self.count, "rolling elements are too few", "specify at least 3")
         if not abs(self.contact_angle) < 0.5 * math.pi:
             raise RangeError("contact_angle", math.degrees(self.contact_angle), "must be below 90 deg")
         if self.kind == "ball" and min(self.groove_ratio) <= 0.5:
             raise RangeError(
-                "groove_ratio", min(self.groove_ratio), "must be above 0.5, or the ball jams in its groove"
+                "groove_ratio", min(self.groove_ratio), "must be above 0.5 (groove radius larger than ball radius)"
             )
         if self.kind == "roller" and not self.roller_length > 0.0:
             raise RangeError("roller_length", self.roller_length, "must be positive")

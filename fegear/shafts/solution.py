@@ -52,27 +52,27 @@ _PLACES = 101
 class ShaftLine:
     """How a shaft's axis lies; arrays of shape (n,)."""
 
-    z: Array = shown("mm", "from the left end of the shaft")
+    z: Array = shown("mm", "axial position from the left shaft end")
     x: Array = shown("um", "displacement of the axis along x")
     y: Array = shown("um", "displacement of the axis along y")
-    along: Array = shown("um", "displacement along the axis")
-    turn_x: Array = shown("arcsec", "turn of the section about x")
-    turn_y: Array = shown("arcsec", "turn of the section about y")
-    twist: Array = shown("arcsec", "twist from the left end")
+    along: Array = shown("um", "axial displacement")
+    turn_x: Array = shown("arcsec", "rotation of the section about x")
+    turn_y: Array = shown("arcsec", "rotation of the section about y")
+    twist: Array = shown("arcsec", "angle of twist from the left end")
 
 
 @dataclass(frozen=True)
 class BearingLoads:
     """What the bearings of a shaft carry; arrays of shape (b,)."""
 
-    at: Array = shown("mm", "place of the bearing from the left end")
-    force_x: Array = shown("N", "of the bearing on the shaft, along x")
-    force_y: Array = shown("N", "of the bearing on the shaft, along y")
-    force_axial: Array = shown("N", "of the bearing on the shaft")
-    force_radial: Array = shown("N", "of the bearing, across the axis")
-    shift: Array = shown("um", "of the shaft in its seat")
-    tilt: Array = shown("arcsec", "of the shaft in its seat")
-    life: Array = shown("", "basic rating life L_10 in revolutions (ISO 281)")
+    at: Array = shown("mm", "position of the bearing from the left end")
+    force_x: Array = shown("N", "bearing force on the shaft, x")
+    force_y: Array = shown("N", "bearing force on the shaft, y")
+    force_axial: Array = shown("N", "bearing reaction on the shaft")
+    force_radial: Array = shown("N", "radial bearing force")
+    shift: Array = shown("um", "of the shaft at the bearing")
+    tilt: Array = shown("arcsec", "of the shaft at the bearing")
+    life: Array = shown("", "basic rating life L_10, in revolutions (ISO 281)")
 
 
 @dataclass(frozen=True)
@@ -294,7 +294,7 @@ def deflect(shafts: tuple[LoadedShaft, ...], housing: Array | None = None) -> tu
                 break
     if not reached:
         names = ", ".join(one.name for one in shafts)
-        raise ConvergenceError(f"The bearings of {names} find no equilibrium: reduce clearance or loads.")
+        raise ConvergenceError(f"No equilibrium found for the bearings of {names}: reduce clearance or loads.")
     found, first = [], 0
     u, forces = system.moved(p, q), p.reshape(-1, 5)
     for n, (one, held) in enumerate(zip(shafts, held_by(shafts), strict=True)):
@@ -353,4 +353,6 @@ def response(found: tuple[Deflection, ...], at: tuple[Array, ...], housing: Arra
         return np.asarray(own - across @ _solved(derivative, right))
     except np.linalg.LinAlgError:
         names = ", ".join(one.loaded.name for one in found)
-        raise ConvergenceError(f"The bearings of {names} leave a shaft loose: give them preload.") from None
+        raise ConvergenceError(
+            f"Shaft of {names} not constrained within the bearing clearance; specify preload."
+        ) from None

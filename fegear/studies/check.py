@@ -104,14 +104,14 @@ def gears_to_check(scene: Scene) -> tuple[str, ...]:
     names = chosen_gears(scene)
     if not names:
         raise InputError(
-            "gear", ", ".join(scene.gears) or "(none)", "has no spur gear, whose section could be solved whole",
-            "check a case with a spur gear",
+            "gear", ", ".join(scene.gears) or "(none)", "has no spur gear to check",
+            "use a case with a spur gear",
         )  # fmt: skip
     for name in names:
         own = scene.case.gear[name].tooth_mesh
         if own is not None:
             raise InputError(
-                f"gear.{name}.tooth_mesh", str(own), "replaces the outline that the whole gear would be meshed from",
+                f"gear.{name}.tooth_mesh", str(own), "replaces the outline required for the check mesh",
                 "check the gear without it",
             )  # fmt: skip
     return names

@@ -158,11 +158,14 @@ def effect_study(
     for effect in only:
         if effect not in felt:
             raise InputError(
-                "--effect", f'"{effect}"', "is no effect that influences the wanted results", nearest(effect, felt)
+                "--effect",
+                f'"{effect}"',
+                "is not an effect that influences the requested results",
+                nearest(effect, felt),
             )
     effects = tuple(only) or felt
     say = progress or (lambda _title, _fraction: None)
-    say("as it is", 0.0)
+    say("unchanged", 0.0)
     measure(scene)  # loads libraries and compiles, which is no effect's cost
     as_it_is = measure(scene)
     switched: list[Switched] = []
@@ -210,7 +213,7 @@ def stage_table(scenes: Iterable[Scene]) -> str:
         results = ", ".join(f"`{result}`" for result in sorted(felt[effect])) or "none"
         about = EffectsPart.model_fields[effect].description or ""
         rows.append((f"`{effect}`", about, fact.needs, ", ".join(stages) or "none", results))
-    return _table(("effect", "what it is", "what it needs", "stages that know it", "results it may change"), rows)
+    return _table(("effect", "meaning", "requirement", "stages that include it", "results it may change"), rows)
 
 
 def kernel_table() -> str:
@@ -221,7 +224,7 @@ def kernel_table() -> str:
         (f"`{effect}`", "; ".join(f"{kernel} ({KERNELS[kernel]})" for kernel in fact.kernels) or "none")
         for effect, fact in EFFECTS.items()
     ]
-    return _table(("effect", "kernels that run with it and not without it"), rows)
+    return _table(("effect", "kernels that run only with it"), rows)
 
 
 _TITLES = {
@@ -291,7 +294,7 @@ def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Fig
     """
     name = EFFECTS[found.effect].words or found.effect.replace("_", " ")
     name = f"{name[0].upper()}{name[1:]}"
-    panels, what = _compared(curve, f"{name}\n{title}"), "what it takes" if curve is None else "the change"
+    panels, what = _compared(curve, f"{name}\n{title}"), "CPU time" if curve is None else "change"
     seconds = (
         Bars([0.0], [found.without.seconds], "", "without"), Bars([1.0], [found.with_it.seconds], "", "with")
     )  # fmt: skip
@@ -300,14 +303,14 @@ def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Fig
     )
     none = f"{name}\n{title} (no curve of this case changes)" if curve is None else ""
     panels.append(
-        Panel(Axis("processor time of the run", categories=labels), Axis("time", "s", zero=True), seconds,
+        Panel(Axis("CPU time of the run", categories=labels), Axis("time", "s", zero=True), seconds,
               title=none, height=0.5, stacked=True)
     )  # fmt: skip
     drawn = "no curve" if curve is None else _TITLES.get(curve[3], curve[3])
     return Figure(
         f"effect_{found.effect}",
         f"Effect of {name[0].lower()}{name[1:]}",
-        f"{name}: {drawn} with it and without it, {what}, and the processor seconds of the whole run.",
+        f"{name}: {drawn} with it and without it, {what}, and the CPU time of the run.",
         tuple(panels),
     )
 

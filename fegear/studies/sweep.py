@@ -180,15 +180,15 @@ def sweep_case(
 def _check(axes: Sequence[Axis], document: Mapping[str, Any]) -> None:
     """Refuse axes that name a key twice or one that no case has."""
     if not axes:
-        raise InputError("--over", "(not given)", "is what a sweep needs", "for example --over gear.a.teeth=20:40:21")
+        raise InputError("--over", "(not given)", "is required for a sweep", "for example --over gear.a.teeth=20:40:21")
     names = [axis.key for axis in axes]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("--over", f'"{name}"', "is given twice", "merge its values into one --over")
+            raise InputError("--over", f'"{name}"', "is specified twice", "combine its values in one --over")
     count = math.prod(len(axis) for axis in axes)
     if count > _MOST_POINTS:
         size = " x ".join(f"{len(axis):,}" for axis in axes) + f" = {count:,}"
-        raise InputError("--over", size, "points are more than a sweep can hold", f"ask for {_MOST_POINTS:,} at most")
+        raise InputError("--over", size, "points exceed the maximum of a sweep", f"reduce to at most {_MOST_POINTS:,}")
     trial = copy.deepcopy(dict(document))
     for axis in axes:
         set_key(trial, axis.key, axis.values[0], "--over")
@@ -306,12 +306,12 @@ def read_axis(text: str) -> Axis:
     """
     key, equals, given = (part.strip() for part in text.partition("="))
     if not equals or not key or not given:
-        raise InputError("--over", f'"{text}"', "must read KEY=START:STOP:COUNT or KEY=V1,V2,...", _EXAMPLE)
+        raise InputError("--over", f'"{text}"', "must have the form KEY=START:STOP:COUNT or KEY=V1,V2,...", _EXAMPLE)
     parts = [part.strip() for part in given.split(":")]
     if len(parts) == 1 or given.startswith(("[", '"')):
         return _list(key, given)
     if len(parts) not in (3, 4, 5):
-        raise InputError("--over", f'"{text}"', "must read START:STOP:COUNT", _EXAMPLE)
+        raise InputError("--over", f'"{text}"', "must have the form START:STOP:COUNT", _EXAMPLE)
     return _range(key, parts, text)
 
 
@@ -321,17 +321,19 @@ def _range(key: str, parts: list[str], text: str) -> Axis:
     ends = [_QUANTITY.fullmatch(part) for part in parts[:2]]
     found = {match[2] for match in ends if match and match[2]} | set(units)
     if None in ends or len(found) > 1 or not re.fullmatch("[0-9]{1,9}", parts[2]):
-        raise InputError("--over", f'"{text}"', "must read START:STOP:COUNT with one unit for both ends", _EXAMPLE)
+        raise InputError(
+            "--over", f'"{text}"', "must have the form START:STOP:COUNT with one unit for both ends", _EXAMPLE
+        )
     start, stop = (float(match[1]) for match in ends if match)
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise InputError("--over", f'"{text}"', "must have finite ends", _EXAMPLE)
     count, unit = int(parts[2]), next(iter(found), "")
     if not 1 <= count <= _MOST:
-        raise InputError("--over", f'"{text}"', f"asks for {count} values, but it must be 1 to {_MOST}", _EXAMPLE)
+        raise InputError("--over", f'"{text}"', f"requests {count} values; must be 1 to {_MOST}", _EXAMPLE)
     if count == 1 and start != stop:
-        raise InputError("--over", f'"{text}"', "has one value, but two ends that differ", _EXAMPLE)
+        raise InputError("--over", f'"{text}"', "has one value but two different ends", _EXAMPLE)
     if geometric and not (start > 0.0 and stop > 0.0):
-        raise InputError("--over", f'"{text}"', "spaces by logarithm, so both ends must be positive", _EXAMPLE)
+        raise InputError("--over", f'"{text}"', "is logarithmic: both ends must be positive", _EXAMPLE)
     raw = np.geomspace(start, stop, count) if geometric else np.linspace(start, stop, count)
     # What the user would have written: 0.1, not 0.09999999999999998; and 0, not 5.6e-17.
     digits = 12 - math.ceil(math.log10(max(abs(start), abs(stop)) or 1.0))
@@ -348,8 +350,8 @@ def _list(key: str, given: str) -> Axis:
     if glued and "." in given and '"' not in given:
         point, two = glued[0].replace(",", "."), glued[0].replace(",", ".0,") + ".0"
         raise InputError(
-            "--over", f'"{key}={given}"', f"can be read with a decimal comma in {glued[0]}",
-            f"write {point}, or {two} for two numbers",
+            "--over", f'"{key}={given}"', f"may contain a decimal comma ({glued[0]})",
+            f"use {point}, or {two} for two numbers",
         )  # fmt: skip
     try:
         read = tomllib.loads(f"values = {given if given.startswith('[') else f'[{given}]'}")
@@ -367,8 +369,8 @@ def _list(key: str, given: str) -> Axis:
     units = {match[2] for match in found if match}
     if len(units) > 1 and None in units:
         raise InputError(
-            "--over", f'"{key}={given}"', "has numbers with a unit and numbers without",
-            "decimal commas? write points, and the unit to each number",
+            "--over", f'"{key}={given}"', "mixes numbers with and without units",
+            "use decimal points, and a unit for each number",
         )  # fmt: skip
     if None not in found and len(units) == 1 and None not in units:
         return Axis(key, tuple(values), tuple(float(match[1]) for match in found if match), units.pop())

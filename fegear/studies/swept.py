@@ -125,19 +125,17 @@ def best_lines(results: SweepResults, swept: Sequence[Swept]) -> list[str]:
         best = int(np.nanargmax(one.number) if most else np.nanargmin(one.number))
         error = np.zeros(one.number.size) if one.error is None else np.nan_to_num(one.error)
         alike = int(np.sum(np.abs(one.number - one.number[best]) <= error + error[best])) - 1
-        line = f"{'Largest' if most else 'Least'} {one.name}: {one.number[best]:.6g} {one.unit}".rstrip()
+        line = f"{'Maximum' if most else 'Minimum'} {one.name}: {one.number[best]:.6g} {one.unit}".rstrip()
         line += f" at {results.place(best)}"
         if alike:
-            line += (
-                f"; {alike} other point{'s do' if alike > 1 else ' does'} not differ from it by more than the errors"
-            )
+            line += f"; {alike} other point{'s' if alike > 1 else ''} equal within the estimated errors"
         ends = [
             axis.key
             for axis, i in zip(results.axes, np.unravel_index(best, grid), strict=True)
             if axis.numbers is not None and len(axis) > 2 and i in (0, len(axis) - 1)
         ]
         if ends:
-            line += f"; it lies at the end of {' and '.join(ends)}"
+            line += f"; at the limit of the range of {' and '.join(ends)}"
         lines.append(f"{line}.")
     return lines[:_MOST_TOLD]
 
@@ -263,9 +261,9 @@ def _coordinates(results: SweepResults, axes: tuple[SweepAxis, ...], swept: Sequ
     views = tuple(View(one.name, (_lines(one, heights, texts, labels, failed),)) for one in chosen)
     return Figure(
         "sweep_coordinates",
-        "All points at a glance",
-        "Each line is a point of the sweep, from its place to its values, low at the bottom, coloured by the chosen "
-        "value. Click a range in the legend to hide its points.",
+        "Overview of all points",
+        "Parallel coordinates: one line per sweep point, coloured by the selected value. Click a range in the legend "
+        "to hide it.",
         views=views,
     )
 

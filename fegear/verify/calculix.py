@@ -72,7 +72,7 @@ def calculix_load_sharing() -> Iterator[Compared]:
         yield from near(state.loads[row, 0, 0], wanted, 1e-3, scale=350.0)
 
 
-@ROWS.add("contact of a tip corner off the path", "program", _PLANE)
+@ROWS.add("corner contact outside the path of contact", "program", _PLANE)
 def calculix_corner() -> Iterator[Compared]:
     """A corner .197 mm before the path: gap, its load and the transmission error."""
     state = _at(1.5e-3, corner=True)
@@ -82,7 +82,7 @@ def calculix_corner() -> Iterator[Compared]:
     yield from near(state.grid.contacts.gap[row, 0] * 1e6, 1.05, 0.02)
 
 
-@ROWS.add("largest root tension of a loaded spur pair", "program", _PLANE)
+@ROWS.add("maximum root stress (tension side) of a loaded spur pair", "program", _PLANE)
 def calculix_root_tension() -> Iterator[Compared]:
     """Both gears, both pairs in contact."""
     from fegear.contact.plane.root_stress_history import root_stress_history
@@ -160,7 +160,7 @@ def calculix_planet_and_ring() -> Iterator[Compared]:
     yield from _ring_loads("two pairs", 2e-3)
 
 
-@ROWS.add("contact of a ring's tip corner", "program", _RING)
+@ROWS.add("corner contact of a ring gear", "program", _RING)
 def calculix_ring_corner() -> Iterator[Compared]:
     """Loads of a pair and of a tip corner under the same approach, of the whole load."""
     yield from _ring_loads("one pair and a tip corner", 5e-3)
@@ -292,13 +292,13 @@ def _web_tensions(solution: Any, pressed: list[Any], known: Any) -> Iterator[Com
         yield from near(found, wanted, 0.01, scale=max(wanted))
 
 
-@ROWS.add("deflections of a gear on a web off the middle", "program", _WEB)
+@ROWS.add("deflections of a gear on an offset web", "program", _WEB)
 def calculix_web_deflection() -> Iterator[Compared]:
     """Five places along the face under a load at each of them; of the loaded band's own deflection."""
     yield from _web_deflections(*_on_a_web("off"), kept("gear_body_calculix")["off"], 0.008)
 
 
-@ROWS.add("root tension of a gear on a web off the middle", "program", _WEB)
+@ROWS.add("root stress of a gear on an offset web", "program", _WEB)
 def calculix_web_root_tension() -> Iterator[Compared]:
     """Along the face under a load at each of five places, of the largest."""
     yield from _web_tensions(*_on_a_web("off"), kept("gear_body_calculix")["off"])

@@ -23,7 +23,7 @@ E, NU = 206e9, 0.3
 
 
 # ---- planetary sets ---------------------------------------------------------------------------------------------
-@ROWS.add("phases of the meshes of planetary sets", "own", "polygons of sun, planets and ring turned until they touch")
+@ROWS.add("phases of the meshes of planetary sets", "own", "polygons of sun, planets and ring rotated until contact")
 def planetary_phases() -> Iterator[Compared]:
     """Delays of every mesh of five sets with profile shifts, unevenly spaced planets among them, in base pitches."""
     from fegear.dynamics.planetary.phases import mesh_phases
@@ -38,7 +38,7 @@ def planetary_phases() -> Iterator[Compared]:
 
 @ROWS.add(
     "statics of helical planetary sets", "own",
-    "rigid bodies in space with six ways to move, helicoids whose normals are cross products of their tangents",
+    "rigid bodies with six degrees of freedom, helicoids with normals from cross products of tangents",
 )  # fmt: skip
 def helical_sets_in_space() -> Iterator[Compared]:
     """Mesh forces with errors of the pins, of the mean force; axial force on the sun and moments that tilt planets."""
@@ -134,9 +134,7 @@ def _bearings(forces: list[tuple[float, Array, Array]]) -> tuple[Array, Array]:
     return -total - right, right
 
 
-@ROWS.add(
-    "bearing forces of a two-stage helical gearbox", "own", "moments by hand, tooth forces by the rules of a book"
-)
+@ROWS.add("bearing forces of a two-stage helical gearbox", "own", "moments by hand, tooth forces from a textbook")
 def gearbox_reactions() -> Iterator[Compared]:
     """Three forces of six bearings under two meshes in different planes, of the mesh force."""
     box = _two_stages()
@@ -211,7 +209,7 @@ class _Springs:
         return force, growth
 
 
-@ROWS.add("two meshes on shafts, solved together", "own", "shafts and meshes in turn until nothing changes")
+@ROWS.add("two meshes on shafts, coupled solution", "own", "shafts and meshes solved alternately until converged")
 def two_meshes_in_turn() -> Iterator[Compared]:
     """Loads over both faces of a gearbox whose flanks are springs, some of which do not touch, of the mean one."""
     from fegear.contact.wide.on_shafts import load_gearbox
@@ -237,7 +235,7 @@ def two_meshes_in_turn() -> Iterator[Compared]:
 
 
 # ---- friction of the teeth --------------------------------------------------------------------------------------
-@ROWS.add("loss of tooth friction", "own", "mu W |v| integrated over a base pitch, piece by piece")
+@ROWS.add("gear mesh power loss", "own", "mu W |v| integrated over a base pitch, piece by piece")
 def friction_loss() -> Iterator[Compared]:
     """Mean power of a constant coefficient at an external and an internal mesh whose pairs in contact share evenly."""
     from fegear.dynamics.train.excitation import MeshExcitation

@@ -71,7 +71,7 @@ def fmu() -> Iterator[Compared]:
     except ModuleNotFoundError:
         raise MissingLibraryError("fmpy is not installed: pip install fmpy") from None
     if not any(map(shutil.which, ("cc", "gcc", "clang"))):
-        raise MissingLibraryError("an FMU is compiled as it is written: needs a C compiler.")
+        raise MissingLibraryError("exporting an FMU requires a C compiler.")
     results = fegear.run({**_CASE, "results": ["natural-modes"]}, progress=False)
     data: Any = results.outcomes[Task("gear-train", "")].data
     mesh = data.meshes[0]
@@ -94,7 +94,7 @@ def fmu() -> Iterator[Compared]:
     yield from near(LOAD, found["mesh_force"][at], 1e-6)
 
 
-@ROWS.add("gearboxes that go through REXS", "own", "the XML's attributes, contact ratios by hand")
+@ROWS.add("gearboxes exported to and imported from REXS", "own", "the XML's attributes, contact ratios by hand")
 def rexs() -> Iterator[Compared]:
     """Pitch diameters, base diameters and contact ratios of both stages, after writing and reading."""
     import tomllib

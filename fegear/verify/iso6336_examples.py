@@ -135,7 +135,7 @@ def faults(name: str, example: dict[str, Any]) -> list[str]:
     """What does not hold: numbers off without a reason, reasons without need, printed symbols that nothing answers."""
     held = rows(example)
     symbols = {row.symbol for row in held}
-    wrong = [f"{name}: nothing answers {symbol}" for symbol in example["printed"].keys() - symbols]
+    wrong = [f"{name}: no result for {symbol}" for symbol in example["printed"].keys() - symbols]
     wrong += [
         f"{name}: a reason for {symbol}, which is not printed" for symbol in example["judgement"].keys() - symbols
     ]

@@ -24,7 +24,7 @@ def trace_filter() -> Iterator[Compared]:
         yield from near(filtered(x, wave, cutoff(length))[1200], 2.0 ** -(share**-2), 2e-4, scale=1.0)
 
 
-@ROWS.add("slope, form and crown of measured flanks", "own", "least squares of a line, a parabola and a wave by hand")
+@ROWS.add("slope, form and crown of measured flanks", "own", "least-squares line, parabola and wave by hand")
 def trace_deviations() -> Iterator[Compared]:
     """A slope of 12 um and a crown of 8 um alone; five whole waves of 3 um about a line."""
     from fegear.formulas.iso1328_traces import evaluate

@@ -272,7 +272,7 @@ def _in_series() -> float:
 
 
 @ROWS.add(
-    "loads of planets with pin errors", "own", "F_1 = F_0 - 2 cos a k e (1 - 3/N), floating sun; (1 - 1/N), held sun"
+    "loads of planets with pin errors", "own", "F_1 = F_0 - 2 cos a k e (1 - 3/N), floating sun; (1 - 1/N), fixed sun"
 )
 def pin_errors() -> Iterator[Compared]:
     """One tangential pin error of 1.5 um, 3, 4 and 5 planets."""
@@ -285,7 +285,7 @@ def pin_errors() -> Iterator[Compared]:
         yield from near((loads.min(), loads.max()), run.mean_force - less, 1e-10)
 
 
-@ROWS.add("planets that lift", "own", "closed form: of four planets the opposite one lifts too")
+@ROWS.add("loss of contact of planets", "own", "closed form: with four planets the opposite one also loses contact")
 def planets_that_lift() -> Iterator[Compared]:
     """Shares of four planets with pin errors of 100 um to 1 mm."""
     from fegear.dynamics.planetary.planet_loads import planet_loads
@@ -331,7 +331,7 @@ def planetary_contact_states() -> Iterator[Compared]:
         )
 
 
-@ROWS.add("modes in which planets move alone", "own", "the 3 by 3 matrix of one planet")
+@ROWS.add("planet modes", "own", "the 3 by 3 matrix of one planet")
 def planet_modes() -> Iterator[Compared]:
     """Natural frequencies of four and of six planets."""
     from fegear.dynamics.planetary.set_modes import set_modes
@@ -388,7 +388,9 @@ def one_oscillator() -> Iterator[Compared]:
         yield from near((state.largest[0], state.smallest[0]), (force + swing, force - swing), 1e-9)
 
 
-@ROWS.add("motion with contact loss and backside contact", "own", "scipy's DOP853 with events, three rigs, rtol 1e-12")
+@ROWS.add(
+    "motion with loss of contact and back-side contact", "own", "scipy's DOP853 with events, three rigs, rtol 1e-12"
+)
 def motion_by_dop853() -> Iterator[Compared]:
     """Largest mesh force of the steady motion, of the mean force."""
     from fegear.verify.rigs import CASES, four_inertia, reference, shooting
@@ -465,7 +467,7 @@ def cones() -> Iterator[Compared]:
     yield from near(found.at(length)[0, 0], wanted, 1e-10)
 
 
-@ROWS.add("tension and twist of shafts", "own", "rods in closed form")
+@ROWS.add("tension and torsion of shafts", "own", "rods in closed form")
 def tension_and_twist() -> Iterator[Compared]:
     """Free end of a hollow shaft."""
     from fegear.shafts.held import LoadedShaft, Seat

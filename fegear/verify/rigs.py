@@ -120,6 +120,6 @@ def shooting(system: FourInertia, rpm: float, amplitude: float, tolerance: float
 CASES = {
     # rpm, backlash, amplitude of the transmission error, mean force, damping ratio of the shafts
     "always in contact": (5000.0, math.inf, 0.0, 8890.0, 0.8),
-    "contact loss": (10500.0, math.inf, 0.0, 8890.0, 0.1),
-    "contact loss and backside contact": (7500.0, 1.2e-5, 1.08e-5, 1000.0, 0.8),
+    "loss of contact": (10500.0, math.inf, 0.0, 8890.0, 0.1),
+    "loss of contact and back-side contact": (7500.0, 1.2e-5, 1.08e-5, 1000.0, 0.8),
 }

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike
 
 #: What a number can be compared with, in the order of the page.
 AGAINST = {
-    "printed": "numbers that others printed: standards, papers, books, reports",
-    "program": "numbers of other programs",
-    "own": "closed forms and independent code of our own",
+    "printed": "published values: standards, papers, books, reports",
+    "program": "results of other programs",
+    "own": "closed-form solutions and independent code of the project",
 }
 
 

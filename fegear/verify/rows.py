@@ -30,7 +30,7 @@ def chosen(names: Sequence[str], against: str | None = None) -> tuple[Row, ...]:
         if name not in known:
             like = get_close_matches(name, known, 1)
             hint = f"did you mean {like[0]}?" if like else "see fegear verify --list"
-            raise InputError("row", name, "is none that there is", hint)
+            raise InputError("row", name, "is unknown", hint)
     rows = tuple(known[name] for name in names) if names else ALL
     return tuple(row for row in rows if against is None or row.against == against)
 
@@ -39,10 +39,10 @@ def said(outcome: Outcome) -> str:
     """A row that has run, for the terminal: two lines, and one for each number that is not as it should be."""
     row, largest = outcome.row, outcome.largest
     differing = len(outcome.compared) - len(outcome.held)
-    count = f"{len(outcome.compared)}" + (f", {differing} known to differ" if differing else "")
-    stated = "" if largest.stated is None else f", stated {largest.stated:.1e}"
+    count = f"{len(outcome.compared)}" + (f", {differing} with known differences" if differing else "")
+    stated = "" if largest.stated is None else f", estimated error {largest.stated:.1e}"
     sizes = f"largest difference {largest.deviation:.1e}{stated}, allowed {largest.allowed:.0e}"
-    verdict = "" if outcome.holds else "  DOES NOT HOLD"
+    verdict = "" if outcome.holds else "  FAILED"
     lines = [f"  {row.name:42} {row.capability}", f"  {'':42} numbers: {count}, {sizes}{verdict}"]
-    lines += [f"  {'':42} {one.found:.9g} for {one.wanted:.9g}" for one in outcome.wrong]
+    lines += [f"  {'':42} {one.found:.9g} instead of {one.wanted:.9g}" for one in outcome.wrong]
     return "\n".join(lines)

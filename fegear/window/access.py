@@ -35,7 +35,9 @@ _LEADS = (
     '<meta http-equiv="refresh" content="1; url={address}"><title>fegear</title></head>'
     '<body><script>location.replace({quoted})</script><a href="{address}">fegear</a></body></html>\n'
 )
-_REFUSED = "Refused: open the address that fegear open printed last. Each works once, for the account that runs it.\n"
+_REFUSED = (
+    "Access denied: open the address printed last by fegear open. Each address works once, for the same user account.\n"
+)
 #: Where Linux tells which account a connection belongs to.
 _CONNECTIONS = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 _ROOT = 0

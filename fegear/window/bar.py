@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 #: What can be written of a run: words of the menu, the job's name for it, ending of the folder that is offered.
-_OF_RUN = (("Report, tables, pictures", "report", ""), ("Tables only (CSV)", "tables", "_tables"))
+_OF_RUN = (("Report, tables, figures", "report", ""), ("Tables only (CSV)", "tables", "_tables"))
 
 
 def exports() -> tuple[tuple[str, str, str], ...]:
@@ -32,7 +32,7 @@ def exports() -> tuple[tuple[str, str, str], ...]:
 
 
 #: What the bar says of a text that takes a while to be judged.
-_CHECKED = "The text is long: it is being checked."
+_CHECKED = "Checking the text ..."
 
 
 def in_words(do: Callable[[], object]) -> None:
@@ -55,9 +55,9 @@ class Bar:
             self._redo = self._button("Redo", lambda: self._step("redo"))
             self._button("Save", self._save)
             self._button("Save as", lambda: self._ask_path("Save as", self._own_path(), self._save_as))
-            self._give_up = self._button("Give up changes", self._give_up_changes)
+            self._give_up = self._button("Discard changes", self._give_up_changes)
             with ui.button("Export").props("flat dense no-caps"), ui.menu():
-                ui.menu_item("Case (TOML), as it is now", lambda: in_words(self._download))
+                ui.menu_item("Case (TOML), current state", lambda: in_words(self._download))
                 for words, what, ending in exports():
                     ui.menu_item(words, partial(in_words, partial(self._ask_folder, what, ending)))
             self._pin = self._button("Pin as A", self._pin_or_not)
@@ -78,7 +78,7 @@ class Bar:
     def _desk(self) -> Desk:
         desk = self._bench.desk
         if desk is None:
-            raise InputError("case", "(none)", "is not open any more", "choose a template or a case")
+            raise InputError("case", "(none)", "is no longer open", "choose a template or a case")
         return desk
 
     def refresh(self) -> None:
@@ -148,7 +148,7 @@ class Bar:
         try:
             desk.save()
         except FegearError as error:
-            self._confirm(str(error), "Replace it", partial(self._save_over, desk))
+            self._confirm(str(error), "Overwrite", partial(self._save_over, desk))
             return
         self._saved()
 
@@ -165,9 +165,9 @@ class Bar:
         try:
             self._desk.save_as(path, replace=replace)
         except InputError as error:
-            if not error.rule.startswith("is there"):
+            if not error.rule.startswith("already exists"):
                 raise
-            self._confirm(str(error), "Replace it", partial(self._save_as, text, replace=True))
+            self._confirm(str(error), "Overwrite", partial(self._save_as, text, replace=True))
             return
         self._saved()
 

@@ -398,7 +398,7 @@ class Bench:
 
     def _on_desk(self) -> Desk:
         if self.desk is None:
-            raise InputError("case", "(none)", "is not open any more", "choose a template or a case")
+            raise InputError("case", "(none)", "is no longer open", "choose a template or a case")
         return self.desk
 
     def _put(self, text: str, *, moving: bool) -> None:
@@ -442,7 +442,7 @@ class Bench:
         if what in ("refused", "done") and said.number != self._number:
             return
         if what == "done":
-            content["level"] = "" if self.level == "normal" else f" ({self.level}, not the case's own)"
+            content["level"] = "" if self.level == "normal" else f" ({self.level}, differs from the case)"
         self._keep(what, content)
         self.tell(what, content)
         if what == "done":

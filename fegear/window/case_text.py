@@ -121,7 +121,7 @@ def with_values(text: str, changes: Mapping[Path, str | None]) -> str:
 
 
 def _refused(path: Path, value: str | None) -> InputError:
-    return InputError(".".join(path), value or "(removed)", "cannot be changed by itself", "change it in the text")
+    return InputError(".".join(path), value or "(removed)", "cannot be changed individually", "change it in the text")
 
 
 @functools.lru_cache(maxsize=8)
@@ -148,11 +148,11 @@ def _changed(document: Mapping[str, Any], path: Path, value: str | None) -> dict
     for step, after in itertools.pairwise(path):
         table = table.setdefault(step, {}) if isinstance(table, dict) else value_at(table, (step,))
         if not isinstance(table, dict) and value_at(table, (after,)) is None:
-            raise InputError(".".join(path), value, f'cannot be set: "{step}" is no table', "change it in the text")
+            raise InputError(".".join(path), value, f'cannot be set: "{step}" is not a table', "change it in the text")
     try:
         table[path[-1]] = tomllib.loads(f"value = {value}")["value"]
     except (ValueError, KeyError):
-        raise InputError(".".join(path), value, "is no value", 'write for example "3 mm", 0.25 or true') from None
+        raise InputError(".".join(path), value, "is not a valid value", 'for example "3 mm", 0.25 or true') from None
     return made
 
 

@@ -143,7 +143,7 @@ class Computing:
             self._again()
         for number in lost:
             if self.hear is not None:
-                self.hear(Said(number, "refused", {"sentence": "It ended before it was done (out of memory?).",
+                self.hear(Said(number, "refused", {"sentence": "Computation terminated unexpectedly (out of memory?).",
                                                    "key": ""}))  # fmt: skip
 
     def close(self) -> None:

@@ -38,12 +38,12 @@ def design_asked(asked: Asked, pair: str, how: How) -> Asked:
     driver, driven = (value_at(document, ("pair", pair, member)) for member in ("driver", "driven"))
     if driver == driven:
         raise InputError(
-            f"pair.{pair}.driven", f'"{driven}"', "is the driver as well, and a design gives each its own relief",
-            "give the driven gear a name of its own",
+            f"pair.{pair}.driven", f'"{driven}"', "is also the driver; the design needs separate gears",
+            "use a separate name for the driven gear",
         )  # fmt: skip
     if how == "ground" and value_at(document, ("design", "grind")) == []:
         raise InputError(
-            "design.grind", "[]", "allows no shape of relief to grind", 'write grind = ["linear", "parabolic"]'
+            "design.grind", "[]", "contains no grindable shape of relief", 'set grind = ["linear", "parabolic"]'
         )
     changes: dict[Path, str | None] = {("results",): '["relief"]', ("design", "pair"): literal(pair)}
     if how == "exact":
@@ -133,5 +133,5 @@ def draft_of(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
     # A case that names its settings is solved with them.
     if not any(key_without_needs(scene, step) != key_without_needs(rough, step) for step in anew):
         return None
-    told = f"Draft on a mesh for a tolerance of {tolerance:.2g}, errors not estimated; that at {own:.2g} follows."
+    told = f"Preview with tolerance {tolerance:.2g} (no error estimate); result with {own:.2g} follows."
     return Draft(rough, replace(plan, steps=steps), told)

@@ -78,11 +78,11 @@ def check_text(text: str, key: str = "case") -> str:
         If it holds half a character or is too long.
     """
     if len(text) > LARGEST:
-        rule = f"has {len(text)} characters, and the window takes {LARGEST} at most"
-        raise InputError(key, "(text)", rule, "put tables into files of their own, or use fegear run")
+        rule = f"has {len(text)} characters; the maximum is {LARGEST}"
+        raise InputError(key, "(text)", rule, "move tables to separate files, or use fegear run")
     if (half := HALVES.search(text)) is not None:
         line = text.count("\n", 0, half.start()) + 1
-        raise InputError(key, "(text)", f"has half a character in line {line}, which no file takes", "remove it")
+        raise InputError(key, "(text)", f"contains an invalid character (surrogate) in line {line}", "remove it")
     return text
 
 
@@ -152,13 +152,13 @@ class Desk:
                 outdated.append(left)
             elif not desk.restored and desk._journal.take(left):
                 desk.change(left.kept.text)
-                desk.restored = f"Changes of {left.kept.when} that were not saved are here again."
+                desk.restored = f"Unsaved changes of {left.kept.when} restored."
         if outdated and not desk.restored:
             desk._outdated = left = outdated[0]
             desk._states, desk._at = [left.kept.text, file.text], 1
             desk.restored = (
-                f"The file is no longer what changes of {left.kept.when} began with, which were not saved; "
-                "Undo has the case with them."
+                f"The file was modified since the unsaved changes of {left.kept.when}; Undo restores the case with "
+                "these changes."
             )
         return desk
 
@@ -173,8 +173,8 @@ class Desk:
         """
         desk = cls(left.kept.text, left.kept.name, Path(left.kept.origin), None, reach)
         if not desk._journal.take(left):
-            raise InputError("case", f'"{left.kept.name}"', "is open in another window by now", "go on there")
-        desk.restored = f"Changes of {left.kept.when} that were not saved are here again."
+            raise InputError("case", f'"{left.kept.name}"', "is now open in another window", "continue there")
+        desk.restored = f"Unsaved changes of {left.kept.when} restored."
         return desk
 
     @property
@@ -242,7 +242,10 @@ class Desk:
             return judged(text, self.name, self.folder, within)
         except Exception as error:  # noqa: BLE001 - printed, and said where a refusal is
             traceback.print_exc()
-            fault = f"A fault of fegear, not of the case ({type(error).__name__}: {error}); the terminal shows where."
+            fault = (
+                f"Internal error in fegear ({type(error).__name__}: {error}), not caused by the case; see the "
+                "terminal for details."
+            )
             return Verdict(None, None, FegearError(fault))
 
     def _judge_late(self) -> None:
@@ -300,7 +303,7 @@ class Desk:
             self.change(with_value(self.text, path, value))
         except ValueError as error:
             raise InputError(
-                "case", f'"{self.name}.toml"', f"is no valid TOML: {error}", "correct the text first"
+                "case", f'"{self.name}.toml"', f"invalid TOML: {error}", "correct the text first"
             ) from None
 
     def undo(self) -> None:
@@ -341,7 +344,9 @@ class Desk:
             self.trouble = ""
         except OSError as error:
             place = f" ({error.filename})" if error.filename else ""
-            self.trouble = f"Changes are not kept beyond a crash: {error.strerror or error}{place}; make room."
+            self.trouble = (
+                f"Changes cannot be recovered after a crash: {error.strerror or error}{place}; free disk space."
+            )
 
     def save(self, *, over_others: bool = False) -> None:
         """Write the text into its file, which is then whole at any moment.
@@ -352,12 +357,12 @@ class Desk:
             If it has no file, the file was changed by somebody else, or it cannot be written.
         """
         if self.path is None:
-            raise InputError("case", self.name, "has no file yet", "save it under a name")
+            raise InputError("case", self.name, "has no file yet", "save it first")
         path = self._within_reach(self.path)
         if not over_others and path.exists() and read_file(path, "case").digest != self._file.digest:
             raise InputError(
-                "case", shown(str(self.path), PATH), "was changed by somebody else since it was opened",
-                "save under another name, or save again to replace it",
+                "case", shown(str(self.path), PATH), "was modified by another program since it was opened",
+                "save under another name, or save again to overwrite it",
             )  # fmt: skip
         self._write(path)
         self._settled()
@@ -375,12 +380,12 @@ class Desk:
         """
         told = shown(str(path), PATH)
         if path.name in ("", ".."):
-            raise InputError("case", told, "is a folder, not a file's name", "write a name behind it")
+            raise InputError("case", told, "is a folder, not a file name", "add a file name")
         path = self._within_reach(path if path.suffix == ".toml" else path.with_name(f"{path.name}.toml"))
         if not os.path.isdir(path.parent):  # noqa: PTH112  (Path's own raises where a name is too long)
-            raise InputError("case", told, "lies in a folder that is not there", "choose another, or make it first")
+            raise InputError("case", told, "is in a folder that does not exist", "choose another, or create it first")
         if os.path.lexists(path) and not replace:
-            raise InputError("case", told, "is there already", "choose another name")
+            raise InputError("case", told, "already exists", "choose another name")
         self._write(path)
         self._journal.forget()
         self._journal = Journal(path)
@@ -394,7 +399,7 @@ class Desk:
             data = self._file.written(self.text)
         except UnicodeEncodeError:
             raise InputError(
-                "case", f'"{self.name}"', "holds half a character, which no file takes", "correct the text"
+                "case", f'"{self.name}"', "contains an invalid character (surrogate)", "correct the text"
             ) from None
         write_file(path, data, "case")
         self._file = self._file._replace(text=self.text, digest=digest_of(data))

@@ -160,7 +160,7 @@ def own_name(text: str, document: Mapping[str, Any], pair: str) -> str:
     """
     gears, gear = _tables(document, "gear"), value_at(document, ("pair", pair, "driven"))
     if gear not in gears:
-        raise InputError(f"pair.{pair}.driven", gear, "is no gear of this case")
+        raise InputError(f"pair.{pair}.driven", gear, "is not a gear of this case")
     name = next(n for n in (f"{gear}_driven", *(f"{gear}_driven_{i}" for i in range(2, 99))) if n not in gears)
     text = with_value(text, ("pair", pair, "driven"), literal(name))
     lines = [f"{key} = {literal(value)}" for key, value in gears[gear].items()]

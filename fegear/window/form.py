@@ -227,8 +227,8 @@ def _kind(kinds: list[Mapping[str, Any]]) -> Kind:
     return "number" if types <= {"integer", "number"} else "toml"
 
 
-#: How remarks name a key: "no face_width was given", "Write corner_contact = true", "effects.relief is off".
-_NAMED_KEY = re.compile(r"\bno (\w+) was given|\b(\w+) = |\beffects\.(\w+)|\b(\w+) is off")
+#: How notes name a key: "face_width not specified", "Set corner_contact = true", "effects.relief is off".
+_NAMED_KEY = re.compile(r"\b(\w+) not specified\b|\b(\w+) = |\beffects\.(\w+)|\b(\w+) is off")
 
 
 def fields_told(sections: tuple[Section, ...], remarks: Sequence[str]) -> dict[Path, str]:

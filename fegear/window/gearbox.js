@@ -36,7 +36,7 @@ const fegearGearbox = (() => {
   function boxOf() {
     const host = made("section", "hand"), stage = made("div", "mesh-stage"), canvas = made("canvas"), tools = made("p", "mesh-tools"), told = made("p", "quiet mesh-told");
     const label = made("label", "mesh-factor"), slider = Object.assign(made("input"), { type: "range", min: 0, max: 600, value: 0 }), value = made("b"), pairs = made("span", "mesh-pairs");
-    slider.setAttribute("aria-label", "Deflections drawn so many times as large");
+    slider.setAttribute("aria-label", "Deflection scale factor");
     label.append("deflection", slider, value);
     canvas.setAttribute("role", "img");
     stage.append(canvas);
@@ -130,7 +130,7 @@ const fegearGearbox = (() => {
       label.hidden = !bent;
       value.textContent = `${digits(f, 3)} ×`;
       if (bent) slider.value = f > 0 ? round(100 * Math.log10(f)) : 0;
-      told.textContent = bent ? `Deflection of the shafts drawn ${digits(f, 3)} times as large; the largest displacement is ${digits(bent.largest, 3)} µm. Bearings are drawn where they stand unloaded, as rings about their seats.` : "The deflection of the shafts comes with the next results.";
+      told.textContent = bent ? `Deflection of the shafts drawn ${digits(f, 3)} scale factor; maximum displacement ${digits(bent.largest, 3)} µm. Bearings are shown in their unloaded position.` : "The deflection of the shafts comes with the next results.";
       canvas.setAttribute("aria-label", `Gearbox: shafts ${Object.keys(data.places).join(", ")}; meshes ${Object.keys(data.meshes).join(", ")}. ${told.textContent}`);
     }
     let pressed = null;

@@ -6,7 +6,7 @@ const fegearGears = (() => {
   const loadsOf = new Map(); // pair -> { x, load }
   const KINDS = { // what can be switched on
     stress: ["Root stress", "Root stress along the fillets of all teeth, in colour"],
-    deformed: ["Deformed", "Teeth as the load deforms them, displacements many times as large"],
+    deformed: ["Deformed", "Deformed teeth (displacements magnified)"],
     tool: ["Tool", "Positions of the rack tool that generates the teeth, in one space of either gear"],
   };
 
@@ -43,9 +43,9 @@ const fegearGears = (() => {
       large.textContent = on ? "Back" : "Enlarge";
       large.setAttribute("aria-pressed", String(on));
     });
-    const back = button("◀", "A step back", step(-1)), on = button("▶", "A step on", step(1));
-    back.setAttribute("aria-label", "A step back");
-    on.setAttribute("aria-label", "A step on");
+    const back = button("◀", "Previous position", step(-1)), on = button("▶", "Next position", step(1));
+    back.setAttribute("aria-label", "Previous position");
+    on.setAttribute("aria-label", "Next position");
     tools.append(play, back, on, scrub, large);
     scrub.oninput = () => { kept.place = scrub.value / 1000; draw(); };
     const more = layersOf(pair, kept, () => draw());
@@ -218,7 +218,7 @@ const fegearGears = (() => {
     }
     const label = document.createElement("label"), words = document.createElement("span"), value = document.createElement("b");
     const slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 300, value: 0 });
-    slider.setAttribute("aria-label", "Displacements drawn so many times as large");
+    slider.setAttribute("aria-label", "Displacement scale factor");
     label.className = "mesh-factor";
     label.hidden = true;
     words.textContent = "magnified";
@@ -331,7 +331,7 @@ const fegearGears = (() => {
         const pressure = kept.sent.pressure;
         if (!pressure || !kept.data) return;
         const largest = fegearFlanks.draw(flanks, kept.data, pressure, kept.place, turned);
-        now.textContent = `up to ${digits(largest, 4)} MPa at this position; colours: of each place while it is in contact, without tips and form circles`;
+        now.textContent = `up to ${digits(largest, 4)} MPa at this position; colours: maximum over the mesh cycle, excluding tips and form circles`;
       },
       take(content) {
         const { kind } = content, made = content.refused ? content : { stress: fegearLayers.stressOf, deformed: fegearLayers.deformedOf, field: fegearField.made }[kind]?.(content) ?? content;

@@ -54,7 +54,7 @@ const fegearGlance = (() => {
       const one = told.pictures[name], figure = made("figure", "small"), title = made("button", "small-title", one.words);
       Object.assign(title, { type: "button", title: `Enlarge: ${one.words}` });
       figure.dataset.picture = name;
-      const body = made("div", "small-body"), empty = made("p", "quiet", "comes with the next results that have it");
+      const body = made("div", "small-body"), empty = made("p", "quiet", "not yet available");
       body.append(empty);
       const legend = made("p", "small-legend");
       figure.append(title, legend, body);

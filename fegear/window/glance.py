@@ -41,16 +41,16 @@ class Picture(NamedTuple):
 #: What the column on the right may show, by name; keys are followed by the name of the pair, or of the set.
 PICTURES = {
     "te": Picture("Transmission error", "transmission-error", "transmission_error_"),
-    "sharing": Picture("Load on a tooth pair", "load-sharing", "load_sharing_"),
+    "sharing": Picture("Tooth pair load", "load-sharing", "load_sharing_"),
     "root": Picture("Root stress", "root-stress-history", "root_stress_history_"),
     "harmonics": Picture("Harmonics", "transmission-error", "transmission_error_harmonics_"),
     "pressure": Picture("Contact pressure", "load-sharing", "load_sharing_", 2),
     "stiffness": Picture("Mesh stiffness", "transmission-error", "transmission_error_", 2),
-    "line-load": Picture("Load over the face", "load-distribution", "load_over_face_"),
+    "line-load": Picture("Load distribution over face width", "load-distribution", "load_over_face_"),
     "pattern": Picture("Contact pattern", "contact-pattern", "contact_pattern_"),
-    "planet-loads": Picture("Load of the planets", "planet-load-sharing", "planet_load_sharing_", of="set"),
-    "set-te": Picture("Transmission error of the set", "planet-load-sharing", "planet_load_sharing_", 2, of="set"),
-    "set-forces": Picture("Forces across the axis", "planet-load-sharing", "planet_forces_", of="set"),
+    "planet-loads": Picture("Planet load sharing", "planet-load-sharing", "planet_load_sharing_", of="set"),
+    "set-te": Picture("Transmission error, planetary set", "planet-load-sharing", "planet_load_sharing_", 2, of="set"),
+    "set-forces": Picture("Radial forces", "planet-load-sharing", "planet_forces_", of="set"),
 }
 #: What may be shown of the stress inside the teeth.
 MEASURES = ("mises", "tension", "pressure", "none")
@@ -62,10 +62,10 @@ USUAL_SET = ("planet-loads", "set-te", "set-forces")
 NUMBERS = {
     "te_peak_to_peak": "transmission error, p-p",
     "unloaded_te_peak_to_peak": "unloaded transmission error, p-p",
-    "K_gamma": "K_gamma, load of the planets",
+    "K_gamma": "K_gamma, planet load sharing",
     "mesh_stiffness_mean": "mesh stiffness, mean",
-    "driver.largest_root_tension": "root tension, driver",
-    "driven.largest_root_tension": "root tension, driven",
+    "driver.largest_root_tension": "root stress, driver",
+    "driven.largest_root_tension": "root stress, driven",
     "largest_hertz_pressure": "contact pressure",
     "driver.S_F": "S_F, driver",
     "driven.S_F": "S_F, driven",

@@ -115,10 +115,10 @@ const fegearHands = (() => {
       tools.append(button(`Add ${end} relief`, "10 µm from the usual point", () => emitEvent("relief", {
         gear: relief.gear, end, start: relief.usual[end], amount: 10, moving: false })));
     }
-    if (relief.given.length) tools.append(button("Without relief", "Leave the relief of this gear out", () => emitEvent("drop", { gear: relief.gear })));
+    if (relief.given.length) tools.append(button("Without relief", "Remove the relief of this gear", () => emitEvent("drop", { gear: relief.gear })));
     if (relief.given.includes("table")) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "Its table is part of the curve, and is changed in the form or the text." }));
     if (relief.over_face.length) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: `What is removed over the face (${relief.over_face.join(", ")}) is changed in the form or the text.` }));
-    if (relief.given.length && !relief.on) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "The effect relief is off: it changes no result." }));
+    if (relief.given.length && !relief.on) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "No influence: effects.relief is off." }));
   }
 
   // ---- load -------------------------------------------------------------------------------------------------------
@@ -177,12 +177,12 @@ const fegearHands = (() => {
       kept.load.set(content.load);
       const { tools } = kept, offered = content.load ? `${!!content.designs} ${content.reliefs.length}` : "";
       if (kept.offered !== offered) tools.replaceChildren(...(!content.designs && content.load ? [
-        Object.assign(document.createElement("span"), { className: "quiet", textContent: "Reliefs by theory and the nearest that can be ground are those of plane teeth; tip relief, crowning and slope of gears with a width are what the result flank-design finds." }),
+        Object.assign(document.createElement("span"), { className: "quiet", textContent: "Available for plane (2D) teeth only; for 3D gears (tip relief, lead crowning, helix slope) use the result flank-design." }),
       ] : content.reliefs.length === 1 && content.load ? [
-        button("Give the driven gear a name of its own", "Driver and driven are one gear of the case; relief by theory gives each its own", () => emitEvent("name_driven", { pair })),
+        button("Create a separate driven gear", "Driver and driven are one gear of the case; relief by theory gives each its own", () => emitEvent("name_driven", { pair })),
       ] : content.reliefs.length > 1 && content.load ? [
-        button("Remove the transmission error", "Reliefs of both gears that leave none at this load (Mark, Eq. 4.6), as tables of the case", () => emitEvent("design", { pair, how: "exact" })),
-        button("Nearest that can be ground", "Linear or parabolic tip reliefs of both gears that leave the least at this load", () => emitEvent("design", { pair, how: "ground" })),
+        button("Design for zero transmission error", "Profile modification of both gears for zero transmission error at this load (Mark, Eq. 4.6), stored as tables", () => emitEvent("design", { pair, how: "exact" })),
+        button("Best grindable tip relief", "Linear or parabolic tip relief of both gears with minimum transmission error at this load", () => emitEvent("design", { pair, how: "ground" })),
       ] : []));
       kept.offered = offered;
       for (const relief of content.reliefs) {

@@ -89,11 +89,11 @@ class Inputs:
             for section in sections:
                 self._section(section)
             if left:
-                ui.label(f"{left} more tables are in the text only.").classes("about")
+                ui.label(f"{left} more tables in the text only.").classes("about")
             more = tables_to_add(self._desk.document)
             if more:
                 ui.html("Add a table", tag="h3")
-                choice = ui.select(more_labels(more), label="What else the case may say", on_change=self._table_chosen)
+                choice = ui.select(more_labels(more), label="Add further input", on_change=self._table_chosen)
                 choice.props("outlined dense options-dense").style("width: 100%")
         for path, text in typed.items():
             again: Any = self._elements.get(path)
@@ -130,7 +130,7 @@ class Inputs:
                 self._section(inner)
             left = section.left_out
             if left:
-                with ui.expansion(f"{len(left)} more with their defaults").props("dense dense-toggle") as more:
+                with ui.expansion(f"{len(left)} further keys (defaults)").props("dense dense-toggle") as more:
                     opened: list[bool] = []
 
                     def fill(event: Any, more: Any = more, left: Any = left, opened: Any = opened) -> None:
@@ -145,7 +145,7 @@ class Inputs:
                     self._places[field.path] = more
                     self._held[field.path] = field
                 if marked := [field.label for field in left if field.path in self._warned]:
-                    more.props["caption"] = f"assumed or not given: {', '.join(marked)}"
+                    more.props["caption"] = f"assumed or not specified: {', '.join(marked)}"
 
     def _field(self, field: Field) -> None:
         commit = partial(self._typed, field)
@@ -199,7 +199,7 @@ class Inputs:
                 self._tell(path)
         for fold in set(self._places.values()):
             inside = [path[-1].replace("_", " ") for path in told if self._places.get(path) is fold]
-            fold.props["caption"] = f"assumed or not given: {', '.join(inside)}" if inside else ""
+            fold.props["caption"] = f"assumed or not specified: {', '.join(inside)}" if inside else ""
             fold.update()
 
     # ---- changes -------------------------------------------------------------------------------------------------
@@ -249,13 +249,13 @@ class Inputs:
 
     def leave_too_long(self) -> None:
         """Say that the text is too long to be taken: the page has not sent it."""
-        self._leave_untaken(f"it is longer than {LARGEST} characters; put tables into files of their own.")
+        self._leave_untaken(f"it exceeds {LARGEST} characters; move tables to separate files.")
 
     def _leave_untaken(self, sentence: str) -> None:
         """Leave a text that cannot be the case's in its field, and say so, until it can."""
-        self._not_taken = f"Not taken, and kept in this field only: {sentence}"
+        self._not_taken = f"Not accepted (kept in this field only): {sentence}"
         self._text_refusal.set_text(self._not_taken)
-        self._refusal.set_text(f"The text is not taken: {sentence}")
+        self._refusal.set_text(f"Text not accepted: {sentence}")
 
     def _table_chosen(self, event: Any) -> None:
         if not event.value:

@@ -36,13 +36,12 @@ _SPELL, _REST = 0.03, 0.02
 _FAREWELL = 3.0
 #: Messages that come in pieces at the same time from one page.
 _OPEN = 8
-_NOT_TAKEN = "What this page has sent could not be read, and is not taken: change it once more, or load the page again."
+_NOT_TAKEN = "Input from this page could not be read. Repeat the change or reload the page."
 #: What is said where somebody puts in more than a case may have.
 TOO_LONG = (
-    f"Not put in: the text would have more than {LARGEST} characters, which is the most that the window takes; "
-    "put tables into files of their own, or use fegear run."
+    f"Not inserted: the text would exceed {LARGEST} characters; move tables to separate files, or use fegear run."
 )
-_GONE = "The form has been made anew since, for another page changed the case: what was typed last is not taken."
+_GONE = "The case was changed in another page; the last input was not accepted."
 #: What is said with each kind of event, and what each part of it must be.
 EVENTS: dict[str, dict[str, type]] = {
     "relief": {"gear": str, "end": str, "index": int, "start": float, "amount": float, "moving": bool},
@@ -80,7 +79,7 @@ def checked(kind: str, said: object) -> dict[str, Any]:
     """
     parts = EVENTS[kind]
     if not isinstance(said, dict) or not set(parts) - _FREE <= set(said) <= set(parts):
-        raise InputError(f"page.{kind}", _short(said), f"must have {', '.join(parts)}", "load the page again")
+        raise InputError(f"page.{kind}", _short(said), f"must have {', '.join(parts)}", "reload the page")
     for name, value in said.items():
         if not _is_a(value, parts[name]):
             raise InputError(f"page.{kind}.{name}", _short(value), f"must be {_KINDS[parts[name]]}")
@@ -89,7 +88,13 @@ def checked(kind: str, said: object) -> dict[str, Any]:
     return dict(said)
 
 
-_KINDS = {str: "a text", int: "a whole number from 0", float: "a finite number", bool: "true or false", list: "names"}
+_KINDS = {
+    str: "a text",
+    int: "a whole number, at least 0",
+    float: "a finite number",
+    bool: "true or false",
+    list: "names",
+}
 
 
 def _is_a(value: object, kind: type) -> bool:
@@ -239,7 +244,7 @@ def refuse(client: Client, sentence: str) -> None:
 def _log(_socket: str, said: object = None, *_more: object) -> None:
     """Print what a page's scripts complain of, on one line whatever it is."""
     if _client_of(said) is not None and isinstance(said, dict) and said.get("level") in ("warning", "error"):
-        complain(f"The page says: {shown(said.get('message', ''), PATH)}")
+        complain(f"Browser message: {shown(said.get('message', ''), PATH)}")
 
 
 def _guarded(hear: Callable[..., Any]) -> Callable[..., Awaitable[Any]]:

@@ -185,8 +185,8 @@ UNASKED = ("pressure", "loads", "bent")
 
 #: Why deformed teeth are not shown of gears with a width.
 _NOT_PLANE = (
-    "It is shown only of pairs of plane teeth: of gears with a width flanks and fillets are known, not how tips and "
-    "the flanks behind move."
+    "Available for plane (2D) tooth pairs only: for 3D gears the displacement of tips and non-working flanks is not "
+    "computed."
 )
 
 

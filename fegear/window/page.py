@@ -135,7 +135,7 @@ class Page:
                 with ui.element("main").classes("outputs").props('aria-label="Results"'):
                     with ui.element("div").props("id=glance"):
                         ui.element("div").props("id=hands")
-                        ui.element("div").props('id=small role=region aria-label="Small pictures"')
+                        ui.element("div").props('id=small role=region aria-label="Thumbnails"')
                         ui.element("div").props('id=strip role=region aria-label="Numbers"')
                     with ui.element("div").props("id=report"):
                         for name in ("remarks", "maps", "designed", "compared", "results"):
@@ -162,7 +162,7 @@ class Page:
         except FegearError as error:
             ui.notify(str(error), type="warning", multi_line=True)
         except tomllib.TOMLDecodeError as error:
-            ui.notify(f"The case is no valid TOML: {error}; correct the text first.", type="warning", multi_line=True)
+            ui.notify(f"The case is not valid TOML: {error}. Correct the text first.", type="warning", multi_line=True)
 
     def _hear(self, what: str, content: dict[str, Any]) -> None:
         if what == "changed":
@@ -245,23 +245,23 @@ def start_page(bench: Bench) -> None:
         ui.html("fegear", tag="h1")
         unsaved = left_behind(None)
         if unsaved:
-            ui.html("Left unsaved", tag="h2")
+            ui.html("Unsaved cases", tag="h2")
             with ui.element("div").classes("offers"):
                 for left in unsaved:
-                    about = f"not saved under a name, last changed {left.kept.when}"
+                    about = f"unsaved, last changed {left.kept.when}"
                     _offer(left.kept.name, about, lambda left=left: lay_left(left))  # type: ignore[misc]
-        ui.html("Begin with a template", tag="h2")
+        ui.html("New case from template", tag="h2")
         with ui.element("div").classes("offers"):
             for kind, about in TEMPLATES.items():
                 _offer(kind, about, lambda kind=kind: bench.from_template(kind))  # type: ignore[misc]
         cases = gallery()
         if cases:
-            ui.html("Or with a copy of a case of the gallery", tag="h2")
+            ui.html("Copy of an example case", tag="h2")
             with ui.element("div").classes("offers"):
                 for name, file in cases.items():
                     title = str(tomllib.loads(file.read_text("utf-8")).get("title", ""))
                     _offer(name, title, lambda name=name: bench.from_gallery(name))  # type: ignore[misc]
-        ui.html("Or open a case file", tag="h2")
+        ui.html("Open a case file", tag="h2")
         with ui.row().classes("items-start w-full"):
             path = (
                 ui.input("Path of a case file (TOML)")

@@ -41,7 +41,7 @@ class Reach(NamedTuple):
         """
         for folder in folders:
             if not os.path.isdir(folder):  # noqa: PTH112  (Path's own raises where a name is too long)
-                raise InputError("--folder", shown(str(folder), PATH), "is not a folder", "name one that exists")
+                raise InputError("--folder", shown(str(folder), PATH), "is not a folder", "specify an existing folder")
         own = [case.parent, case] if case is not None else []
         return cls(
             tuple(dict.fromkeys(os.path.realpath(one) for one in (Path.cwd(), *own, *folders))),
@@ -58,7 +58,7 @@ class Reach(NamedTuple):
         """
         if not is_below(path, self.folders):
             raise InputError(
-                key, shown(str(path), PATH), f"is outside the folders opened here ({', '.join(self.folders)})",
+                key, shown(str(path), PATH), f"is outside the open folders ({', '.join(self.folders)})",
                 "start fegear open with --folder FOLDER",
             )  # fmt: skip
         return path

@@ -29,10 +29,7 @@ _TRIES, _PAUSE = 500, 0.01
 #: A browser that has not come to the page after this time may not be able to read what leads there [s].
 _ARRIVAL = 15.0
 #: What `fegear open` needs beside fegear.
-EXTRA = (
-    "fegear open needs NiceGUI; in a copy of the source run ./open.sh, which installs it, "
-    "elsewhere: pip install 'fegear[workbench]'"
-)
+EXTRA = "fegear open requires NiceGUI: run ./open.sh in the source folder, or pip install 'fegear[workbench]'"
 
 
 def free_port(wanted: int | None) -> int:
@@ -48,9 +45,7 @@ def free_port(wanted: int | None) -> int:
         try:
             probe.bind((HOST, wanted or 0))
         except (OSError, OverflowError) as error:
-            raise InputError(
-                "--port", wanted, f"cannot be listened on ({error})", "leave it out to have a free one chosen"
-            ) from None
+            raise InputError("--port", wanted, f"is not available ({error})", "remove it to use a free port") from None
         return int(probe.getsockname()[1])
 
 
@@ -177,13 +172,13 @@ class _Door:
                 break
             await asyncio.sleep(_PAUSE)
         self._say(f"Open {self._address(self._print_another)}")
-        self._say("It ends with Ctrl-C; what is not saved is kept for the next time.")
+        self._say("Stop with Ctrl-C; unsaved changes are kept for the next start.")
         if browser:
             await self._lead()
 
     def _print_another(self) -> None:
         with contextlib.suppress(OSError):  # of a terminal that is closed
-            self._say(f"That address has been used; for another browser open {self._address(self._print_another)}")
+            self._say(f"This address has been used; for another browser open {self._address(self._print_another)}")
 
     async def _lead(self) -> None:
         """Open a browser by a file: what stands on its command line is read by every account of this machine."""
@@ -191,13 +186,13 @@ class _Door:
         try:
             place = file_leading_to(self._address(arrived.set), self._folder)
         except OSError:
-            self._say("No browser is opened: the file that would lead it to the page cannot be written.")
+            self._say("Browser not opened: redirect file could not be written.")
             return
         threading.Thread(target=webbrowser.open, args=(place.as_uri(),), daemon=True).start()
         try:
             await asyncio.wait_for(arrived.wait(), _ARRIVAL)
         except TimeoutError:
-            self._say("No page has been opened yet. A browser in a sandbox (snap) cannot read the file that leads to")
-            self._say("the page: copy the address above into it.")
+            self._say("No page opened yet. A sandboxed browser (snap) cannot read the redirect file;")
+            self._say("copy the address above into the browser.")
             await arrived.wait()
         place.unlink(missing_ok=True)

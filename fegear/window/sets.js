@@ -41,7 +41,7 @@ const fegearSets = (() => {
     canvas.setAttribute("role", "img");
     const tools = made("p", "mesh-tools"), angle = Object.assign(made("input"), { type: "range", min: 0, max: 7200, value: 0 }), now = made("b"), told = made("p", "quiet mesh-told");
     const seen = made("select"), label = made("label", "mesh-measure"), kept = { name, host, data: null, loads: null, turned: 0, playing: false, focus: -1, frames: [] };
-    seen.append(...[["housing", "seen from the housing"], ["carrier", "seen from the carrier"]].map(([value, textContent]) => Object.assign(made("option"), { value, textContent })));
+    seen.append(...[["housing", "view fixed to housing"], ["carrier", "seen from the carrier"]].map(([value, textContent]) => Object.assign(made("option"), { value, textContent })));
     seen.setAttribute("aria-label", "Seen from");
     label.append(seen);
     const play = fegearGears.button("Play", "Turn the set", () => { kept.playing = !kept.playing; play.textContent = kept.playing ? "Pause" : "Play"; if (kept.playing) requestAnimationFrame(turn); });

@@ -107,7 +107,9 @@ class Worker:
             self._say("dropped")
         except MemoryError:
             self._begin_anew()
-            self._say("refused", sentence="Out of memory: ask for less at once, or allow more.", key="")
+            self._say(
+                "refused", sentence="Out of memory: reduce the problem size or increase the memory limit.", key=""
+            )
         except Exception as error:  # noqa: BLE001 - told and printed below; the window stays open
             if self._inbox.given_up:
                 self._say("dropped")
@@ -117,7 +119,7 @@ class Worker:
                 traceback.print_exc()
                 self._begin_anew()  # nobody knows what it has left half done
                 fault = f"{type(error).__name__}: {error}"
-                sentence = f"A fault of fegear, not of the case ({fault}); the terminal shows where."
+                sentence = f"Internal error in fegear ({fault}), not caused by the case; see the terminal for details."
                 self._say("refused", sentence=sentence, key="")
         finally:
             self._inbox.watch(None)

@@ -34,13 +34,13 @@ def gear_figure(name: str, gear: geometry.Gear) -> Figure:
     points = gear_outline(gear, _CHORD) * 1e3
     lines = (
         outline(np.hstack([points, points[:, :1]]), name, width=1.4),
-        outline(_circle(gear.pitch_radius * 1e3), "pitch circle", "grey", dash="dashdot", width=0.8),
+        outline(_circle(gear.pitch_radius * 1e3), "reference circle", "grey", dash="dashdot", width=0.8),
         outline(_circle(gear.bore_radius * 1e3), "held", "grey", width=0.8),
     )
     return Figure(
         f"gear_{name}", f"Gear {name}",
         f"{gear.teeth} teeth, module {gear.module * 1e3:.6g} mm, profile shift {gear.tooth.profile_shift:.4g}"
-        + (f"; the section across the axis, {gear.hand} hand." if gear.helix_angle else "."),
+        + (f"; transverse section, {gear.hand} hand." if gear.helix_angle else "."),
         (Panel(Axis("x", "mm"), Axis("y", "mm"), lines, equal=True, height=1.5),),
     )  # fmt: skip
 

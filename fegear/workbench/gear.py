@@ -97,7 +97,7 @@ class Gear(Described):
         """A gear from its name and its keys, ``teeth`` among them."""
         given: dict[str, Any] = {**table(keys, "keys"), "name": name}
         if "teeth" not in given:
-            raise InputError("teeth", "(not given)", "is required", "write for example teeth=20")
+            raise InputError("teeth", "(not given)", "is required", "for example teeth=20")
         return cls(**given)
 
     def changed(self, **keys: Any) -> Gear:

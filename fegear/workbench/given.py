@@ -42,7 +42,7 @@ def taken(value: Any, key: str, depth: int = 0) -> Any:
         If it is nested too deeply, holds bytes, sets, keys that are no texts, half a character, or an absurd number.
     """
     if depth > _DEEPEST:
-        raise InputError(key, "(a table)", f"is nested more than {_DEEPEST} deep", "check whether it holds itself")
+        raise InputError(key, "(a table)", f"is nested more than {_DEEPEST} deep", "check for self-reference")
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray) and value.ndim == 0:
@@ -50,10 +50,12 @@ def taken(value: Any, key: str, depth: int = 0) -> Any:
     if isinstance(value, str):
         return _text(value, key)
     if isinstance(value, int) and value.bit_length() > _BITS:
-        raise InputError(key, f"(a number of {value.bit_length()} bits)", "is beyond any machine", "check the number")
+        raise InputError(
+            key, f"(a number of {value.bit_length()} bits)", "is outside the plausible range", "check the number"
+        )
     if isinstance(value, (bytes, bytearray, memoryview, set, frozenset)):
-        kind = "a set, which has no order" if isinstance(value, (set, frozenset)) else "bytes, not a text"
-        raise InputError(key, shown(value), f"is {kind}", "write a list, or a text in quotes")
+        kind = "a set (unordered)" if isinstance(value, (set, frozenset)) else "bytes, not text"
+        raise InputError(key, shown(value), f"is {kind}", "use a list, or text in quotes")
     if isinstance(value, Mapping):
         return {_key(name, key): taken(one, f"{key}.{name}", depth + 1) for name, one in value.items()}
     if hasattr(value, "magnitude") and hasattr(value, "units"):
@@ -67,13 +69,13 @@ def _text(value: str, key: str) -> str:
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise InputError(key, shown(value), "holds half a character, which no file takes", "write it anew") from None
+        raise InputError(key, shown(value), "contains an invalid character (surrogate)", "correct the text") from None
     return str(value)
 
 
 def _key(name: object, key: str) -> str:
     if not isinstance(name, str):
-        raise InputError(key, shown(name), "is a key that is no text", "write it in quotes")
+        raise InputError(key, shown(name), "is not a text key", "put it in quotes")
     return _text(name, key)
 
 
@@ -99,7 +101,7 @@ def table(value: Any, key: str) -> dict[str, Any]:
         return {}
     if not isinstance(value, Mapping):
         raise InputError(
-            key, shown(value), "must be a mapping of keys to values", "write it as the table of a case file"
+            key, shown(value), "must be a mapping of keys to values", "use the form of a table of a case file"
         )
     found: dict[str, Any] = taken(value, key)
     return found
@@ -114,7 +116,7 @@ def name_of(value: Any) -> str:
         If it is no text.
     """
     if not isinstance(value, str):
-        raise InputError("name", shown(value), "is no text", 'write for example name="pinion"')
+        raise InputError("name", shown(value), "is not a text file", 'for example name="pinion"')
     return _text(value, "name")
 
 
@@ -129,7 +131,7 @@ def texts(value: Any, key: str, example: str = "geometry") -> list[str]:
     found = taken(value, key)
     found = [found] if isinstance(found, str) else found
     if not isinstance(found, list) or not all(isinstance(one, str) for one in found):
-        raise InputError(key, shown(value), "must be a text or a list of texts", f'write for example "{example}"')
+        raise InputError(key, shown(value), "must be a text or a list of texts", f'for example "{example}"')
     return found
 
 
@@ -145,7 +147,7 @@ def cache_of(value: Any, usual: SolutionCache | None = None) -> SolutionCache | 
         return usual
     if not isinstance(value, SolutionCache):
         raise InputError(
-            "cache", shown(value), "is no SolutionCache", "write cache=fegear.base.solution_cache.SolutionCache()"
+            "cache", shown(value), "must be a SolutionCache", "set cache=fegear.base.solution_cache.SolutionCache()"
         )
     return value
 
@@ -159,7 +161,7 @@ def folder_of(value: Any) -> Path:
         If it can be none.
     """
     if not isinstance(value, (str, os.PathLike)) or not isinstance(os.fspath(value), str):
-        raise InputError("folder", shown(value), "is no path", 'write for example "results/drive"')
+        raise InputError("folder", shown(value), "is not a path", 'for example "results/drive"')
     return named_path(os.fspath(value), "folder")
 
 

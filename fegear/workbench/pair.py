@@ -68,7 +68,7 @@ class Pair(Described):
     ) -> None:
         for role, gear in (("driver", driver), ("driven", driven)):
             if not isinstance(gear, Gear):
-                raise InputError(role, shown(gear), "is no fegear.Gear", f'write {role} = fegear.Gear(20, "3 mm")')
+                raise InputError(role, shown(gear), "must be a fegear.Gear", f'set {role} = fegear.Gear(20, "3 mm")')
         self.driver, self.driven = driver, driven
         self.name = name_of(name)
         source = {"source": compliance} if isinstance(compliance, str) else table(compliance, "compliance")
@@ -122,8 +122,8 @@ class Pair(Described):
         """
         if self.name not in self._scene.helical_pairs:
             raise InputError(
-                "helix_angle", "(not given)", "is what tooth contact analysis starts from",
-                'describe both gears with normal_module, helix_angle = "0 deg" and hand = "spur"',
+                "helix_angle", "(not given)", "is required for tooth contact analysis",
+                'specify both gears with normal_module, helix_angle = "0 deg" and hand = "spur"',
             )  # fmt: skip
         return self._scene.helical_pairs[self.name]
 
@@ -152,9 +152,9 @@ class Pair(Described):
             If the design has no such relief.
         """
         if not isinstance(design, Results):
-            raise InputError("design", shown(design), "is no design", "give what fegear.relief returned")
+            raise InputError("design", shown(design), "is not a relief design", "pass the result of fegear.relief")
         if not isinstance(shape, str):
-            raise InputError("shape", shown(shape), "is no text", 'write for example "linear"')
+            raise InputError("shape", shown(shape), "is not a text file", 'for example "linear"')
         labels = table_names(design.scene, self.name)
         reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
         driver, driven = (
@@ -208,6 +208,6 @@ def _relief(design: Results, pair: str, member: Member, label: str, shape: str) 
     rows = (ground["shape"] == shape) & (ground["gear"] == member)
     if not rows.any():
         known = ", ".join(f'"{one}"' for one in ["designed", *dict.fromkeys(ground["shape"].tolist())])
-        raise InputError("shape", f'"{shape}"', "is none of the designed reliefs", f"choose from {known}")
+        raise InputError("shape", f'"{shape}"', "is not one of the designed reliefs", f"choose from {known}")
     amount, start = (float(ground.column(key).si[rows][0]) for key in ("amount", "start_roll_angle"))
     return {"tip": {"amount": amount, "start_roll_angle": start, "shape": shape}}

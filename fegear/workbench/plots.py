@@ -78,10 +78,10 @@ class Plots:
         from fegear.output.draw_png import draw_pictures
 
         if not isinstance(kind, str) or kind not in ("png", "svg"):
-            raise InputError("kind", shown(kind), "is no kind of picture that fegear draws", 'choose "png" or "svg"')
+            raise InputError("kind", shown(kind), "is not a supported figure format", 'choose "png" or "svg"')
         target = folder_of(folder)
         try:
             target.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise InputError("folder", shown(str(target), PATH), f"cannot be made ({error.strerror})") from None
+            raise InputError("folder", shown(str(target), PATH), f"cannot be created ({error.strerror})") from None
         return [picture.path for figure in self.figures for picture in draw_pictures(figure.made(), target, kind)]

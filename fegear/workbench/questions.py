@@ -25,7 +25,7 @@ _TITLES = {
     "stiffness": "Stiffness",
     "crosscheck": "Root stress and compliance",
     "load-sharing": "Load sharing",
-    "root-stress-history": "Root stress through the mesh",
+    "root-stress-history": "Root stress over the mesh cycle",
     "transmission-error": "Transmission error",
     "relief": "Relief",
     "dynamic-factor": "Dynamic factor",
@@ -62,11 +62,11 @@ def ask_of_pair(
 def _one_load(pair: Pair, torque: object, load: object) -> None:
     """Refuse what is no pair, and both loads or none."""
     if not isinstance(pair, Pair):
-        raise InputError("pair", shown(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
+        raise InputError("pair", shown(pair), "must be a fegear.Pair", "use fegear.Pair(pinion, wheel)")
     if (torque is None) == (load is None):
         raise InputError(
-            "torque", "(not given)" if torque is None else "(given)", "must be given, or load instead",
-            'write torque="90 N*m" on the driver, or load="3 kN" along the line of action',
+            "torque", "(not given)" if torque is None else "(given)", "is required, or load",
+            'set torque="90 N*m" on the driver, or load="3 kN" along the line of action',
         )  # fmt: skip
 
 
@@ -122,7 +122,7 @@ def stiffness_table(
         Table ``stiffness_<gear>``; with face positions ``stiffness_over_face_<gear>``.
     """
     if not isinstance(gear, Gear):
-        raise InputError("gear", shown(gear), "is no fegear.Gear", 'write fegear.Gear(20, "3 mm")')
+        raise InputError("gear", shown(gear), "must be a fegear.Gear", 'use fegear.Gear(20, "3 mm")')
     part: dict[str, Any] = {"gear": gear.name}
     given = {"radii": None if radii is None else listed(radii, "radii") or [radii], "positions": positions,
              "contact_half_width": contact_half_width, "face_positions": face_positions, "source": source}  # fmt: skip
@@ -171,23 +171,21 @@ def root_stress(
     """
     if isinstance(gears, Pair):
         if positions is not None:
-            raise InputError(
-                "positions", shown(positions), "is for gears: a pair's contacts pass along the flank", "leave it out"
-            )
+            raise InputError("positions", shown(positions), "applies to gears only", "remove it")
         document = _loaded(gears, torque, load)
         return ask_of_pair(
             "root-stress-history", gears, document, effects, tolerance, progress, cache, neglected=neglected
         )
     for key, given in (("torque", torque), ("load", load), ("effects", effects)):
         if given is not None:
-            raise InputError(key, brief(given), "is for pairs, and these are gears", "give a fegear.Pair, or no load")
+            raise InputError(key, brief(given), "applies to pairs, not to gears", "specify a fegear.Pair, or no load")
     found = [gears] if isinstance(gears, Gear) else list(gears) if isinstance(gears, Iterable) else []
     if not found or not all(isinstance(gear, Gear) for gear in found):
-        raise InputError("gears", brief(gears), "must be gears", 'write fegear.Gear(20, "3 mm", name="z20")')
+        raise InputError("gears", brief(gears), "must be gears", 'use fegear.Gear(20, "3 mm", name="z20")')
     names = [gear.name for gear in found]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("gears", f'"{name}"', "is the name of several gears", 'give each its own: name="z20"')
+            raise InputError("gears", f'"{name}"', "is the name of several gears", 'use unique names: name="z20"')
     document = {"gear": {gear.name: gear.keys for gear in found}, "stiffness": {"positions": positions or 20}}
     return run_scene(_scene("crosscheck", document, tolerance), progress=progress, cache=cache_of(cache))
 
@@ -358,10 +356,7 @@ def dynamic_factor(
     found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache, neglected=neglected)
     if train is not None:
         return found
-    said = (
-        "No train was given; assumed default: the gears turn, with their own inertia, between steady torques, without "
-        "shafts."
-    )
+    said = "Train not specified: gears with their own inertia under constant torques, without shafts."
     if damping_ratio is None:
-        said += f" No damping_ratio was given; assumed default: {ratio:g} in the mesh."
+        said += f" Damping ratio of the mesh not specified, {ratio:g} assumed."
     return replace(found, plan=replace(found.plan, remarks=(*found.plan.remarks, said)))

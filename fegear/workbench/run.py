@@ -68,7 +68,7 @@ def run(
     """
     wanted = table(changes, "changes") | ({} if results is None else {"results": texts(results, "results")})
     if scheduler is not None and not isinstance(scheduler, str):
-        raise InputError("scheduler", shown(scheduler), "is no address", 'write for example "tcp://10.0.0.5:8786"')
+        raise InputError("scheduler", shown(scheduler), "is not a valid address", 'for example "tcp://10.0.0.5:8786"')
     return run_scene(_scene(case, wanted), progress=progress, scheduler=scheduler, cache=cache_of(cache))
 
 
@@ -93,7 +93,10 @@ def _scene(case: str | os.PathLike[str] | Mapping[str, Any], changes: Mapping[st
         document = taken(case, "case")
     else:
         raise InputError(
-            "case", shown(case), "is no case", "give the path of a case file, its text, or its tables as a mapping"
+            "case",
+            shown(case),
+            "is not a case",
+            "specify the path of a case file, its text, or its tables as a mapping",
         )
     for key, value in changes.items():
         set_key(document, key, value, "changes")

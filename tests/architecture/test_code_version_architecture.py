@@ -116,7 +116,7 @@ def test_a_package_that_does_not_exist_is_refused():
 
 
 def test_a_folder_without_source_code_has_no_version(tmp_path):
-    with pytest.raises(RuntimeError, match="no source code"):
+    with pytest.raises(RuntimeError, match="contains no fegear source code"):
         code_version(root=tmp_path)
 
 

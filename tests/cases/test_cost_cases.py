@@ -70,7 +70,7 @@ def test_observed_orders(results):
     order = {(k.quantity, k.name): k.order.slope for k in results.knobs}
     # A compliance converges with twice the order of the elements less what corners take, a stress with about the order.
     assert 2.5 < order["c_0", "edge length, order 2"] < 4.5
-    even = "positions per base pitch, evenly spaced"
+    even = "positions per base pitch, equally spaced"
     assert order["stiffness-harmonics", even] == pytest.approx(1.0, abs=0.35)  # it jumps
     assert order["te-harmonics", even] == pytest.approx(2.0, abs=0.4)  # it has kinks
     between = next(k for k in results.knobs if (k.quantity, k.name[:5]) == ("te-harmonics", "Gauss"))

@@ -270,7 +270,7 @@ def test_numbers_that_are_printed_now_are_written_into_a_page_and_words_are_not(
 
 
 RUN = """```sh
-printf 'a = 2.50 um\\nmore\\nNote: Pair I: 46 %% off; write corner_contact = true.\\nWrote it.\\n'
+printf 'a = 2.50 um\\nmore\\nNote: Pair I: 46 %% off; set corner_contact = true.\\nWrote it.\\n'
 ```
 """
 
@@ -285,7 +285,7 @@ def test_a_page_shows_every_note_of_its_runs_whole(said, tmp_path):
     page.write_text(RUN + said)
     assert "Note: Pair I: 46 % off" in snippets.execute(page, tmp_path / "compared")
     assert snippets.execute(page, tmp_path / "put_in", accept=True) == ""
-    assert "Note: Pair I: 46 % off; write corner_contact = true.\n" in page.read_text()
+    assert "Note: Pair I: 46 % off; set corner_contact = true.\n" in page.read_text()
     assert snippets.execute(page, tmp_path / "compared") == ""
 
 

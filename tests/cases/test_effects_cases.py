@@ -125,14 +125,14 @@ def test_the_command_writes_a_table_a_picture_and_a_summary(tmp_path):
 
 
 def test_an_effect_that_influences_no_result_is_refused():
-    with pytest.raises(InputError, match="no effect that influences the wanted results"):
+    with pytest.raises(InputError, match="is not an effect that influences the requested"):
         effect_study(CASES / "lin_tip_relief.toml", TE, ("friction",))
 
 
 def test_an_effect_that_cannot_be_switched_says_why():
     _, switched, fixed = effect_study(CASES / "lin_tip_relief.toml", TE, ("neighbour_coupling",))
     assert switched == []
-    assert "is not known to the compliances" in fixed[0].reason
+    assert "is not available with" in fixed[0].reason
 
 
 def test_counting_ends_with_its_block_and_inner_counts_keep_their_own():

@@ -274,24 +274,24 @@ def test_general_pair_and_mesh_from_a_load_distribution(tmp_path):
         ("gear.gear.hand='left'", "opposite hands"),
         ("gear.gear.helix_angle='20 deg'", "equal by design"),
         ("gear.pinion.tip_diameter='150 mm'", "must exceed the base radius"),
-        ("gear.pinion.module='5 mm'", "write normal_module"),
-        ("gear.pinion.plane='stress'", "not computed for a gear with a helix_angle yet"),
+        ("gear.pinion.module='5 mm'", 'set normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'),
+        ("gear.pinion.plane='stress'", "is not available for helical gears"),
         ("gear.pinion.spacing_errors={ errors = ['1 um'] }", "gear.pinion.spacing_errors"),
         ("gear.pinion.profile_shift=2.5", "gear.pinion.profile_shift"),
         ("pair.I.compliance={ source = 'cornell' }", "pair.I.compliance.*for plane teeth"),
-        ("pair.I.width='plane'", "pair.I.width.*load moves along the face"),
-        ("gear.pinion.normal_module='5 mm'", "must be given once"),
+        ("pair.I.width='plane'", "pair.I.width.*is not available for helical gears"),
+        ("gear.pinion.normal_module='5 mm'", "must be specified exactly once for a helical gear"),
         ("gear.pinion.hand='spur'", "contradicts the helix angle"),
-        ("pair.I.axial_offset='100 mm'", "next to each other"),
-        ("pair.I.centre_distance='381 mm'", "jams the teeth"),
+        ("pair.I.axial_offset='100 mm'", "leaves no common face width"),
+        ("pair.I.centre_distance='381 mm'", "mm of centre distance until both flanks touch"),
         ("pair.I.misalignment={ lead = '1 mm', lead_angle = '3 arcmin' }", "misalignment.lead.*contradicts lead_angle"),
-        ("pair.I.misalignment={ lead = '1 m' }", "pair.I.misalignment.lead.*no small error of a lead of 957"),
-        ("pair.I.misalignment={ lead = '150 mm' }", "pair.I.misalignment.lead.*no small error"),
-        ("pair.I.misalignment={ shaft_angle = '10 deg' }", "pair.I.misalignment.shaft_angle.*no small error"),
+        ("pair.I.misalignment={ lead = '1 m' }", "pair.I.misalignment.lead.*is not small relative to the lead of 957"),
+        ("pair.I.misalignment={ lead = '150 mm' }", "pair.I.misalignment.lead.*is not small"),
+        ("pair.I.misalignment={ shaft_angle = '10 deg' }", "pair.I.misalignment.shaft_angle.*is not small"),
         ("pair.I.modification={ parabola = '90 / mm' }", "pair.I.modification.parabola.*no regular flank"),
         ("pair.I.modification={ absorb = true }", "pair.I.modification.parabola.*must be positive"),
         ("tooth_contact.positions=1", "positions"),
-        ("results=['load-sharing']", "pair.I.load.*is needed to load the flanks"),
+        ("results=['load-sharing']", "pair.I.load.*is required for the load distribution"),
     ],
 )
 def test_nonsense_is_refused_under_the_users_own_key(override, words):
@@ -304,7 +304,7 @@ def test_helical_and_spur_gears_do_not_mix(tmp_path):
     text = (CASES / "litvin_lead.toml").read_text()
     text += '\n[gear.spur]\nteeth = 28\nmodule = "5 mm"\n'
     case.write_text(text.replace('driven = "gear"', 'driven = "spur"'))
-    with pytest.raises(InputError, match="is helical where its mate is not"):
+    with pytest.raises(InputError, match="only one of the two gears is helical"):
         read_scene(case)
 
 

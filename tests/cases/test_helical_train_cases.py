@@ -102,7 +102,7 @@ def test_a_tooth_pair_carries_through_the_whole_plane_of_action(outcomes):
         (["effects.spacing_errors=true", f"gear.wheel_1.spacing_errors={33 * ['1 um']}"], "solved in one base pitch"),
         (['results=["dynamic-root-stress"]'], "follows one place of contact on the path"),
         (['train.mesh.second.like={pair="first"}'], "teeth of another width"),
-        (["train.mesh.first.pair=\"third\""], "is no pair of this case"),
+        (["train.mesh.first.pair=\"third\""], "is not a pair of this case"),
         (['pair.first.torque="50 N*m"'], "make the load and the torques agree"),
     ],
 )  # fmt: skip
@@ -186,11 +186,11 @@ def test_tables_of_the_matrix(outcomes):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (['transmissibility.stage.mesh.stiffness="3e8 N/m"'], "comes from the teeth of the pair already"),
+        (['transmissibility.stage.mesh.stiffness="3e8 N/m"'], "is already defined by the pair"),
         (["transmissibility.stage.driver.half_face_width=\"5 mm\""], "is not half the common face width"),
         (["transmissibility.stage.excitation.transmission_error.harmonics=4"], "too few for 4 harmonics"),
         (['transmissibility.stage.excitation.transmission_error.flanks="rigid"'], "known of the loaded flanks"),
-        (["transmissibility.stage.mesh={}"], "distribution over the face or a pair"),
+        (["transmissibility.stage.mesh={}"], "is required, or a distribution over the face width, or a pair"),
         (['transmissibility.stage.mesh={stiffness="3e8 N/m"}'], "driver.mass"),
         (['transmissibility.stage.mesh.pair="second"'], "knows no motion along the face"),
     ],
@@ -208,7 +208,7 @@ def test_what_contradicts_the_teeth_is_refused(overrides, words):
 
 
 def test_unknown_pairs_are_named():
-    with pytest.raises(InputError, match="is no pair of this case"):
+    with pytest.raises(InputError, match="is not a pair of this case"):
         read_scene(CASE, ['transmissibility.stage.mesh.pair="J"'])
 
 

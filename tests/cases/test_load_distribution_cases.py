@@ -89,7 +89,7 @@ def test_the_load_goes_to_the_end_without_a_gap_and_crowning_takes_it_from_there
     (said,) = (r for r in neglected(even, "effects.misalignment=false") if "misalignment is off" in r)
     grown = value(outcome, "te_mean").si - value(even, "te_mean").si
     assert f"the mean transmission error by {grown * 1e6:+.3g} um" in said
-    assert "Write misalignment = true under [effects]" in said
+    assert "Set misalignment = true under [effects]" in said
     (change, _) = even.data.neglected.changes["misalignment"]
     assert change.size == pytest.approx(grown, rel=1e-6)
 
@@ -227,18 +227,18 @@ def test_pressure_stands_on_the_loaded_flanks_of_both_teeth(outcome):
 @pytest.mark.parametrize(
     ("override", "word"),
     [
-        ('pair.I.axial_offset="8 mm"', "axial_offset = 8 mm: puts the faces next to each other"),
+        ('pair.I.axial_offset="8 mm"', "axial_offset = 8 mm: leaves no common face width"),
         ("pair.I.line_error={}", "line_error"),
         ('pair.I.line_error={file="nowhere.csv"}', "nowhere.csv"),
         ("load_distribution.positions=1", "positions"),
         ('load_distribution.coat="0 um"', "coat"),
-        ('pair.I.width="plane"', "no meaning for helical gears"),
+        ('pair.I.width="plane"', "is not available for helical gears"),
         ('pair.I.width="thick"', "width"),
         ('pair.I.compliance={source="cornell"}', "pair.I.compliance"),
         ('pair.I.root_stress={source="heywood"}', "root_stress.source"),
         ("gear.wheel.lead={}", "lead"),
-        ("effects.spacing_errors=true", "effects.spacing_errors.*finds no gear"),
-        ('pair.I.misalignment={driven={in_plane="10 mm"}}', "pair.I.misalignment.driven.in_plane.*no small error"),
+        ("effects.spacing_errors=true", "effects.spacing_errors.*no gear of this case has spacing_errors"),
+        ('pair.I.misalignment={driven={in_plane="10 mm"}}', "pair.I.misalignment.driven.in_plane.*is not small"),
         ('gear.wheel.lead={crowning="5 mm"}', "gear.wheel.*check the unit"),
         ('gear.wheel.bias={amount="5 um", start_radius="10 mm"}', "gear.wheel.bias.*base circle"),
         ('gear.wheel.lead={end_relief={amount="5 um", length="9 mm"}}', r"wheel.lead.end_relief\[0\].length"),

@@ -119,7 +119,7 @@ def test_without_corner_contact_the_run_says_what_that_costs():
     te = tables["transmission_error_I"]
     assert np.interp(1.5, te["x"], te["te"]) == pytest.approx(25.467, rel=1e-3)
     remark = next(r for r in results.remarks if "corner_contact is off" in r)
-    assert "Write corner_contact = true under [effects]" in remark
+    assert "Set corner_contact = true under [effects]" in remark
 
 
 #: All that NASA's case asks for but the chart of reliefs, which takes half of its time.
@@ -239,35 +239,39 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
 @pytest.mark.parametrize(
     ("case", "overrides", "words"),
     [
-        ("calculix_pair", ("effects.relief=true",), "finds no gear with a relief"),
-        ("calculix_pair", ("effects.spacing_errors=true",), "finds no gear with spacing_errors"),
+        ("calculix_pair", ("effects.relief=true",), "has no effect: no gear of this case has a relief"),
+        ("calculix_pair", ("effects.spacing_errors=true",), "has no effect: no gear of this case has spacing_errors"),
         ("mark_tip_relief", ("effects.neighbour_coupling=true",), "neighbour_coupling.*is not known"),
-        ("mark_tip_relief", ('effects.hertz="linear"',), "cannot change the contact"),
-        ("mark_tip_relief", ('pair.I.compliance.file="none.csv"',), "is no file"),
+        ("mark_tip_relief", ('effects.hertz="linear"',), "already includes the contact deformation"),
+        ("mark_tip_relief", ('pair.I.compliance.file="none.csv"',), "file not found"),
         ("mark_tip_relief", ('pair.I.compliance.file="data/mark_table2_relief.csv"',), "neither a column compliance"),
         ("mark_tip_relief", ('gear.test.relief={tip={amount="1 um"}}',), "exactly one way"),
-        ("mark_tip_relief", ("gear.test.relief={}",), "removes nothing"),
-        ("mark_tip_relief", ('gear.test.relief={tip={amuont="1 um"}}',), 'nearest known name is "amount"'),
+        ("mark_tip_relief", ("gear.test.relief={}",), "is empty"),
+        ("mark_tip_relief", ('gear.test.relief={tip={amuont="1 um"}}',), 'did you mean "amount"'),
         ("mark_tip_relief", ('gear.test.relief={tip={amount="1 um", start_radius="60 mm"}}',), "below the tip"),
         (
             "mark_tip_relief",
             ('gear.test.relief={tip={amount="1 um", start_radius="40 mm"}}',),
             "inside the base circle",
         ),
-        ("mark_tip_relief", ("transmission_error.terms=5",), 'only with method = "mark-series"'),
+        ("mark_tip_relief", ("transmission_error.terms=5",), 'requires method = "mark-series"'),
         ("calculix_pair", ('gear.a.spacing_errors=["1 um"]', "effects.spacing_errors=true"), "each of the 28 teeth"),
         ("mark_minimum_excitation", ('design.length="20 mm"',), "beyond the path"),
-        ("mark_minimum_excitation", ('design.length="5 mm"',), "below 1 no pair"),
-        ("mark_minimum_excitation", ('design.length="9.3731 mm"',), "what its tooth can take.*choose at least 1.0"),
+        ("mark_minimum_excitation", ('design.length="5 mm"',), "base pitches; must be at least 1"),
+        ("mark_minimum_excitation", ('design.length="9.3731 mm"',), "times the maximum of.*choose at least 1.0"),
         ("mark_minimum_excitation", ("design.contact_ratio=1.3",), "contradicts length"),
-        ("mark_minimum_excitation", ("design.pair=II",), "is no spur pair of this case"),
-        ("mark_minimum_excitation", ("design.slope=2.5",), "must lie between 0 and 2"),
+        ("mark_minimum_excitation", ("design.pair=II",), "is not a spur pair of this case"),
+        ("mark_minimum_excitation", ("design.slope=2.5",), "must be between 0 and 2"),
         ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
-        ("mark_minimum_excitation", ("design.exponent=7",), "only with family"),
+        ("mark_minimum_excitation", ("design.exponent=7",), 'requires family = "polynomial"'),
         ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "needs root stresses"),
         ("mark_minimum_excitation", ("design.film={x=['0 mm'],thickness=['1 um','2 um']}",), "one value for each"),
-        ("mark_minimum_excitation", ("design.film={x=['1 mm','0 mm'],thickness=['1 um','2 um']}",), "must rise"),
-        ("high_contact_ratio", ('design.peak="least-stress"',), 'goes with peak = "least-stress"'),
+        (
+            "mark_minimum_excitation",
+            ("design.film={x=['1 mm','0 mm'],thickness=['1 um','2 um']}",),
+            "must be strictly increasing",
+        ),
+        ("high_contact_ratio", ('design.peak="least-stress"',), 'requires peak = "least-stress", and vice versa'),
     ],
 )
 def test_what_cannot_be_computed_is_refused_in_words(case, overrides, words):

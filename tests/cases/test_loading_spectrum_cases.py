@@ -86,7 +86,7 @@ def test_cases_of_the_report_run(case):
         ({"contact_ratio": 1.4, "exponents": [3]}, "loading.exponents"),
         ({"contact_ratio": 2.4, "peaks": [0.4]}, "loading.peaks"),
         ({"contact_ratio": 1.4, "length": "5 mm"}, "contradicts length"),
-        ({"contact_ratio": 1.4, "load": "5 N"}, "only with a pair"),
+        ({"contact_ratio": 1.4, "load": "5 N"}, "requires a pair"),
         ({"contact_ratio": 1.4, "pair": "X"}, "loading.pair"),
         ({"contact_ratio": 1.4, "slope": [1.0]}, "slopes"),
     ],

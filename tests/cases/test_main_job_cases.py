@@ -124,8 +124,8 @@ def test_the_command_writes_the_table_that_others_build_on(tmp_path, capsys):
     [
         (['stiffness={radii=["60 mm"]}'], "lies off the involute flank"),
         (['stiffness={radii=["40 mm"]}'], "lies off the involute flank"),
-        (["stiffness.gear=b"], "is no gear of this case"),
-        (["stiffness.pair=II"], "is no pair of this case"),
+        (["stiffness.gear=b"], "is not a gear of this case"),
+        (["stiffness.pair=II"], "is not a pair of this case"),
         (["pair={}"], "together with the mating flank"),
     ],
 )

@@ -72,7 +72,7 @@ def test_contact_loss_takes_force_away_where_teeth_are_pulled():
     assert all(s.apart[0] == 0.0 and s.changes == 0 and s.periods == 1 for s in states)
     remark = next(r for r in results.remarks if "contact_loss is off" in r)
     assert "rpm of motor" in remark
-    assert "Write contact_loss = true under [effects]." in remark
+    assert "Set contact_loss = true under [effects]." in remark
 
 
 def test_linear_results_tell_how_far_their_force_falls_below_zero():

@@ -85,7 +85,7 @@ def test_estimates_of_what_is_neglected_are_asked_for_and_counted():
         with tallying() as found:
             counts[asked] = found
             results = run_plan(of, plan, cache=CACHE)
-        said = [remark for remark in results.remarks if "it would change" in remark]
+        said = [remark for remark in results.remarks if "; including it changes" in remark]
         assert bool(said) == (asked == "true")
     assert counts["true"]["neglected effects"] == len(OFF)
     assert counts["true"]["corner searches"] > 0 == counts["false"]["corner searches"]

@@ -82,8 +82,8 @@ def test_a_planet_is_loaded_alike_by_sun_and_ring():
 def test_room_of_the_planets_in_their_ring_is_said_and_its_lack_refused():
     found = of(run("planet-set"), "planet_in_ring_P")
     margins = dict(zip(found["check"], found["margin"], strict=True))
-    assert margins["clearance of the planet's tip"] == pytest.approx(0.5274, abs=1e-3)  # 2 (41.5 + 1.25 - 42.5) mm
-    with pytest.raises(FegearError, match=r"pair.P_ring.*cuts into the ring's root circle"):
+    assert margins["tip clearance of the planet"] == pytest.approx(0.5274, abs=1e-3)  # 2 (41.5 + 1.25 - 42.5) mm
+    with pytest.raises(FegearError, match=r"pair.P_ring.*interference with the root circle of the ring"):
         run("planet-set", gear={"cutter": {"teeth": 30, "addendum": 0.95, "tip_radius": 0.1}})
 
 
@@ -92,7 +92,7 @@ def test_room_of_the_planets_in_their_ring_is_said_and_its_lack_refused():
     [
         ({"ring": "s"}, "must be an internal gear"),
         ({"sun": "r"}, "is an internal gear"),
-        ({"ring": "x"}, "is no gear of this case"),
+        ({"ring": "x"}, "is not a gear of this case"),
         ({"ring_teeth": 83}, "contradicts ring_teeth"),
     ],
 )
@@ -116,7 +116,7 @@ def test_a_set_with_its_ring_as_a_gear_is_rated_at_the_sun():
     factor = dict(zip(table["symbol"], table["driver"], strict=True))["K_gamma"]
     assert factor == next(one.si for one in results.values if one.name == "P.K_gamma")
     assert factor > 1.02
-    assert "Pair P_ring is not rated: gear.r.strength is not given." in results.remarks
+    assert "Pair P_ring not rated: gear.r.strength is not specified." in results.remarks
     case["gear"]["r"]["strength"] = {"material": "through-hardened-alloy-steel"}
     scene = build_scene(case, "case", None)
     both = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)

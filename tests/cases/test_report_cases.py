@@ -97,7 +97,7 @@ def test_the_page_says_what_was_asked_computed_and_how_well(made):
     text = " ".join(report(folder).texts)
     for words in (
         "geometry, stiffness, root-stress",
-        "Why not",
+        "Reason",
         "effects that are off",
         "Seconds",
         "Estimated error",

@@ -67,8 +67,8 @@ def test_a_formula_is_blank_where_it_does_not_hold_and_exact_up_to_there():
     low = (tooth.form_radius + 0.1 * (tooth.tip_radius - tooth.form_radius)) * 1e-3
     found = formula_root_stress(gear, "agma-908", low, gear.tip_radius)
     (part,), (why,) = found.over_length, found.missing
-    assert re.match(r"no value for loads at radii 49\.6466 to 49\.\d+ mm \(.*compression outweighs its bending", why)
-    assert found.remarks[-1].endswith("blank there, and extremes are those of the other loads")
+    assert re.match(r"no value for loads at radii 49\.6466 to 49\.\d+ mm \(.*radial compression exceeds bending", why)
+    assert found.remarks[-1].endswith("; left blank, extremes are from the other loads")
 
     def direct(length: float) -> float:
         return ROOT_STRESS_SOURCES["agma-908"].formula(tooth, math.hypot(gear.base_radius, length) / gear.module).stress
@@ -130,7 +130,7 @@ def test_a_formula_that_holds_nowhere_leaves_its_columns_blank_beside_others():
     assert not any("cornell" in name for name in values)
     notes = [note for outcome in results.outcomes.values() for note in outcome.remarks]
     assert any("root stress by cornell: no value for loads at radii" in note for note in notes)
-    with pytest.raises(InputError, match="does not hold on the flank: no value for loads"):
+    with pytest.raises(InputError, match="is not valid on the flank: no value for loads"):
         run("calculix_pair", HISTORY, *changes, source("cornell"))
 
 
@@ -220,7 +220,7 @@ def test_dynamic_root_stress_is_tooth_force_times_formula():
     ("case", "overrides", "words"),
     [
         ("calculix_pair", (HISTORY, source("cornel")), r"root_stress.*source.*cornel"),
-        ("calculix_pair", (HISTORY, source("fe", "fe")), "names a source twice"),
+        ("calculix_pair", (HISTORY, source("fe", "fe")), "contains a source twice"),
         ("calculix_pair", (HISTORY, "pair.I.root_stress={source=[]}"), "root_stress"),
         ("calculix_pair", (HISTORY, "pair.I.root_stress={sourc='fe'}"), 'unknown key; known here: source'),
         (

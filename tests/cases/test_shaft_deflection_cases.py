@@ -131,7 +131,7 @@ def test_an_idler_on_a_pin_brings_its_forces_to_the_housing():
 
 @pytest.mark.parametrize(
     ("around", "word"),
-    [("md", 'nearest known name is "mid"'), ("out", "has its axis 130 mm from that of pin"), ("pin", "no other shaft")],
+    [("md", 'did you mean "mid"'), ("out", "is 130 mm from the axis of pin"), ("pin", "not another shaft")],
 )
 def test_bearings_in_shafts_that_are_not_around_are_refused(around, word):
     with pytest.raises(InputError, match=word):
@@ -148,13 +148,13 @@ def test_a_sleeve_on_one_ball_joint_is_loose():
     ("keys", "word"),
     [
         ({"shaft__out__axis": ["230 mm", "0 mm"]}, "centre distance of pair II"),
-        ({"shaft__out__bearings": [{"bearing": "plain", "at": "10 mm"}]}, "loose"),
-        ({"shaft__out__bearings": []}, "without support"),
-        ({"shaft__out__bearings": [{"bearing": "fixed", "at": "130 mm"}]}, "off the shaft"),
-        ({"shaft__out__bearings": [{"bearing": "bal", "at": "10 mm"}]}, 'nearest known name is "ball"'),
+        ({"shaft__out__bearings": [{"bearing": "plain", "at": "10 mm"}]}, "do not support the shaft"),
+        ({"shaft__out__bearings": []}, "do not support the shaft"),
+        ({"shaft__out__bearings": [{"bearing": "fixed", "at": "130 mm"}]}, "is outside the shaft, 0 to"),
+        ({"shaft__out__bearings": [{"bearing": "bal", "at": "10 mm"}]}, 'did you mean "ball"'),
         ({"shaft__out__sections": []}, "must not be empty"),
-        ({"shaft__out__gears": [{"gear": "a", "at": "80 mm"}]}, "stands on shaft in already"),
-        ({"pair__II__torque": "200 N*m"}, "torque about its axis that nothing takes"),
+        ({"shaft__out__gears": [{"gear": "a", "at": "80 mm"}]}, "is already mounted on shaft in"),
+        ({"pair__II__torque": "200 N*m"}, "is an unbalanced torque about the shaft axis"),
     ],
 )
 def test_bad_gearboxes_are_refused_in_one_sentence(keys, word):
@@ -167,7 +167,7 @@ def test_gears_that_stand_askew_on_their_shafts_are_refused_where_flanks_are_loa
     case = copy.deepcopy(CASE)
     case["effects"] = {"misalignment": True}
     case["shaft"]["mid"]["gears"][0]["at"] = "43 mm"
-    with pytest.raises(InputError, match=r"pair.I.axial_offset.*stands 3 mm.*write axial_offset = \"3 mm\""):
+    with pytest.raises(InputError, match=r"pair.I.axial_offset.*offset by 3 mm.*set axial_offset = \"3 mm\""):
         check_flanks_to_load(build_scene(case, "box", Path()), "I")
     case["pair"]["I"]["axial_offset"] = "3 mm"
     check_flanks_to_load(build_scene(case, "box", Path()), "I")
@@ -212,18 +212,18 @@ def _wide_clearance(case):
 @pytest.mark.parametrize(
     ("change", "word"),
     [
-        (_many_shafts, r"shaft = 1,003 in all: are more than are solved together; give 100 at most"),
-        (_loop, "shaft = in, mid: drive each other in a loop; let one drive the others"),
+        (_many_shafts, r"shaft = 1,003 in all: exceed the number of meshes that can be solved together; at most 100"),
+        (_loop, "shaft = in, mid: form a closed loop of drives; choose one shaft as the input"),
         (lambda case: case["shaft"]["in"].pop("sections"), r"shaft.in.sections = \(not given\): is required"),
         (
             lambda case: case["shaft"]["in"].update(sections=[{"length": "1 um", "outer": "30 mm"}] * 10_000),
-            "asks for 10,000 sections; ask for 1,000 at most",
+            "requests 10,000 sections; reduce to at most 1,000, above the limit",
         ),
         (
             lambda case: [place.update(bearing="plain") for place in case["shaft"]["in"]["bearings"]],
             "leave the shaft loose along its axis",
         ),
-        (_wide_clearance, r"shaft.in = tilted by 2.3.* deg under its gears: is no small error; keep it within 0.5 deg"),
+        (_wide_clearance, r"shaft.in = tilt of 2.3.* deg at its gears: is not small; must stay within 0.5 deg"),
     ],
 )
 def test_bad_models_are_refused_in_one_sentence(change, word):

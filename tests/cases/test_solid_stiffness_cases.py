@@ -111,7 +111,7 @@ def test_twice_the_size_gives_half_the_deflection_and_a_quarter_of_the_stress(re
     assert two.errors["c_self"] == pytest.approx(0.5 * one.errors["c_self"], rel=1e-9)
     assert two.root["tension"].value == pytest.approx(0.25 * one.root["tension"].value, rel=1e-9)
     assert two.root["tension"].position == pytest.approx(2.0 * one.root["tension"].position)
-    with pytest.raises(FegearError, match="lies off the face, which runs from -8 to 8 mm"):
+    with pytest.raises(FegearError, match="is outside the face width, -8 to 8 mm"):
         solid_table(double, one.influence, two.radius, [8.1e-3], 4e-5)
 
 
@@ -166,12 +166,12 @@ def test_pictures_and_field(results, tmp_path):
     [
         ('stiffness.face_positions=["5 mm"]', "lies off the face of gear a; it runs from -4 mm to 4 mm"),
         ("stiffness.face_positions=0", "must be greater than or equal to 1"),
-        ("stiffness.face_positions=[3.0]", "is a bare number, but a length needs a unit"),
-        ("stiffness.positions=3000", "3,000 x 5 = 15,000 bands; ask for 4,000 at most"),
-        ('stiffness.load="100 N/mm"', "is a load per width, which the bands of a solid gear do not have"),
+        ("stiffness.face_positions=[3.0]", "has no unit; a length requires one"),
+        ("stiffness.positions=3000", "3,000 x 5 = 15,000 bands; reduce to at most 4,000"),
+        ('stiffness.load="100 N/mm"', "is a load per width and is not defined for load bands on a 3D gear"),
         ('stiffness={ radii = ["5 mm"], face_positions = 1 }', "lies off the involute flank"),
-        ('gear.a.tooth_mesh="x.msh"', "is a plane mesh, and solid teeth are meshed by fegear"),
-        ('gear.a.face_width="160 mm"', "face_width = 80 modules: must lie between"),
+        ('gear.a.tooth_mesh="x.msh"', "is a 2D mesh and cannot be used for a 3D gear"),
+        ('gear.a.face_width="160 mm"', "face_width = 80 modules: must be between"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_a_sentence(override, words, cache):
@@ -183,7 +183,7 @@ def test_a_width_must_be_given(tmp_path, cache):
     text = "\n".join(line for line in CASE.read_text().splitlines() if not line.startswith("face_width"))
     (tmp_path / "g.toml").write_text(text)
     scene = read_scene(tmp_path / "g.toml", ["stiffness.face_positions=1"])
-    with pytest.raises(FegearError, match="is needed for a gear that is solved with its width"):
+    with pytest.raises(FegearError, match="is required for 3D gears"):
         run_plan(scene, make_plan(scene, STAGES), cache=cache)
 
 
@@ -213,7 +213,7 @@ def test_a_contact_as_wide_as_a_load_makes_it_is_not_called_the_usual_one():
 @pytest.mark.parametrize(
     ("factors", "waves"),
     [((2.5, 1.25), (0.75, 2.0)), pytest.param(knobs._FACTORS, knobs._WAVES, marks=pytest.mark.long)],
-    ids=["two of each", "as it is"],
+    ids=["two of each", "unchanged"],
 )
 def test_the_cost_study_varies_what_the_solid_depends_on(monkeypatch, factors, waves):
     """Errors fall as edges shorten and functions are added, and neither is free."""
@@ -225,19 +225,23 @@ def test_the_cost_study_varies_what_the_solid_depends_on(monkeypatch, factors, w
         found = solid_knobs(asked(read_scene(CASE, ["stiffness.face_positions=3", "stiffness.positions=3", *face])))
     assert {(knob.quantity, knob.name) for knob in found} == {
         (quantity, name)
-        for quantity in ("c_0 over the face", "c_1 over the face", "root tension over the face")
+        for quantity in (
+            "c_0 over the face width",
+            "c_1 over the face width",
+            "root stress (tension side) over the face width",
+        )
         for name in ("edges of the section", "functions per module of face", "edges of the section, slices")
     }
     slices = [knob for knob in found if knob.name == "edges of the section, slices"]
     assert len(slices) == 3
     # Root tension of slices is up to .37 of its largest off along the face, though largest values are .21 apart.
-    most = {"root tension over the face": 0.4}
+    most = {"root stress (tension side) over the face width": 0.4}
     assert all(knob.error.max() < most.get(knob.quantity, 0.1) for knob in slices)
     for knob in (one for one in found if one not in slices):
         assert knob.error[-1] < 0.7 * knob.error[0], (knob.quantity, knob.name)
         assert knob.seconds[-1] > knob.seconds[0]
     by_name = {(knob.quantity, knob.name): knob.error for knob in found}
-    assert by_name["c_0 over the face", "functions per module of face"][-1] < 0.01
+    assert by_name["c_0 over the face width", "functions per module of face"][-1] < 0.01
 
 
 def test_python_asks_for_it_in_a_line(results, cache):
@@ -270,5 +274,5 @@ def test_slices_stand_in_for_the_solid(results, cache):
 
 
 def test_slices_without_a_width_are_refused():
-    with pytest.raises(FegearError, match="has no meaning for a plane gear"):
+    with pytest.raises(FegearError, match="is not used for plane"):
         read_scene(CASE.parent / "thin_rim.toml", ['stiffness.source="slices"'])

@@ -46,7 +46,7 @@ def run(off: float, whole: int, *, corners: bool, **more):
 
 
 def remarks(results) -> list[str]:
-    return [r for r in results.remarks if "within 0.001 of a whole number" in r]
+    return [r for r in results.remarks if "within 0.001 of an integer" in r]
 
 
 def test_peak_to_peak_jumps_at_a_whole_contact_ratio_with_a_remark():
@@ -55,7 +55,7 @@ def test_peak_to_peak_jumps_at_a_whole_contact_ratio_with_a_remark():
     assert max(jump, 1.0 / jump) > 1.2
     for results in (a, b, run(1e-10, 1, corners=False)):
         (said,) = remarks(results)
-        assert "Write corner_contact = true under [effects]." in said
+        assert "Set corner_contact = true under [effects]." in said
 
 
 @pytest.mark.parametrize("whole", [1, 2])

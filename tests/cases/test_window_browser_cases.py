@@ -320,7 +320,7 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     served = serve(str(path))
     go(browser, served.address)
     browser.until(f"{field('pair.I.load')}?.value === '7 kN'")
-    assert "were not saved are here again" in browser.run("document.querySelector('.told').textContent")
+    assert "Unsaved changes of" in browser.run("document.querySelector('.told').textContent")
     browser.click(button("Save"))
     browser.until("document.querySelector('.unsaved').textContent === 'saved'")
     assert tomllib.loads(path.read_text())["pair"]["I"]["load"] == "7 kN"
@@ -558,7 +558,7 @@ def test_more_than_a_case_may_have_is_not_put_in_and_said_at_once(browser, serve
     browser.run("document.querySelector('textarea').focus()")
     browser("Input.insertText", text="#" * 4_000_000)
     browser.until(
-        "document.querySelector('.q-notification')?.textContent.includes('Not put in: the text would have more')"
+        "document.querySelector('.q-notification')?.textContent.includes('Not inserted: the text would exceed')"
     )
     assert browser.run("document.querySelector('textarea').value") == TEXT
     browser.run("document.querySelector('textarea').select()")

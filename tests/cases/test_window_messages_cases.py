@@ -138,7 +138,7 @@ def test_half_a_character_is_refused_in_words_and_nothing_else_is_lost(served):
     with window_page.Page(served.address) as page:
         half = TEXT.replace("a pair", "a \ud800 pair")
         page.say("update:value", half, page.element(type="textarea"))
-        page.until(lambda: any("has half a character in line 1" in one for one in page.heard))
+        page.until(lambda: any("contains an invalid character (surrogate) in line 1" in one for one in page.heard))
         assert served.kept() == []
         field = page.element(data_key="gear.a.module")
         page.say("update:value", "3 \udfff mm", field)
@@ -212,7 +212,7 @@ def test_long_texts_are_taken_and_block_nobody(served):
                 time.sleep(0.02)
             assert slowest < 3.0  # a hundred times less on an idle machine than what is asked of a busy one
         typed(page, TEXT + "#" * 4_000_000)
-        page.until(lambda: any("and the window takes 4000000 at most" in one for one in page.heard))
+        page.until(lambda: any("the maximum is 4000000" in one for one in page.heard))
         assert served.kept() == [gears]
         typed(page, TEXT + "".join(GEAR.format(i, 20 + i % 60) for i in range(9000)))
         time.sleep(0.5)  # it is being judged
@@ -303,7 +303,7 @@ def hold_on(served, number: int, cookie: str) -> None:
                 page.until(lambda: any("laid" in one for one in page.heard))
                 continue
             page.say("update:value", text, page.element(type="textarea"))
-            page.until(lambda: taken() or any("is not taken" in one for one in page.heard))
+            page.until(lambda: taken() or any("not accepted" in one for one in page.heard))
             if taken():
                 return
     raise AssertionError("refused again and again")

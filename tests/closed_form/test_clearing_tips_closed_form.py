@@ -43,7 +43,7 @@ def diameter(text):
 def test_a_pair_without_profile_shift_is_drawn_and_says_the_tip_diameter_that_clears():
     found = fegear.run(case(), progress=False)
     said = " ".join(found.remarks)
-    assert "cuts into the fillet, by 0.01024 mm" in said
+    assert "interference with the fillet, by 0.01024 mm" in said
     assert "planet" not in said
     gear, tip = diameter(said)
     repaired = case()
@@ -105,6 +105,6 @@ def test_a_ring_of_an_unknown_tool_is_made_by_its_root_circle_and_fillet_radius(
 def test_a_cutter_of_too_few_teeth_is_refused_with_the_largest_that_clears():
     with pytest.raises(InputError) as error:
         fegear.run(ring(teeth=20), progress=False)
-    teeth = int(re.search(r"set cutter.teeth = (\d+), the largest cutter that clears", str(error.value))[1])
+    teeth = int(re.search(r"set cutter.teeth = (\d+), the largest cutter without interference", str(error.value))[1])
     assert teeth > 20
     fegear.run(ring(teeth=teeth), progress=False)

@@ -57,7 +57,11 @@ def test_a_contact_that_nears_the_tip_corner_sinks_by_the_wedge_s_logarithm():
 
 @pytest.mark.parametrize(
     ("radius", "half_width", "rule"),
-    [(14.0, 0.6, "exceeds half a module"), (14.9, 0.4, "reaches past the end"), (14.0, 0.0, "positive")],
+    [
+        (14.0, 0.6, "exceeds half a module"),
+        (14.9, 0.4, "extends more than a tenth of a module beyond"),
+        (14.0, 0.0, "positive"),
+    ],
 )
 def test_half_widths_that_no_flank_holds_are_refused(radius, half_width, rule):
     gear = Gear(Tooth(28), 2e-3, 12.8e-3)

@@ -70,13 +70,13 @@ def test_configurations_at_the_floor_say_nothing():
     assert 1.6 < order.slope < 2.0
     none = observed_order(h, np.full(7, 1e-3), floor=1e-3)
     assert math.isnan(none.slope)
-    assert none.words == "none: only 0 of 7 configurations lie above the reference's own error"
+    assert none.words == "none: only 0 of 7 configurations are above the error of the reference"
 
 
 @pytest.mark.parametrize(
     ("error", "words"),
     [
-        ([1e-2, 1e-2, 1e-2, 1e-2], "does not fall"),
+        ([1e-2, 1e-2, 1e-2, 1e-2], "none: the error does not decrease with the"),
         ([1e-3, 1e-2, 1e-4, 1e-1], "lie within"),
         ([1e-3, 1e-2, math.nan, math.nan], "only 2 of 4"),
         ([0.0, 0.0, 0.0, 0.0], "only 0 of 4"),

@@ -196,7 +196,7 @@ def test_friction_made_for_the_wrong_driver_is_refused():
         )
         model = MotionModel(turned, (found,), 300.0)
         if drives:
-            with pytest.raises(InputError, match="feeds power into the train"):
+            with pytest.raises(InputError, match="adds power to the train: with these torques the"):
                 friction_loss_torque(model)
         else:
             assert friction_loss_torque(model)[3] > 0.0  # the load, which drives now, gives more

@@ -190,7 +190,7 @@ def test_volume_of_the_drawn_body():
 
     missing = math.pi * ((RIM**2 - HUB**2) * (WIDTH - 1.75) + (HUB**2 - BORE**2) * (WIDTH - 3.0))
     assert volume(disc) - volume(mesh) == pytest.approx(missing, rel=3e-3)  # circles of chords
-    with pytest.raises(Exception, match="web and hub end"):
+    with pytest.raises(Exception, match="must include the end positions of web and hub"):
         extruded(section, np.array([-2.0, -1.0, 2.0]), 0.0, given)
 
 

@@ -203,7 +203,7 @@ def test_a_fillet_that_cuts_all_of_the_protuberances_own_involute_away_ends_on_t
 @pytest.mark.parametrize(
     ("change", "match"),
     [
-        ({"helix_angle": -0.1}, "hand carries the sign"),
+        ({"helix_angle": -0.1}, "the hand defines the sign"),
         ({"helix_angle": 61.0 * DEG}, "between 0 and 60 deg"),
         ({"helix_angle": math.nan}, "between 0 and 60 deg"),
         ({"teeth": 3, "helix_angle": 10.0 * DEG}, "between 5 and 1000"),

@@ -201,7 +201,7 @@ def test_planets_are_bent_to_either_side():
 
 
 def test_offset_faces_are_refused():
-    with pytest.raises(FegearError, match="moves the phase of one mesh"):
+    with pytest.raises(FegearError, match="shifts the phase of one mesh of a helical planetary set"):
         run("planet-set", pair={"axial_offset": "1 mm"})
 
 

@@ -241,7 +241,7 @@ def test_zero_and_negative_frequency():
 def test_undamped_resonance_is_refused_and_next_to_it_is_not():
     """Two equal discs: the only natural frequency is sqrt(2 k R^2/I), here exactly 2 rad/s."""
     train = Train((Body("1", 1.0), Body("2", 1.0)), meshes=(Mesh("I", "1", "2", 1.0, 1.0, 20, 20, 2.0),))
-    with pytest.raises(RangeError, match="natural frequency of the train without damping"):
+    with pytest.raises(RangeError, match="is a natural frequency of the undamped train:"):
         dynamic_increments(train, 2.0)
     assert dynamic_increments(train, 2.0 + 1e-6)[0, 0].real == pytest.approx(-1e6, rel=1e-5)
     with pytest.raises(RangeError, match="finite"):

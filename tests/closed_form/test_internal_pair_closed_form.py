@@ -177,7 +177,10 @@ def test_specific_sliding_is_that_of_both_surface_velocities():
 
 @pytest.mark.parametrize(
     ("distance", "words"),
-    [(75.0e-3, "jams the teeth"), (69.5e-3, "is below the difference of the base radii")],
+    [
+        (75.0e-3, "mm of centre distance until both flanks touch"),
+        (69.5e-3, "is below the difference of the base radii"),
+    ],
 )
 def test_distances_at_which_planet_and_ring_do_not_mesh(distance, words):
     pair = the_pair()
@@ -187,7 +190,7 @@ def test_distances_at_which_planet_and_ring_do_not_mesh(distance, words):
 
 def test_two_ring_gears_make_no_pair():
     ring = the_pair().driven
-    with pytest.raises(GeometryError, match="a ring gear meshes with a pinion"):
+    with pytest.raises(GeometryError, match="not possible: an internal gear must mesh with an external gear"):
         GearPair(ring, ring)
 
 

@@ -85,16 +85,31 @@ RING = {"teeth": 60, "cutter": PinionCutter(20), "tip_radius": 29.1}
 @pytest.mark.parametrize(
     ("changed", "key", "rule", "remedy"),
     [
-        ({"tip_radius": 29.0}, "tip_radius", "reaches inside 29.0088 modules", "at least 58.0178 modules"),
-        ({"tip_radius": 31.1}, "tip_radius", "leaves no involute", "lower the tip diameter"),
-        ({"cutter": PinionCutter(20, tip_radius=0.4)}, "cutter.tip_radius", "wider than the tip", "at most 0.346"),
+        ({"tip_radius": 29.0}, "tip_radius", "is inside 29.0088 modules", "at least 58.0178 modules"),
+        (
+            {"tip_radius": 31.1},
+            "tip_radius",
+            "gives no involute (ends at",
+            "reduce the tip diameter or the profile shift",
+        ),
+        (
+            {"cutter": PinionCutter(20, tip_radius=0.4)},
+            "cutter.tip_radius",
+            "is too large for the cutter tip",
+            "at most 0.346",
+        ),
         ({"cutter": PinionCutter(20, 0.2, 1.9, tip_radius=0.0)}, "cutter.addendum", "pointed", "smaller addendum"),
         ({"cutter": PinionCutter(58)}, "cutter.teeth", "difference below 3", "at most 57 teeth"),
         ({"cutter": PinionCutter(56)}, "cutter.teeth", "trim", "fewer teeth"),
-        ({"profile_shift": 0.9}, "profile_shift", "at no pressure angle", "below 0.818"),
-        ({"cutter": PinionCutter(20, 0.0, -0.45)}, "cutter.addendum", "inside its base circle", "raise the addendum"),
+        ({"profile_shift": 0.9}, "profile_shift", "gives no working pressure angle of gear and", "below 0.818"),
+        (
+            {"cutter": PinionCutter(20, 0.0, -0.45)},
+            "cutter.addendum",
+            "inside its base circle",
+            "increase addendum or profile shift of the",
+        ),
         ({"tip_rounding": 0.9}, "tip_rounding", "", "choose at most"),
-        ({"tip_chamfer": 0.7}, "tip_chamfer", "wider than the tip allows", "choose at most"),
+        ({"tip_chamfer": 0.7}, "tip_chamfer", "is too large for the tip", "choose at most"),
         ({"helix_angle": -0.1}, "helix_angle", "between 0 and 60", "the hand"),
     ],
 )

@@ -152,7 +152,7 @@ def test_c_prime_of_rings_goes_on_below_the_stated_shifts_and_says_so():
 
     inside, edge, beyond = (of(x) for x in (-0.7, -0.8, -0.9))
     assert (inside.remark, edge.remark) == ("", "")
-    assert "x_1 + x_2 = -0.6 lies outside -0.5 to 2" in beyond.remark
+    assert "x_1 + x_2 = -0.6 is outside -0.5 to 2" in beyond.remark
     steps = [1e9 / two.theoretical - 1e9 / one.theoretical for one, two in ((inside, edge), (edge, beyond))]
     assert steps[1] - steps[0] == pytest.approx(2.0 * 0.00182 * 0.1**2, rel=1e-6)  # Table 9: only x_2^2 is curved
     assert beyond.single < edge.single < 1.02 * beyond.single

@@ -51,6 +51,6 @@ def test_leads_that_mean_nothing_are_refused():
     with pytest.raises(InputError, match="spur gear, whose lead is infinite"):
         lead_angle_error(helical_gear(30, 5e-3, 0.35, 0.0, 0.04, "spur"), 1e-3)
     for change in (0.5, -0.5, math.nan, math.inf):
-        with pytest.raises(RangeError, match="no small error of a lead of 957"):
+        with pytest.raises(RangeError, match="is not small relative to the lead of 957"):
             lead_angle_error(gear(), change)
     assert lead_angle_error_of_cut(gear(50.0), 0.1) > 0.0

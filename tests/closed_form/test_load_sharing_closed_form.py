@@ -144,9 +144,9 @@ def test_a_small_load_rests_on_the_nearest_pair_alone():
 def test_wrong_questions_are_refused():
     with pytest.raises(InputError, match="must be positive"):
         share_load(np.ones((1, 1, 1)), [[0.0]], [0.0])
-    with pytest.raises(InputError, match="no tooth pair in reach"):
+    with pytest.raises(InputError, match="no tooth pair in contact there"):
         share_load(np.ones((1, 1, 2)), [[0.0, np.inf]], [1.0])
-    with pytest.raises(RangeError, match="so wide"):
+    with pytest.raises(RangeError, match="is too high"):
         share_load(np.ones((1, 1, 1)), [[0.0]], [1e30], ContactLaw(0.1))
 
 

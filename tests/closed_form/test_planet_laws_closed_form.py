@@ -86,7 +86,7 @@ def answers(loads):
         "largest share": (loads.largest_share, loads.largest_share_error),
         "largest load": (loads.largest_load, loads.largest_load_error),
         "mean": (loads.te_mean, loads.te_mean_error),
-        "peak to peak": (loads.te_peak_to_peak, loads.te_peak_to_peak_error),
+        "peak-to-peak value": (loads.te_peak_to_peak, loads.te_peak_to_peak_error),
         "harmonics": (np.abs(loads.harmonics(loads.te, order)), loads.harmonics_error(lambda one: one.te, order)),
     }
 
@@ -103,7 +103,7 @@ def test_stated_errors_cover_what_finer_settings_change(unequal, monkeypatch):
     for key, (value, error) in rough.items():
         off = np.max(np.abs(np.asarray(value) - fine[key][0]) / np.asarray(error))
         assert off < 1.0, key
-    for key in ("shares", "mean", "peak to peak"):  # nor are they hundreds of times too large
+    for key in ("shares", "mean", "peak-to-peak value"):  # nor are they hundreds of times too large
         value, error = rough[key]
         assert np.max(np.asarray(error) / np.abs(value)) < 0.04, key
 
@@ -136,7 +136,7 @@ def test_springs_of_many_forces_find_the_equilibrium_of_another_solver():
 
 def test_spacing_errors_are_refused(unequal):
     engagement = replace(unequal["P_sunloaded-pair"].engagement, driver_spacing=np.array([1e-6, 0.0]))
-    with pytest.raises(InputError, match="give it teeth alike"):
+    with pytest.raises(InputError, match="use identical teeth"):
         LawSprings(engagement, (), 1e3, 3)
 
 

@@ -58,8 +58,8 @@ def test_mesh_frequency_and_passings_by_counting():
     run = running(FOUND, "ring", "sun", 2.0 * math.pi * 4.5, 1.0)
     assert run.mesh_frequency == pytest.approx(84.0)
     rows = dict(zip(*(getattr(passing(FOUND, run), key) for key in ("what", "frequency")), strict=True))
-    assert rows["a tooth of the ring meets a planet"] == pytest.approx(3.0)
-    assert rows["a tooth of the sun meets a planet"] == pytest.approx(3.0 * 3.5)
+    assert rows["passing frequency of a ring tooth (planets)"] == pytest.approx(3.0)
+    assert rows["passing frequency of a sun tooth (planets)"] == pytest.approx(3.0 * 3.5)
     assert rows["rotation of a planet in the carrier"] == pytest.approx(84.0 / 30.0)
     assert rows["rotation of a planet"] == pytest.approx(84.0 / 30.0 - 1.0)
 
@@ -85,18 +85,18 @@ def test_sidebands_are_those_of_a_signal_that_is_added_up():
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda: unshifted(24, 30, 5), "108 / 5 = 21.6 is not whole"),
+        (lambda: unshifted(24, 30, 5), "108 / 5 = 21.6 is not an integer"),
         (lambda: unshifted(24, 30, 5), "take 4 planets, change a number of teeth by 2"),  # six would meet
         (lambda: unshifted(24, 30, 5, addendum=-15.0), "take 4 or 6 planets"),
-        (lambda: unshifted(24, 30, 6), "neighbours meet: their tip circles overlap by 10 mm"),
-        (lambda: unshifted(24, 30, np.radians([0.0, 121.0, 240.0])), "write 120 deg"),
-        (lambda: unshifted(24, 30, np.radians([0.0, 240.0, 120.0])), "must increase within one turn"),
-        (lambda: unshifted(24, 30, 3, ring=92), "so that both lines of action touch"),
+        (lambda: unshifted(24, 30, 6), "adjacent planets interfere: tip circles overlap by 10 mm"),
+        (lambda: unshifted(24, 30, np.radians([0.0, 121.0, 240.0])), "use 120 deg"),
+        (lambda: unshifted(24, 30, np.radians([0.0, 240.0, 120.0])), "must be increasing within one revolution"),
+        (lambda: unshifted(24, 30, 3, ring=92), "mm, for both lines of action to exist"),
         (lambda: unshifted(24, 30, 3, ring=29), "must have more teeth than the planet's 30"),
         (lambda: running(FOUND, "ring", "ring", 1.0, 1.0), "is fixed as well"),
         (lambda: running(FOUND, "ring", "sun", 0.0, 1.0), "must be finite and not zero"),
-        (lambda: running(FOUND, "ring", "sun", 1.0, -1.0), "acts in the sense of the rotation"),
-        (lambda: running(FOUND, "ring", "sun", 1.0, 1.0, 1.1), "must lie in"),
+        (lambda: running(FOUND, "ring", "sun", 1.0, -1.0), "must be positive (acts in the direction of"),
+        (lambda: running(FOUND, "ring", "sun", 1.0, 1.0, 1.1), "must be between 0 and the root radius"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_margin(make, said):

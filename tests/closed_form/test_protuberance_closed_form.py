@@ -161,7 +161,7 @@ def test_a_case_names_the_protuberance_in_modules():
     ("change", "words"),
     [
         ({"protuberance": -0.1}, "must not be negative"),
-        ({"protuberance": 0.05, "grinding_allowance": 0.06}, "leave a step"),
+        ({"protuberance": 0.05, "grinding_allowance": 0.06}, "exceeds the protuberance of"),
         ({"protuberance": 0.1, "protuberance_angle": 20.0 * DEG}, "below the pressure angle"),
         ({"protuberance": 0.3}, "tip radius of"),
     ],

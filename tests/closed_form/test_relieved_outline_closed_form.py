@@ -101,7 +101,7 @@ def test_pieces_meet_and_splines_follow_them(gear, kind, tmp_path):
 
 def test_a_relief_that_takes_the_tip_away_is_refused():
     gear = GEARS["plain"]
-    with pytest.raises(InputError, match="leaves no tip"):
+    with pytest.raises(InputError, match="removes the entire tip"):
         relieved_outline(gear, EndRelief(3e-3, gear.tooth.involute.start, gear.tooth.involute.end))
 
 

@@ -121,7 +121,7 @@ def test_what_takes_long_is_said_before_it_starts(tmp_path, monkeypatch):
 def test_what_is_not_closed_is_not_written(tmp_path):
     one = gear(8, 15.0, "left", 3.0, profile_shift=0.5)
     pieces = list(one.tooth.outline.values())
-    with pytest.raises(FegearError, match=r"g\.step: OpenCASCADE made no solid"):
+    with pytest.raises(FegearError, match=r"g\.step: OpenCASCADE could not create a solid"):
         write_step(tmp_path / "g.step", one, pieces[:1] + pieces[2:])
     assert not (tmp_path / "g.step").exists()
 

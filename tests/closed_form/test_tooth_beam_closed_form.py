@@ -247,7 +247,7 @@ def test_sainsots_range_is_kept():
 
 
 def test_unknown_source_names_the_nearest():
-    assert source("cornell").remark.startswith("one tooth on its own")
+    assert source("cornell").remark.startswith("single tooth, no coupling to neighbouring teeth")
     with pytest.raises(InputError, match="weber-banaschek"):
         source("weber-banachek")
 

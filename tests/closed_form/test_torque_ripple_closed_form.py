@@ -209,13 +209,13 @@ def test_larger_machines_of_one_shape_answer_alike():
 def test_resonance_without_damping_is_refused_and_with_it_not():
     train = branched(0.0)
     natural = 2.0 * math.pi * modes(train).frequencies[2]
-    with pytest.raises(RangeError, match="natural frequency of the train without damping"):
+    with pytest.raises(RangeError, match="is a natural frequency of the undamped train:"):
         torque_response(train, [1.0, natural], "motor")
     assert np.all(np.isfinite(torque_response(branched(), natural, "motor").forces))
     for w in (0.0, math.inf, -1.0):
         with pytest.raises(RangeError, match="positive and finite"):
             torque_response(train, w, "motor")
-    with pytest.raises(InputError, match="no body"):
+    with pytest.raises(InputError, match="not a body"):
         torque_response(train, 1.0, "engine")
 
 
@@ -279,7 +279,7 @@ def test_the_common_period_is_exact_where_there_is_one():
     assert 0.0 < abs(shifted.stretch[0] - 1.0) <= 1e-4
     cycles = shifted.count / 21 * math.pi * shifted.stretch[0]
     assert cycles == pytest.approx(round(cycles), abs=1e-9)
-    with pytest.raises(RangeError, match="so slowly"):
+    with pytest.raises(RangeError, match="is too low: the motion does not repeat within"):
         of(line(frequency=0.01))
 
 

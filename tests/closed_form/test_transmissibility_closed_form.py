@@ -174,7 +174,7 @@ def test_resonance_without_damping_and_critical_damping_are_refused():
     )
     resonance = mode_table(model).frequency[1]
     for method in ("direct", "modal", "state-space"):
-        with pytest.raises(RangeError, match="resonance without damping"):
+        with pytest.raises(RangeError, match="is an undamped resonance: no steady-state"):
             compliance(model, [10.0, resonance], method)
     critical = ReducedPairModel.from_ratios(
         MeshParameters(3e8), mass=3.0, aspect_ratio=0.3, alpha_y=2.0, alpha_z=0.5, alpha_theta=0.4, modal_damping=1.0
@@ -201,8 +201,16 @@ def test_resonance_without_damping_and_critical_damping_are_refused():
         (lambda: unequal().reduced(), GeometryError, "general model"),
         (lambda: compliance(unequal(), [-1.0]), InputError, "not negative"),
         (lambda: compliance(unequal(), [1.0], "guess"), InputError, "must be"),
-        (lambda: mesh_parameters([0.0], [1.0], 1.0, face_width=1.0), InputError, "two rising"),
-        (lambda: mesh_parameters([0.0, 1.0], [0.0, 0.0], 1.0, face_width=1.0), InputError, "somewhere positive"),
+        (
+            lambda: mesh_parameters([0.0], [1.0], 1.0, face_width=1.0),
+            InputError,
+            "must be at least two increasing values, one",
+        ),
+        (
+            lambda: mesh_parameters([0.0, 1.0], [0.0, 0.0], 1.0, face_width=1.0),
+            InputError,
+            "must be finite and non-negative, with at least",
+        ),
         (lambda: mesh_parameters([0.0, 1.0], [1.0, 1.0], 0.0, face_width=1.0), InputError, "positive where"),
     ],
 )

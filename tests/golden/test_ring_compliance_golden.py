@@ -61,7 +61,7 @@ def test_a_sector_of_all_teeth_but_one_joint_is_nearly_the_ring(sector_mesh):
 
 def test_a_sector_longer_than_the_gear_is_refused(sector_mesh):
     tooth, mesh = sector_mesh
-    with pytest.raises(InputError, match="sector_teeth = 29: must lie between 3 and 28"):
+    with pytest.raises(InputError, match="sector_teeth = 29: must be between 3 and 28"):
         solve_influence(tooth, mesh, 0.3, "strain", sector_teeth=29)
 
 

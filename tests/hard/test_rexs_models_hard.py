@@ -113,7 +113,7 @@ def test_numbers_are_plain_ascii_ones(text):
     one = next(one for one in tree["components"] if one["id"] == 11)
     (teeth,) = (a for a in one["attributes"] if a["id"] == "number_of_teeth")
     teeth["float"] = text
-    with pytest.raises(InputError, match=r"is no finite number|is missing"):
+    with pytest.raises(InputError, match=r"is not a finite number|is missing"):
         case_of(model_of(json.dumps({"model": tree}), Path("model.rexs")))
     del teeth["float"]
     teeth["value"] = " 20 "
@@ -137,7 +137,7 @@ def test_halves_of_characters_are_refused(where):
         one["attributes"].append({"id": "\udc00", "unit": "", "value": "1"})
     else:
         one["attributes"][0][where] = "\udfff"
-    with pytest.raises(InputError, match="half of a character"):
+    with pytest.raises(InputError, match="contains an invalid character \\(surrogate\\)"):
         model_of(json.dumps({"model": tree}), Path("model.rexs"))
     one["name"], one["attributes"] = "\U0001d11e", []
     if where not in ("type", "key"):
@@ -155,9 +155,9 @@ def changed(tree, number, **values):
 @pytest.mark.parametrize(
     ("number", "values", "said"),
     [
-        (41, {"outer_diameter_begin": (35.0, "m")}, r"outer_diameter_begin = 35 m: of shaft 3 is beyond the shafts"),
-        (41, {"outer_diameter_begin": (14e30, "mm")}, "is beyond the shafts of gears, up to 20 m"),
-        (41, {"length": (120.0, "m")}, "length = 120 m: of shaft 3 is beyond the shafts of gears, up to 30 m"),
+        (41, {"outer_diameter_begin": (35.0, "m")}, r"outer_diameter_begin = 35 m: of shaft 3 exceeds"),
+        (41, {"outer_diameter_begin": (14e30, "mm")}, "is outside the shafts of gears, up to 20 m"),
+        (41, {"length": (120.0, "m")}, "length = 120 m: of shaft 3 is outside the shafts of gears, up to 30 m"),
         (41, {"length": (0.0, "mm")}, "length = 0 mm: of a section of shaft 3 must be positive"),
         (41, {"outer_diameter_begin": (0.0, "mm")}, "outer_diameter_begin = 0 mm: of a section of shaft 3 must be"),
         (21, {"center_distance": (0.0, "mm")}, "center_distance = 0 mm: of cylindrical_stage 21 must be positive"),
@@ -185,5 +185,5 @@ def test_a_gear_of_a_set_on_no_shaft_is_refused(gear):
         one for one in tree["relations"]
         if not (one["type"] == "assembly" and any(ref["id"] == gear and ref["role"] == "part" for ref in one["refs"]))
     ]  # fmt: skip
-    with pytest.raises(InputError, match="is part of no shaft"):
+    with pytest.raises(InputError, match="does not belong to a shaft"):
         case_of(model_of(json.dumps({"model": tree}), Path("model.rexs")))

@@ -158,7 +158,7 @@ def exchange(path: Path, draw: random.Random) -> str:
     elif kind == "folder":
         path.mkdir()
     elif kind in ("itself", "nowhere", "zeros"):
-        path.symlink_to({"itself": path.name, "nowhere": "not there", "zeros": "/dev/zero"}[kind])
+        path.symlink_to({"itself": path.name, "nowhere": "file not found", "zeros": "/dev/zero"}[kind])
     elif kind == "file":
         path.write_text("")
     return kind

@@ -22,7 +22,14 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
 
-ONLY_NUMBERS = ("what the tooth can take", "stiffen", "resonance", "no damping", "did not settle", "cannot be reached")
+ONLY_NUMBERS = (
+    "module (at most half the tooth thickness)",
+    "stiffen",
+    "resonance",
+    "no damping",
+    "did not settle",
+    "cannot be reached",
+)
 OF_PAIRS = (
     "geometry", "tooth-geometry-check", "load-sharing", "transmission-error", "loading-spectrum", "relief",
     "relief-chart", "relief-curves", "robustness", "rating", "flank-surface", "gear-mesh-power-loss",

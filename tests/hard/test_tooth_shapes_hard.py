@@ -218,7 +218,7 @@ def test_bores_that_no_elements_resolve_are_refused_with_one_that_they_do(bore, 
     """One asked for 32 GiB, another never came back."""
     tooth = Tooth(28)
     g = Gear(tooth, 3e-3, bore * tooth.root_radius * 3e-3, 0.01)
-    with pytest.raises(RangeError, match=f"too near {near}") as refused:
+    with pytest.raises(RangeError, match=f"too close to {near}") as refused:
         solve_gear(g)
     low, high = (float(w) * 1e-3 for w in refused.value.remedy.split(" mm")[0].split() if w[0].isdigit())
     named = Gear(tooth, 3e-3, low if near == "the centre" else high, 0.01)
@@ -290,7 +290,9 @@ def test_loads_at_both_ends_of_the_flank_are_finite_and_off_it_refused(teeth):
 
 def test_a_sharp_rack_tip_on_the_pitch_line_is_refused_and_one_beside_it_holds():
     """Dedendum equal to the shift, no tip radius: the corner rolls on the pitch line and generates a point."""
-    with pytest.raises(GeometryError, match="generates a notch"):
+    with pytest.raises(
+        GeometryError, match="is a sharp corner on the pitch line and would generate a notch instead of a fillet"
+    ):
         Tooth(15, BasicRack(1.0, 1.0, 0.0, math.radians(12.0)), 1.0, tip_radius=9.5)
     beside = Tooth(15, BasicRack(1.0, 1.01, 0.0, math.radians(12.0)), 1.0, tip_radius=9.5)
     assert np.all(np.isfinite(beside.fillet.points(np.linspace(beside.fillet.start, beside.fillet.end, 9))[0]))

@@ -164,11 +164,14 @@ def test_fillet_point_lies_on_the_outline():
     ("call", "words"),
     [
         (lambda: cornell.critical_angle(PAPER, -0.1), "must not be negative"),
-        (lambda: cornell.critical_angle(PAPER, 3.0), "flanks meet|centre line"),
+        (lambda: cornell.critical_angle(PAPER, 3.0), "intersection of the flanks|centre line"),
         (lambda: cornell.RootSection(R_B, BETA, -0.1, 4.0, 0.5), "must be positive"),
         (lambda: cornell.RootSection(R_B, BETA, 0.1, 4.0, 0.5, -1.0), "must not be negative"),
         (lambda: cornell.stress_at(cornell.RootSection(R_B, BETA, 0.1, 4.3, 0.5), 0.1, 0.5), "above the root section"),
-        (lambda: cornell.critical_angle(cornell.RootSection(R_B, BETA, 0.1, 4.9, 0.5), 0.1), "no maximum"),
+        (
+            lambda: cornell.critical_angle(cornell.RootSection(R_B, BETA, 0.1, 4.9, 0.5), 0.1),
+            "acts too low on the flank: no stress maximum in",
+        ),
         (lambda: cornell.RootSection.radial_of(Tooth(80)), "no radial flank"),
         (lambda: cornell.tooth_root_stress(Tooth(28), 12.0), "not on the involute"),
     ],

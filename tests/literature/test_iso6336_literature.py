@@ -252,7 +252,7 @@ def test_rim_and_deep_tooth_factors_are_continuous():
         (lambda: stiff.stiffness((20, 40), 0.9), "at least 1"),
         (lambda: stiff.stiffness((20, 40), 2.6), "below 2.5"),
         (lambda: stiff.stiffness((20, 40), 1.6, helix_angle=-0.1), "between 0 and 45"),
-        (lambda: stiff.stiffness((20, 40), 1.6, dedendum=(4.0, 4.0)), "beyond the range"),
+        (lambda: stiff.stiffness((20, 40), 1.6, dedendum=(4.0, 4.0)), "is outside the range of C_B"),
         (lambda: root.RackTooth(25, tip_radius=0.0), "rounded rack"),
         (lambda: root.RackTooth(-25), "external"),
         (lambda: root.root_form(root.RackTooth(25, dedendum=1.25, tip_radius=0.9), 27.0), "fillets overlap"),

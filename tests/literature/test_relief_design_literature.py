@@ -158,7 +158,7 @@ def test_pressure_of_a_design_is_hertz_s(high):
 
 def test_the_choice_is_fixed_for_contact_ratios_up_to_two(high):
     stress = design_stress(high.compliance, 81)
-    with pytest.raises(InputError, match="fixed for contact ratios up to 2"):
+    with pytest.raises(InputError, match="is determined for contact ratios up to 2"):
         least_root_stress(stress, loading(high, 1.9))
 
 
@@ -310,4 +310,4 @@ def test_extrapolated_relief_carries_a_fifth_more_without_tip_interference(tmp_p
     tip = [note for note in early if "before the tip end of the active profile at 47.244 mm" in note]
     assert len(tip) == 1
     assert "ends at radius 46.91" in tip[0]
-    assert "held at 15.71 um" in tip[0]
+    assert "last value 15.71 um used" in tip[0]

@@ -52,7 +52,7 @@ def test_waiting_for_the_transient_ends_on_the_same_motion(name):
 
 def test_radau_started_on_the_steady_motion_stays_on_it():
     """An implicit method at rtol 1e-10 agrees to 1e-8: what its own error leaves."""
-    rpm, backlash, amplitude, force, shaft = CASES["contact loss"]
+    rpm, backlash, amplitude, force, shaft = CASES["loss of contact"]
     system = four_inertia(force, backlash, shaft)
     state = shooting(system, rpm, amplitude, 1e-11)
     path = state.trajectory(1)

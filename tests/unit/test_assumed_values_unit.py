@@ -22,7 +22,7 @@ def said(case: dict, tmp_path) -> tuple[str, ...]:
 
 @pytest.mark.parametrize(
     ("key", "expected"),
-    [("face_width", "the load is carried on 1 mm"), ("bore_radius", "half the root radius, 19.125 mm")],
+    [("face_width", ": face_width not specified, 1 mm assumed."), ("bore_radius", "half the root radius, 19.125 mm")],
 )
 def test_a_missing_length_is_reported_once_with_the_assumed_value(key, expected, tmp_path):
     assert said(CASE, tmp_path) == ()

@@ -70,16 +70,16 @@ def test_torque_becomes_a_load_along_the_line_of_action():
 @pytest.mark.parametrize(
     ("override", "key", "words"),
     [
-        ("gear.a.teth=3", "--set", 'nearest known name is "teeth"'),
-        ("gear.a.material.poisson=0.3", "--set", 'nearest known name is "poisson_ratio"'),
-        ("gear.a.material={poisson=0.3}", "gear.a.material.poisson", 'nearest known name is "poisson_ratio"'),
-        ("gear.a.rack={adendum=1.0}", "gear.a.rack.adendum", 'nearest known name is "addendum"'),
-        ("gera.a.teeth=3", "--set", 'nearest known name is "gear"'),
+        ("gear.a.teth=3", "--set", 'did you mean "teeth"'),
+        ("gear.a.material.poisson=0.3", "--set", 'did you mean "poisson_ratio"'),
+        ("gear.a.material={poisson=0.3}", "gear.a.material.poisson", 'did you mean "poisson_ratio"'),
+        ("gear.a.rack={adendum=1.0}", "gear.a.rack.adendum", 'did you mean "addendum"'),
+        ("gera.a.teeth=3", "--set", 'did you mean "gear"'),
         ("gear.c.teeth=3", "--set", "not in this case"),
-        ("title.x=3", "--set", "no table"),
+        ("title.x=3", "--set", "is not a table"),
         ("teeth", "--set", "KEY=VALUE"),
         ("gear.a.module=3 N", "gear.a.module", "is not a length"),
-        ("gear.a.module=3", "gear.a.module", "needs a unit"),
+        ("gear.a.module=3", "gear.a.module", "has no unit;"),
         ("gear.a.module=-3 mm", "gear.a.module", "greater than zero"),
         ("gear.a.diametral_pitch=8 / inch", "gear.a.diametral_pitch", "contradicts module"),
         ("gear.a.teeth=28.5", "gear.a.teeth", "whole number"),
@@ -88,24 +88,24 @@ def test_torque_becomes_a_load_along_the_line_of_action():
         ("gear.a.teeth=true", "gear.a.teeth", "whole number"),
         ("gear.a.material.poisson_ratio=0.5", "gear.a.material.poisson_ratio", r"inside \(-1, 0.5\)"),
         ("gear.a.material.poisson_ratio=-1.0", "gear.a.material.poisson_ratio", r"inside \(-1, 0.5\)"),
-        ("gear.a.bore_radius=13 mm", "gear.a.bore_radius", r"inside \(0, root radius = 12.75 mm\)"),
+        ("gear.a.bore_radius=13 mm", "gear.a.bore_radius", r"between 0 and the root radius 12.75 mm"),
         ("gear.a.bore_radius=0 mm", "gear.a.bore_radius", "greater than zero"),
-        ("gear.a.rack.tip_radius=0.6", "gear.a.rack.tip_radius", "room for 0.47"),
-        ("gear.a.rack=ISO 53 E", "gear.a.rack", "is no ISO 53 profile"),
+        ("gear.a.rack.tip_radius=0.6", "gear.a.rack.tip_radius", "maximum of 0.47"),
+        ("gear.a.rack=ISO 53 E", "gear.a.rack", "is not an ISO 53 profile"),
         ("gear.a.pressure_angle=60 deg", "gear.a.pressure_angle", "between 5 and 45"),
         ("gear.a.profile_shift=2.5", "gear.a.profile_shift", "pointed"),
         ("gear.a.tip_diameter=40 mm", "gear.a.tip_diameter = 40 mm", "pointed"),
-        ("gear.a.tip_radius_rounding=3 mm", "gear.a.tip_radius_rounding = 3 mm", "choose at most 0.5793 mm"),
+        ("gear.a.tip_radius_rounding=3 mm", "gear.a.tip_radius_rounding = 3 mm", "use at most 0.5793 mm"),
         ("gear.a.plane=stres", "gear.a.plane", "'strain', 'stress' or 'auto'"),
-        ("gear.b.plane=auto", "gear.b.face_width", "missing"),
+        ("gear.b.plane=auto", "gear.b.face_width", "is required"),
         ("gear.a.profile_shift=nan", "gear.a.profile_shift", "finite"),
         ("gear.b.module=2 mm", "pair.I", "base pitches"),
         ("pair.I.driver=c", "pair.I.driver", "known here: a, b"),
-        ("pair.I.centre_distance=20 mm", "pair.I.centre_distance", "jams"),
-        ("pair.I.centre_distance=60 mm", "pair.I.centre_distance", "never meet"),
+        ("pair.I.centre_distance=20 mm", "pair.I.centre_distance", "leaves no backlash"),
+        ("pair.I.centre_distance=60 mm", "pair.I.centre_distance", "is too large: no flank contact"),
         ("pair.I.torque=1 N*m", "pair.I.torque", "contradicts load"),
         ("pair.I.compliance.source=fem", "pair.I.compliance.source", "'fe'"),
-        ("pair.I.compliance.source=table", "pair.I.compliance.file", "missing"),
+        ("pair.I.compliance.source=table", "pair.I.compliance.file", "is required"),
         ("stiffness.gear=c", "stiffness.gear", "known here: a, b"),
         ('stiffness.radii=["3 N"]', "stiffness.radii[0]", "is not a length"),
         ("stiffness.radii=[]", "stiffness.radii", "empty"),
@@ -130,7 +130,7 @@ def test_a_refusal_names_key_and_rule(override, key, words):
 )
 def test_a_decimal_comma_in_a_list_of_numbers_is_refused(override, tmp_path):
     """TOML reads [0.1, 0,25] as three numbers."""
-    with pytest.raises(InputError, match=r"decimal comma in .*write \d\.\d+, or \d, \d+ for two numbers|unknown key"):
+    with pytest.raises(InputError, match=r"decimal comma \(.*use \d\.\d+, or \d, \d+ for two numbers|unknown key"):
         scene_with(override)
     key, _, value = override.rpartition("=")
     table, _, last = key.rpartition(".")
@@ -147,11 +147,11 @@ def test_other_lists_of_numbers_are_left_alone(fine):
 @pytest.mark.parametrize(
     ("part", "words"),
     [
-        ({"balance": "lod"}, r'train\.balance = "lod": is no body of this case; the nearest known name is "load"'),
-        ({"torque": {"motr": "5 N*m"}}, r'train\.torque = "motr": is no body'),
-        ({"mesh": {"I": {"driver": "motor", "driven": "wheel"}}}, r'train\.mesh\.I\.driven = "wheel": is no body'),
-        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "II": is no pair'),
-        ({"damper": {"d": {"a": "lead", "damping": "1 N*m*s"}}}, r'train\.damper\.d\.a = "lead": is no body'),
+        ({"balance": "lod"}, r'train\.balance = "lod": is not a body of this case; did you mean "load"'),
+        ({"torque": {"motr": "5 N*m"}}, r'train\.torque = "motr": is not a body'),
+        ({"mesh": {"I": {"driver": "motor", "driven": "wheel"}}}, r'train\.mesh\.I\.driven = "wheel": is not a body'),
+        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "II": is not a pair'),
+        ({"damper": {"d": {"a": "lead", "damping": "1 N*m*s"}}}, r'train\.damper\.d\.a = "lead": is not a body'),
     ],
 )
 def test_names_in_a_train_that_no_result_reads_are_held_against_the_case_too(part, words):
@@ -187,7 +187,7 @@ def test_what_is_required_is_named(missing):
 def test_a_misspelt_key_is_reported_before_the_one_that_is_missing():
     document = copy.deepcopy(CASE)
     document["gear"]["a"]["teth"] = document["gear"]["a"].pop("teeth")
-    with pytest.raises(InputError, match=r'gear\.a\.teth = 28: is an unknown key.*nearest known name is "teeth"'):
+    with pytest.raises(InputError, match=r'gear\.a\.teth = 28: is an unknown key.*did you mean "teeth"'):
         build_scene(document, "case", Path())
 
 
@@ -195,9 +195,7 @@ def test_a_misspelt_key_is_reported_before_the_one_that_is_missing():
 def test_a_symbol_of_the_drawing_is_refused_with_its_key(symbol, key):
     document = copy.deepcopy(CASE)
     document["gear"]["a"][symbol] = 0.3
-    with pytest.raises(
-        InputError, match=rf'gear\.a\.{symbol} = 0\.3: is an unknown key.*nearest known name is "{key}"'
-    ):
+    with pytest.raises(InputError, match=rf'gear\.a\.{symbol} = 0\.3: is an unknown key.*did you mean "{key}"'):
         build_scene(document, "case", Path())
 
 
@@ -206,7 +204,7 @@ def test_files_that_cannot_be_read(tmp_path):
         read_scene(tmp_path / "none.toml")
     broken = tmp_path / "broken.toml"
     broken.write_text("gear = {")
-    with pytest.raises(InputError, match="no valid TOML"):
+    with pytest.raises(InputError, match="invalid TOML:"):
         read_scene(broken)
     broken.write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match="UTF-16"):

@@ -176,7 +176,7 @@ def test_what_cannot_be_changed_by_itself_is_refused():
         with_value(HARD, ("lists", "teeth"), "4")
     with pytest.raises(InputError, match="in the text"):
         with_value(HARD, ("lists", "2", "teeth"), "4")
-    with pytest.raises(InputError, match="is no value"):
+    with pytest.raises(InputError, match="is not a valid value"):
         with_value(HARD, ("title",), "not toml")
 
 

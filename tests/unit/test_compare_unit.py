@@ -66,7 +66,7 @@ def test_inputs_values_and_curves_are_told_apart(say, runs):
     code, out, _ = say("compare", "one", "loaded", "--out", "cmp")
     assert code == 1
     assert "  pair.I.load: 1000 N -> 2000 N" in out
-    assert "I.largest_load: 1000 -> 2000 N (+50.00%)" in out
+    assert "I.largest_load: 1000 -> 2000 N (+50 %)" in out
     assert "I.contact_ratio" not in out  # does not depend on the load
     with (runs / "cmp" / "tables" / "load_sharing_I.csv").open() as stream:
         rows = list(csv.DictReader(stream))
@@ -74,7 +74,7 @@ def test_inputs_values_and_curves_are_told_apart(say, runs):
     assert single
     assert all(float(row["load_change [N]"]) == pytest.approx(1000.0) for row in single)
     assert (runs / "cmp" / "plots" / "compare_load_sharing_I.png").stat().st_size > 5000
-    assert "Curves over each other" in (runs / "cmp" / "report.html").read_text()
+    assert "Curves overlaid" in (runs / "cmp" / "report.html").read_text()
     summary = json.loads((runs / "cmp" / "summary.json").read_text())
     assert summary["inputs"] == {"pair.I.load": {"a": "1000 N", "b": "2000 N"}}
     assert summary["values"]["I.largest_load"]["share"] == pytest.approx(0.5)
@@ -86,9 +86,9 @@ def test_inputs_values_and_curves_are_told_apart(say, runs):
 def test_a_run_and_its_own_case_are_the_same(say):
     code, out, _ = say("compare", "one", "one.toml", "--out", "cmp_same", "--no-plots")
     assert code == 0
-    assert "Inputs: the same." in out
-    assert "Values: the same." in out
-    assert "Tables: the same." in out
+    assert "Inputs: identical." in out
+    assert "Values: identical." in out
+    assert "Tables: identical." in out
     # With another load the case is no longer that of the folder.
     assert say("compare", "one", "one.toml", "--set", "pair.I.load=1001 N", "--out", "cmp_other", "-q")[0] == 1
     assert say("compare", "one", "one.toml", "--set", "pair.I.load=1001 N", "--tolerance", "0.02", "-q")[0] == 0
@@ -115,7 +115,7 @@ def test_curves_over_other_places_are_compared_where_both_are(say, runs):
     ("arguments", "words"),
     [
         (("compare", "one", "nothing.toml"), "does not exist"),
-        (("compare", "one", "."), "is no folder of a run"),
+        (("compare", "one", "."), "is not a results folder (no"),
         (("compare", "one", "loaded", "--set", "gear.a.teeth=30"), "both are folders"),
         (("compare", "one", "loaded", "--tolerance", "-1"), "zero or greater"),
     ],
@@ -133,7 +133,7 @@ def test_a_folder_without_inputs_is_compared_by_its_numbers(say, runs):
     (runs / "old" / "summary.json").write_text(json.dumps(summary))
     code, out, _ = say("compare", "old", "one", "--no-plots")
     assert code == 0
-    assert "Inputs: not known of both" in out
+    assert "Inputs: not available for both runs (written by an older version)." in out
 
 
 def test_inputs_that_mean_the_same_are_the_same():
@@ -212,7 +212,7 @@ def test_a_comparison_is_not_written_over_a_run_that_it_compares(say, runs):
     for out in ("shifted", "./shifted/", "link"):
         code, _, complaint = say("compare", "one", "shifted", "--out", out)
         assert code == 2
-        assert "is one of the runs that are compared, which it would replace" in complaint
+        assert "is one of the runs to be compared and would be overwritten" in complaint
     assert {path: path.read_bytes() for path in (runs / "shifted").rglob("*") if path.is_file()} == before
 
 
@@ -229,11 +229,11 @@ def test_columns_that_only_one_table_has_are_a_difference():
     both = table(x=[1.0, 2.0], te=[3.0, 4.0], name=["p", "q"])
     assert not found(both, both).results_differ
     for one, other, told in (
-        (both, table(x=[1.0, 2.0], name=["p", "q"]), "t: only A has the column te"),
-        (table(x=[1.0, 2.0], name=["p", "q"]), both, "t: only B has the column te"),
-        (both, table(x=[1.0, 2.0], te=[3.0, 4.0]), "t: only A has the column name"),
-        (both, table(other=[1.0, 2.0]), "t: only A has the columns x, te, name"),
-        (table(te=[3.0]), table(), "t: only A has the column te"),
+        (both, table(x=[1.0, 2.0], name=["p", "q"]), "t: column te only in A"),
+        (table(x=[1.0, 2.0], name=["p", "q"]), both, "t: column te only in B"),
+        (both, table(x=[1.0, 2.0], te=[3.0, 4.0]), "t: column name only in A"),
+        (both, table(other=[1.0, 2.0]), "t: columns x, te, name only in A"),
+        (table(te=[3.0]), table(), "t: column te only in A"),
     ):
         comparison = found(one, other)
         assert comparison.results_differ
@@ -243,7 +243,7 @@ def test_columns_that_only_one_table_has_are_a_difference():
     # So was a number that is none any more, as long as another entry of its column stayed one.
     lost = found(both, table(x=[1.0, 2.0], te=[3.0, np.nan], name=["p", "q"]))
     assert lost.results_differ
-    assert any("a number on one side alone" in line for line in lost.lines())
+    assert any("value in one run only" in line for line in lost.lines())
 
 
 def test_no_number_on_both_sides_is_no_difference():

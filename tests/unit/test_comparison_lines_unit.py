@@ -38,11 +38,11 @@ def test_a_value_is_told_with_its_change_over_the_larger_of_both():
     pair = Pairing("I.te", um(8.0, 0.5), um(10.0, 0.5))
     assert (pair.change, pair.share) == (pytest.approx(2.0), pytest.approx(0.2))
     assert (pair.within_errors, pair.resolved) == (False, True)
-    assert value_line(pair) == "  I.te: 8 -> 10 um (+20.00%)"
-    assert value_line(Pairing("I.te", um(10.0), um(-8.0))) == "  I.te: 10 -> -8 um (-180.00%)"
+    assert value_line(pair) == "  I.te: 8 -> 10 um (+20 %)"
+    assert value_line(Pairing("I.te", um(10.0), um(-8.0))) == "  I.te: 10 -> -8 um (-180 %)"
     near = Pairing("I.te", um(10.0, 0.2), um(9.5, 0.31))
     assert (near.within_errors, near.resolved) == (True, False)
-    assert value_line(near) == "  I.te: 10 -> 9.5 um (-5.00%, within the estimated errors)"
+    assert value_line(near) == "  I.te: 10 -> 9.5 um (-5.0 %, within the estimated errors)"
     assert not Pairing("I.te", um(10.0, 0.2), um(9.5, 0.25)).within_errors
     assert Pairing("I.te", um(10.0, 0.6), um(9.5)).within_errors
     assert not Pairing("x", Value("x", 1.0), Value("x", 1.0 + 1e-10)).resolved  # round-off of a number without an error
@@ -82,7 +82,7 @@ def test_columns_are_told_from_the_one_that_changes_most_and_four_of_them_at_mos
     assert table_lines(join(words, other), 0.0) == ["  t, load: by up to +0.5 at name = p"]
     longer = table(x=([1e-3, 2e-3, 5e-3, 6e-3], "mm"), a=([1.0, 2.0, 4.0, 4.0], "N"), z=([1.0, 1.0, 1.0, 1.0], ""))
     told = table_lines(join(table(x=x, a=([1.0, 2.0, 4.0], "N")), longer), 1e-9)
-    assert told == ["  t: 1 rows are in A alone, 2 in B alone", "  t: only B has the column z"]
+    assert told == ["  t: 1 rows only in A, 2 only in B", "  t: column z only in B"]
 
 
 def test_what_is_on_the_terminal_is_bounded_and_says_how_much_more_there_is():
@@ -91,14 +91,14 @@ def test_what_is_on_the_terminal_is_bounded_and_says_how_much_more_there_is():
     found = compare(side("one", values=values), side("other", values=changed))
     lines = found.lines()
     assert lines[:4] == [
-        "A: one", "B: other", "Inputs: not known of both; only folders written by this version state them.",
+        "A: one", "B: other", "Inputs: not available for both runs (written by an older version).",
         "Values that differ:",
     ]  # fmt: skip
     assert lines[4 + 40] == "  ... 5 more in the report"
     assert lines[-1] == "Tables: none."
     assert len(lines) == 4 + 40 + 2
     same = compare(side("one", values=values), side("other", values=values))
-    assert same.lines()[-2:] == ["Values: the same.", "Tables: none."]
+    assert same.lines()[-2:] == ["Values: identical.", "Tables: none."]
     assert not same.results_differ
     few = compare(side("one", values=values[:40]), side("other", values=changed))
     assert sum("only in B" in line for line in few.lines()) == 0  # beyond the fortieth
@@ -106,7 +106,7 @@ def test_what_is_on_the_terminal_is_bounded_and_says_how_much_more_there_is():
     exactly = compare(side("one", values=values[:40]), side("other", values=changed[:40]))
     assert not any("more in the report" in line for line in exactly.lines())
     alone = compare(side("one", table("p", x=([1.0], ""))), side("other", table("q", x=([1.0], ""))))
-    assert alone.lines()[-2:] == ["Only A has the table p.", "Only B has the table q."]
+    assert alone.lines()[-2:] == ["Table p only in A.", "Table q only in B."]
     assert alone.results_differ
     half = compare(side("one", document={"results": []}), side("other"))
     assert half.inputs is None
@@ -190,7 +190,7 @@ def test_page_and_summary_of_a_comparison_hold_what_differs():
         ["n", "", "2", "", ""],
     ]
     assert [section.title for section in page.sections] == [
-        "Inputs that differ", "Values that differ", "Curves over each other", "Tables that differ",
+        "Inputs that differ", "Values that differ", "Curves overlaid", "Tables that differ",
     ]  # fmt: skip
     assert page.note == "A: one. B: other."
     summary = comparison_summary(found)

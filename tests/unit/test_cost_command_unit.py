@@ -84,7 +84,7 @@ def test_finer_meshes_have_smaller_errors_and_the_cheapest_within_a_tolerance_is
         app(["cost", str(case), *asked_for])
     assert left.value.code in (0, None)
     found = {row["configuration"]: row for row in rows(tmp_path / "o", "cost") if row["quantity"] == "c_0"}
-    finer = [row for name, row in found.items() if name.startswith("whole gear, order 2")]
+    finer = [row for name, row in found.items() if name.startswith("full gear, order 2")]
     finer.sort(key=lambda row: -float(row["root_edge_length"]))  # the table's own order is that of the seconds measured
     errors = [float(row["error"]) for row in finer]
     assert len(errors) == 3
@@ -183,7 +183,7 @@ def test_seconds_common_to_all_configurations_are_not_compared(short):
 def test_all_quantities_at_once_are_cheapest_for_a_configuration(short):
     cheapest = {(row["quantity"], float(row["tolerance"])): row for row in rows(short, "cost_cheapest")}
     at_once = cheapest["all", 1e-1]
-    assert at_once["configuration"].startswith("whole gear")
+    assert at_once["configuration"].startswith("full gear")
     assert float(at_once["seconds [s]"]) >= float(cheapest["c_1", 1e-1]["seconds [s]"])
 
 
@@ -207,7 +207,7 @@ def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
 def test_orders_tell_what_they_rest_on(short):
     found = rows(short, "cost_orders")
     knobs = {(row["quantity"], row["knob"]) for row in found}
-    even = "positions per base pitch, evenly spaced"
+    even = "positions per base pitch, equally spaced"
     assert {("c_0", "edge length, order 2"), ("c_1", "patch half-width"), ("te-harmonics", even)} <= knobs
     for row in found:
         assert (row["order"] == "") == row["rests_on"].startswith("none")
@@ -279,9 +279,9 @@ def test_effects_that_only_the_cost_study_depends_on_are_not_idle(case):
     [
         ('cost.quantities=["c0"]', "cost.quantities"),
         ("cost.quantity=1", "unknown key"),
-        ("cost.gear=b", 'cost.gear = "b": is no spur gear of this case'),
-        ("cost.pair=J", 'cost.pair = "J": is no pair of this case'),
-        ('cost.quantities=["dynamic-factor"]', "needs a train"),
+        ("cost.gear=b", 'cost.gear = "b": is not a spur gear of this case'),
+        ("cost.pair=J", 'cost.pair = "J": is not a pair of this case'),
+        ('cost.quantities=["dynamic-factor"]', "requires a train, speeds, and an effect in the"),
     ],
 )
 def test_what_cannot_be_studied_is_refused_with_the_remedy(case, override, words):
@@ -291,7 +291,10 @@ def test_what_cannot_be_studied_is_refused_with_the_remedy(case, override, words
 
 @pytest.mark.parametrize(
     ("override", "words"),
-    [("effects.hertz=none", "nothing converges"), ("gear.a.tooth_mesh=own.msh", "fixes the mesh")],
+    [
+        ("effects.hertz=none", "leaves the contact width equal to the mesh"),
+        ("gear.a.tooth_mesh=own.msh", "fixes the mesh"),
+    ],
 )
 def test_what_is_named_under_cost_is_refused_where_the_usual_study_takes_its_place(case, override, words):
     named = 'cost.quantities=["te-peak-to-peak", "c_0"]'
@@ -300,17 +303,17 @@ def test_what_is_named_under_cost_is_refused_where_the_usual_study_takes_its_pla
     found = asked(read_scene(case, [override]))
     assert {"c_0", "root-stress"} <= {quantity.name for quantity in found.quantities}
     assert words in found.notes[0]
-    assert found.notes[0].startswith("Studied instead of what the results stand for: ")
+    assert found.notes[0].startswith("Studied instead of the requested results:")
 
 
 def test_a_case_without_a_load_has_no_pair_to_study(tmp_path):
     path = tmp_path / "bare.toml"
     path.write_text(CASE.replace('load = "4000 N"\n', ""))
-    with pytest.raises(InputError, match=r"cost\.pair = \(not given\): must be a pair of spur gears that carries"):
+    with pytest.raises(InputError, match=r"must be a loaded spur pair"):
         asked(read_scene(path, ['cost.quantities=["te-peak-to-peak"]']))
     found = asked(read_scene(path))
     assert [quantity.name for quantity in found.quantities] == ["c_0", "c_1", "root-stress"]
-    assert "must be a pair of spur gears that carries a load" in found.notes[0]
+    assert "must be a loaded spur pair" in found.notes[0]
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in CASES.glob("*.toml")))
@@ -326,7 +329,9 @@ def test_every_shipped_case_can_be_studied(name):
 
 def test_a_case_without_gears_has_nothing_to_choose(capsys):
     app(["cost", str(CASES / "blankenship_singh.toml"), "--quick"], standalone_mode=False)
-    assert "the case describes no gears, so there is no mesh, formula or tolerance to choose" in capsys.readouterr().out
+    assert (
+        "Cost study: the case has no gears, so there is no mesh, formula or tolerance to choose."
+    ) in capsys.readouterr().out
 
 
 @pytest.mark.dear
@@ -345,7 +350,7 @@ def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     assert process.stdout is not None
     lines = iter(process.stdout.readline, "")
     assert next(lines).startswith("Cost study: ")
-    assert next(lines).startswith("Predicted: about ")
+    assert next(lines).startswith(", plus some seconds for tables, figures and report.")
     assert next(lines) == "waiting\n"
     os.kill(process.pid, signal.SIGINT)
     _, errors = process.communicate(timeout=60)

@@ -313,13 +313,13 @@ def test_what_is_studied_follows_the_results():
     assert names(["load-sharing"], cost__quantities=["c_1", "c_0", "c_1"])[0] == ["c_1", "c_0"]
     instead = asked(scene_of(results=["geometry"]))
     assert [one.name for one in instead.quantities] == ["te-peak-to-peak", "tooth-force"]
-    assert "ask for nothing whose cost can be chosen" in instead.notes[0]
+    assert "contain nothing with selectable accuracy" in instead.notes[0]
 
 
 def test_a_train_is_studied_by_its_mesh_at_one_speed_or_with_its_motion(rig):
     assert [(one.name, one.subject) for one in rig.quantities] == [("root-stress", "test"), ("tooth-force", "I")]
     assert (rig.gear, rig.pair, rig.mesh, rig.pairs, rig.tabled) == ("test", "I", "I", ("I",), True)
-    assert rig.quantities[1].meaning == "largest force on one tooth pair of mesh I at 10000 rpm"
+    assert rig.quantities[1].meaning == "maximum force on one tooth pair of mesh I at 10000 rpm"
     assert [rig.solves(one) for one in rig.quantities] == [True, False]
     assert [rig.gears_for(one) for one in rig.quantities] == [("test",), ()]
     assert rig.gears == ("test",)
@@ -363,7 +363,7 @@ def test_wide_pairs_are_studied_over_their_face_where_the_plane_has_no_say():
     assert math.isnan(found.line_load)
     some = over_face('cost.quantities=["face-load-factor", "te-mean", "te-mean"]')
     assert [one.name for one in some.quantities] == ["face-load-factor", "te-mean"]
-    with pytest.raises(InputError, match="studied without quantities of plane teeth"):
+    with pytest.raises(InputError, match="applies to a 3D pair and cannot be combined"):
         over_face('cost.quantities=["face-load-factor", "c_0"]')
 
 
@@ -433,7 +433,7 @@ def test_root_stress_formulas_are_per_line_load_of_the_gear_s_size(pair):
     far = replace(pair, radii=np.array([1.0]))
     with pytest.raises(RangeError):
         StressFormula("iso-6336-3").of_gear("root-stress", far)
-    with pytest.raises(RangeError, match="is not known to a root-stress formula"):
+    with pytest.raises(RangeError, match="is not available with a root-stress formula"):
         StressFormula("iso-6336-3").compliance("I", "driver", pair)
     with pytest.raises(RangeError, match="is not in the pair's table"):
         CaseTable().of_gear("c_0", pair)
@@ -469,7 +469,7 @@ def test_the_dynamic_factor_at_a_speed_is_that_of_a_run():
 # ---- one setting at a time -------------------------------------------------------------------------------------------
 def test_settings_of_load_sharing_are_varied_one_at_a_time_and_jumps_cost_even_positions_their_order(pair):
     found = {(one.quantity, one.name): one for one in knobs.pair_knobs(pair, ComplianceFormula("weber-banaschek"))}
-    even, between = "positions per base pitch, evenly spaced", "Gauss points per piece between jumps"
+    even, between = "positions per base pitch, equally spaced", "Gauss points per interval between discontinuities"
     te, stiffness = "te-harmonics", "stiffness-harmonics"
     sums = "harmonics of the transmission error"
     assert list(found) == [
@@ -515,7 +515,7 @@ def test_settings_of_a_train_are_varied_one_at_a_time(rig, monkeypatch):
     np.testing.assert_allclose(positions.error, [1 - (1 + 3 / 512**2 - 1 / n) / best for n in positions.settings])
     assert tolerance.settings.tolist() == tolerance.step.tolist() == [1e-2, 1e-3, 1e-4, 1e-5]
     np.testing.assert_allclose(tolerance.error, [(t - 1e-8) / (1.0 - 1e-8) for t in tolerance.settings], rtol=1e-9)
-    assert tolerance.at == "at 10000 rpm, against 1e-08"
+    assert tolerance.at == "at 10000 rpm, relative to 1e-08"
     assert (tolerance.seconds >= 0.0).all()
     assert [one.quantity for one in (harmonics, positions, tolerance)] == ["tooth-force"] * 2 + ["dynamic-factor"]
     assert knobs.pair_knobs(replace(both, mesh=""), CaseTable()) == []
@@ -540,23 +540,29 @@ def test_settings_of_a_solid_gear_are_varied_one_at_a_time(pair, monkeypatch):
     assert [(one.name, one.quantity) for one in found] == [
         (name, quantity)
         for name in ("edges of the section", "functions per module of face", "edges of the section, slices")
-        for quantity in ("c_0 over the face", "c_1 over the face", "root tension over the face")
+        for quantity in (
+            "c_0 over the face width",
+            "c_1 over the face width",
+            "root stress (tension side) over the face width",
+        )
     ]
     factors, waves = np.array([1.5, 1.25, 1.0, 0.8]), np.array([0.75, 1.0, 1.5, 2.0])
     for k, knob in enumerate(found[:3], start=1):
         np.testing.assert_allclose(knob.settings, edge * factors)
         np.testing.assert_allclose(knob.step, knob.settings)
         np.testing.assert_allclose(knob.error, k * (factors / 0.6 - 1.0))
-        assert knob.at == f"{usual.waves_per_module:g} functions per module of face, against 0.12; largest of the bands"
+        assert knob.at == (
+            f"{usual.waves_per_module:g} functions per module of face, relative to 0.12; largest of the bands"
+        )
     for k, knob in enumerate(found[3:6], start=1):
         np.testing.assert_allclose(knob.settings, waves)
         np.testing.assert_allclose(knob.step, 1.0 / waves)
         np.testing.assert_allclose(knob.error, k * (1.0 - waves / 3.0))
-        assert knob.at == f"edges of {edge:g} modules, against 3; largest of the bands"
+        assert knob.at == f"edges of {edge:g} modules, relative to 3; largest of the bands"
     for k, knob in enumerate(found[6:], start=1):
         np.testing.assert_allclose(knob.settings, edge * factors)
         np.testing.assert_allclose(knob.error, k * abs(factors - 1.0), atol=1e-12)
-        assert knob.at.endswith("against the solid gear; largest of the bands")
+        assert knob.at.endswith("relative to 3D gear; largest of the bands")
         assert knob.seconds.size == 4
 
 
@@ -582,7 +588,7 @@ def test_edges_patches_and_sectors_are_varied_with_the_answers_of_the_ladder(pai
     edges = knobs.ladder_knobs(found, ladder, best)
     assert [one.name for one in edges] == [
         "edge length, order 2", "edge length, order 3", "edge length, order 4", "patch half-width",
-        "teeth of a sector with free sides",
+        "number of teeth of a sector with free sides",
     ]  # fmt: skip
     for knob, finest, patch in zip(edges, (0.5, 0.7, 0.7), (0.18, 0.18, 0.09), strict=False):
         factors = np.array([4.0, 2.8, 2.0, 1.4, 1.0, 0.7, 0.5])
@@ -688,7 +694,7 @@ def test_a_configuration_is_charged_for_its_gears_and_its_answer_and_judged_by_i
 
 def test_what_has_no_compliance_is_right_by_luck_and_what_needs_none_is_not(measured, monkeypatch):
     def refuse(asked, source):
-        raise FegearError("x", "y", "is refused")
+        raise FegearError("x", "y", "Version of the case file format; newer versions")
 
     monkeypatch.setattr(measure, "pair_compliance", refuse)
     assert measure._compliance_error(measured, measured.asked, Sized(1.0)) == 0.0
@@ -724,7 +730,7 @@ def test_gears_of_one_shape_are_solved_once(pair, monkeypatch):
     assert len({gear.face_width for gear, _, _ in solved}) == 1
     assert seconds["b"] == Seconds(0.0, 0.0)
     assert seconds["a"].cpu >= 0.0
-    with pytest.raises(ValueError, match="no finite-element configuration"):
+    with pytest.raises(ValueError, match="is not an FE configuration"):
         measure.solve_gears(two, Configuration("tolerance", tolerance=1e-2))
 
 
@@ -851,8 +857,8 @@ def test_figures_show_every_configuration_the_front_and_what_the_reference_does_
     assert list(drawn["ring, order 2"].x) == [1.1]
     assert list(drawn["ring, order 3"].y) == [1e-4]
     assert list(drawn["closed form"].y) == [0.3]
-    assert drawn["closed form"].notes == ("cornell (50% of the flank)",)
-    assert list(drawn["chosen for accuracy.tolerance, error estimate included"].x) == [0.6]
+    assert drawn["closed form"].notes == ("cornell (50 % of the flank)",)
+    assert list(drawn["selected by accuracy.tolerance, including error estimation"].x) == [0.6]
     assert (drawn["ring, order 2"].size, drawn["closed form"].size) == (5.0, 8.0)
     assert [drawn[name].written for name in ("ring, order 2", "closed form")] == [False, True]
     front = drawn["Pareto front"]
@@ -867,8 +873,8 @@ def test_figures_show_every_configuration_the_front_and_what_the_reference_does_
     page = cost_page(results, cost_figures(results))
     assert page.note == "4 of 4 configurations in 12 s"
     assert [section.title for section in page.sections] == [
-        "Cheapest settings for a tolerance", "Cost of c_0", "Cost of te-peak-to-peak", "What each setting does",
-        "Every configuration",
+        "Cheapest settings for a tolerance", "Cost of c_0", "Cost of te-peak-to-peak", "Influence of each setting",
+        "All configurations",
     ]  # fmt: skip
     assert len(page.sections[0].blocks) == 4
 

@@ -59,7 +59,7 @@ def test_results_are_named_without_quotes(say, tmp_path):
     assert "load_sharing_I" in names
     code, _, err = say("plan", "one.toml", "--results", "load-shring")
     assert code == 2
-    assert 'the nearest known name is "load-sharing"' in err
+    assert 'did you mean "load-sharing"' in err
 
 
 def test_json_is_the_summary_and_nothing_else(say, tmp_path):
@@ -169,7 +169,7 @@ def test_completion_installs_in_every_shell(shell, file, tmp_path):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ('results=["stifness"]', f'the nearest known name is "stiffness"; "fegear results" lists all {len(RESULTS)}.'),
+        ('results=["stifness"]', f'did you mean "stiffness"? "fegear results" lists all {len(RESULTS)}.'),
         ("gear.a.plane=strian", "must be 'strain', 'stress' or 'auto'"),
         ('gear.a.rack={tip_radius="ful"}', "gear.a.rack.tip_radius = \"ful\": must be a number or 'full'."),
         ("design.peak=leest", "design.peak = \"leest\": must be a number or 'least-root-stress' or 'least-stress'."),
@@ -177,7 +177,7 @@ def test_completion_installs_in_every_shell(shell, file, tmp_path):
         ("pair.I.iso_6336.edition=2005", "must be 2006 or 2019"),
         ('design.grind=["linar"]', "design.grind[0] = \"linar\": must be 'linear' or 'parabolic'"),
         ("effects.frction=true", "known here: contact_loss, corner_contact, friction"),
-        ("pair.I.driver=c", "is no gear of this case; known here: a, b"),
+        ("pair.I.driver=c", "is not a gear of this case; known here: a, b"),
     ],
 )
 def test_an_error_lists_the_choices(say, change, words):

@@ -25,7 +25,7 @@ def mean(value: float, error: float | None) -> Value:
 def test_a_change_below_the_errors_of_both_runs_is_called_not_resolved():
     found = Switched("hertz", True, run(te(8.0, 1.2), mean(20.0, 0.1)), run(te(8.216, 2.5), mean(20.05, 0.1)))
     said = sentence(found)
-    assert "hertz changes no value by more than its error" in said
+    assert "hertz: no change above the estimated error" in said
     assert "I.te_peak_to_peak: +0.216 um, not resolved (+- 1.2 and +- 2.5)" in said
     assert effects_table([found])["resolved"].tolist() == ["no", "no"]
     assert effects_table([found])["error_with"].tolist() == pytest.approx([2.5, 0.1])
@@ -33,7 +33,7 @@ def test_a_change_below_the_errors_of_both_runs_is_called_not_resolved():
 
 def test_the_largest_change_is_taken_of_those_that_are_resolved():
     found = Switched("hertz", True, run(te(8.0, 1.2), mean(20.0, 0.1)), run(te(9.0, 2.5), mean(20.5, 0.1)))
-    assert sentence(found).startswith("hertz changes I.te_mean most: 20 -> 20.5 um")
+    assert sentence(found).startswith("hertz: largest change in I.te_mean: 20 -> 20.5 um")
     assert effects_table([found])["resolved"].tolist() == ["no", "yes"]
 
 
@@ -49,4 +49,4 @@ def test_the_page_names_what_is_not_resolved():
     scene = SimpleNamespace(case=SimpleNamespace(title="A pair"), name="pair", text="")
     page = effects_page(scene, [found], [], effects_table([found]), {"hertz": None}, {"hertz": None}, {"hertz": ""})
     assert "not resolved (+- 1.2 and +- 2.5)" in str(page.sections)
-    assert "none by more than its error" in str(page.sections)
+    assert "none above the estimated error" in str(page.sections)

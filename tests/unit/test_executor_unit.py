@@ -55,11 +55,11 @@ def test_a_process_that_dies_takes_no_other_point_with_it():
     found = map_points(functools.partial(map, os._exit), [7], Executor(workers=2))
     assert isinstance(found[0], Failure)  # a map is no plain data, and nothing died yet
     died = map_points(os._exit, [3, 4], Executor(workers=2))
-    assert all(isinstance(one, Failure) and "process died" in one.reason for one in died)
+    assert all(isinstance(one, Failure) and "the process terminated while computing this" in one.reason for one in died)
 
 
 def test_functions_without_a_name_are_refused():
-    with pytest.raises(ValueError, match="function of a module"):
+    with pytest.raises(ValueError, match="is not a module-level function and cannot be imported by other processes"):
         map_points(lambda x: x, [1])
 
 
@@ -72,7 +72,7 @@ def test_workers_use_one_thread_each_and_leave_the_environment_alone(monkeypatch
 
 def test_a_store_that_cannot_be_written_to_is_reported(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="cannot be written to"):
+    with pytest.raises(InputError, match="is not writable \\("):
         map_points(math.sqrt, [1.0], cache=SolutionCache(Store(tmp_path / "file")))
 
 
@@ -117,7 +117,9 @@ def test_a_worker_too_old_to_say_what_it_is_is_refused(scheduler, monkeypatch):
 def test_a_worker_that_joins_later_is_refused_as_well(scheduler, monkeypatch):
     monkeypatch.setattr("fegear.engine.cluster._check_workers", lambda *_: None)
     monkeypatch.setattr("fegear.engine.processes.made_by", lambda: {**made_by(), "scipy": "1.0.0"})
-    with pytest.raises(FegearError, match=r"^A worker has scipy [\d.]+ where this program has scipy 1\.0\.0; start it"):
+    with pytest.raises(
+        FegearError, match=r"^A worker has scipy [\d.]+ where this program has scipy 1\.0\.0; restart it"
+    ):
         map_points(math.sqrt, [1.0], Executor(scheduler))
 
 
@@ -226,7 +228,7 @@ def test_a_cluster_that_is_lost_ends_the_wait(monkeypatch, capfd, lost):
     try:
         address = cluster.stdout.readline().strip()
         threading.Timer(1.5, lose).start()
-        with pytest.raises(InputError, match=r"has gone away|has lost all its workers"):
+        with pytest.raises(InputError, match=r"is no longer available|has lost all its workers"):
             map_points(time.sleep, [600.0], Executor(address))
         assert capfd.readouterr().err == ""
     finally:
@@ -241,7 +243,7 @@ def test_a_scheduler_lost_while_its_workers_are_looked_at_is_one_sentence(schedu
         raise CommClosedError("in <TCP (closed)>: Stream is closed")
 
     monkeypatch.setattr(f"distributed.Client.{at}", closed)
-    with pytest.raises(InputError, match="has gone away"):
+    with pytest.raises(InputError, match="is no longer available"):
         map_points(math.sqrt, [1.0], Executor(scheduler))
 
 

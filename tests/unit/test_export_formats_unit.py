@@ -52,7 +52,7 @@ def test_a_format_is_its_row(teeth, tmp_path):
         "Gear p, TEETH: about 5 s of CPU time for 21 teeth.",
         "Gear w, TEETH: about 8 s of CPU time for 33 teeth.",
     ]
-    with pytest.raises(InputError, match='the nearest known name is "teeth"'):
+    with pytest.raises(InputError, match='did you mean "teeth"'):
         wanted_formats("teeht")
     helical = {
         name: {"teeth": gear["teeth"], "normal_module": "2 mm", "helix_angle": "15 deg", "hand": hand,

@@ -84,11 +84,11 @@ def test_a_result_of_another_distribution_runs_as_one_of_its_own(weights):
 
 def test_it_is_listed_with_the_others_and_nearest_to_what_is_misspelt(weights):
     said = command("results", cwd=weights).stdout
-    assert "Of other distributions:" in said
+    assert "From other distributions:" in said
     assert "what the gears of a pair weigh" in said
     assert '"weights"' in command("schema", cwd=weights).stdout
     scene = build_scene({**CASE, "results": ["weihgts"]}, "case", Path())
-    with pytest.raises(InputError, match='the nearest known name is "weights"'):
+    with pytest.raises(InputError, match='did you mean "weights"'):
         make_plan(scene, STAGES)
 
 
@@ -132,8 +132,8 @@ PROJECT = '[project]\nname = "fegear-odd"\nversion = "2"\n[project.entry-points.
         ('odd = "fegear_odd:STAGE"', "raise OSError('no licence')", "cannot be imported: OSError: no licence"),
         ('odd = "fegear_odd:STAGE"', "raise SystemExit(3)", "cannot be imported: SystemExit: 3"),
         ('odd = "fegear_odd:NOTHING"', "STAGE = 1", "cannot be imported: AttributeError"),
-        ('odd = "fegear_odd:STAGE"', "STAGE = 1", "is a int, and must be a fegear.engine.stage.Stage"),
-        ('geometry = "fegear_odd:STAGE"', "STAGE = 1", "has a name that is taken"),
+        ('odd = "fegear_odd:STAGE"', "STAGE = 1", "is a int; must be a fegear.engine.stage.Stage"),
+        ('geometry = "fegear_odd:STAGE"', "STAGE = 1", "has a name that is already used"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_a_distribution_is_said_with_its_name(weights, point, source, rule):
@@ -240,7 +240,7 @@ READERS = {
     "none": ("lambda path: None", "must answer the text of a case, and answered a NoneType"),
     "bytes": ("lambda path: b''", "answered a bytes"),
     "surrogate": ("lambda path: chr(0xd800)", "surrogates not allowed"),
-    "no_toml": ("lambda path: 'a = = 1'", "is no valid TOML"),
+    "no_toml": ("lambda path: 'a = = 1'", "invalid TOML"),
 }
 
 

@@ -34,7 +34,7 @@ def test_a_face_as_wide_as_the_limit_is_solved_whatever_its_last_digit(width):
 
 @pytest.mark.parametrize("width", [0.2 * (1.0 - 1e-7), 0.19, 60.0001])
 def test_what_is_refused_is_not_written_as_the_limit(width):
-    with pytest.raises(RangeError, match=r"must lie between 0\.2 and 60 modules") as refused:
+    with pytest.raises(RangeError, match=r"must be between 0\.2 and 60 modules") as refused:
         check(width)
     assert not str(refused.value).startswith(("face_width = 0.2 modules", "face_width = 60 modules"))
 

@@ -89,7 +89,9 @@ def test_without_a_field_a_note_says_what_to_request(tmp_path):
     (tmp_path / "case.toml").write_text(CASE.replace("root-stress", "geometry"))
     said = fegear("run", "case.toml", "--fields", "--no-plots", "--out", "out", cwd=tmp_path)
     assert said.returncode == 0
-    assert "No result of this case has a field: request root-stress" in said.stdout + said.stderr
+    assert (
+        "No requested result has a field: request root-stress, or stiffness with face_positions."
+    ) in said.stdout + said.stderr
 
 
 def test_the_report_names_the_field(written):

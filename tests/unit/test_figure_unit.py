@@ -276,7 +276,8 @@ def two_maps() -> tuple[Panel, Panel]:
     x, y = np.arange(3.0), np.arange(2.0)
     over = Axis("face position", "mm"), Axis("roll angle of the load", "deg")
     maps = (HeatMap(x, y, np.linspace(0.0141, 0.0357, 6).reshape(2, 3), "c_{0}", "um/N"),
-            HeatMap(x, y, np.linspace(0.2, 0.4, 6).reshape(2, 3), "largest root tension", "MPa/N"))  # fmt: skip
+            HeatMap(x, y, np.linspace(0.2, 0.4, 6).reshape(2, 3), "maximum root stress "
+                                                                  "(tension side)", "MPa/N"))  # fmt: skip
     return tuple(Panel(*over, (one,), title=one.label) for one in maps)
 
 

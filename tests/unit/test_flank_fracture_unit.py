@@ -96,15 +96,18 @@ def test_what_falls_short_is_said_first_and_what_is_recalled_always():
 @pytest.mark.parametrize(
     ("strength", "key", "said"),
     [
-        ({"case_depth": None}, "strength.case_depth", "how deep the case is"),
-        ({"core_hardness": None}, "strength.core_hardness", "falls to it below"),
+        ({"case_depth": None}, "strength.case_depth", "is required for flank fracture"),
+        ({"core_hardness": None}, "strength.core_hardness", "is required: core hardness below the case"),
         ({"core_hardness": "560 HV"}, "strength.core_hardness", "below the 550 HV"),
         ({"hardness": "500 HV", "contact": "1400 MPa", "bending": "450 MPa"}, "strength.hardness", "above the 550 HV"),
         (SOFT, "strength.case_depth", "surface-hardened"),
-        (SOFT | {"case_depth": None}, "strength.material", "has no hard case"),
-        ({"hardness_profile": {"depth": ["0 mm", "1 mm"], "hardness": ["700 HV"] * 3}}, "depth", "give one each"),
-        ({"hardness_profile": {"depth": ["1 mm", "1 mm"], "hardness": ["700 HV"] * 2}}, "depth", "must rise"),
-        ({"residual_stress": {"depth": ["0 mm", "1 mm"], "stress": ["0 MPa", "-400 GPa"]}}, "stress", "of no steel"),
+        (SOFT | {"case_depth": None}, "strength.material", "has no hardened case"),
+        ({"hardness_profile": {"depth": ["0 mm", "1 mm"], "hardness": ["700 HV"] * 3}}, "depth",
+            "specify one value for each depth"),
+        ({"hardness_profile": {"depth": ["1 mm", "1 mm"], "hardness": ["700 HV"] * 2}}, "depth",
+            "must be strictly increasing"),
+        ({"residual_stress": {"depth": ["0 mm", "1 mm"], "stress": ["0 MPa", "-400 GPa"]}}, "stress",
+            "exceeds the residual stress of any steel,"),
     ],
 )  # fmt: skip
 def test_a_case_that_cannot_be_rated_is_refused_under_its_key(strength, key, said):
@@ -138,7 +141,10 @@ def test_a_spectrum_is_rated_at_its_largest_level():
 @pytest.mark.parametrize(
     ("of_third", "said"),
     [
-        ({"strength": {"material": "through-hardened-alloy-steel", "hardness": "300 HV"}}, "has no hard case"),
+        (
+            {"strength": {"material": "through-hardened-alloy-steel", "hardness": "300 HV"}},
+            "has no hardened case: flank fracture applies to surface-hardened teeth",
+        ),
         ({"rim_thickness": "3 mm"}, "rim thickness / tooth height"),
     ],
 )

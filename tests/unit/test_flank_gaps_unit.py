@@ -146,7 +146,7 @@ def test_mirrored_hands_with_mirrored_errors_have_mirrored_gaps():
 
 
 def test_faces_beside_each_other_are_refused():
-    with pytest.raises(GeometryError, match="next to each other"):
+    with pytest.raises(GeometryError, match="leaves no common face width"):
         GearPair(gear(), gear(31, hand="left"), axial_offset=WIDTH)
     pair = GearPair(gear(), gear(31, hand="left", width=0.5 * WIDTH), axial_offset=0.5 * WIDTH)
     assert pair.face_width == pytest.approx(0.25 * WIDTH)

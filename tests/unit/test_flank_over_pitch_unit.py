@@ -211,7 +211,7 @@ def test_a_light_load_on_a_spot_is_found_whatever_loads_are_beside_it(bodies):
 def test_flanks_say_what_no_metal_bears():
     pair = pair_of(0.0)
     assert not heavy_load(pair, LOAD, 2e9)
-    assert "no metal" in heavy_load(pair, 250e3)
+    assert "strength of any metal" in heavy_load(pair, 250e3)
     assert "crowning" in heavy_load(pair, LOAD, 5e9)
     soft = replace(STEEL, young_modulus=3e9)
     plastic = GearPair(*(replace(gear, material=soft) for gear in (pair.driver, pair.driven)))

@@ -58,7 +58,7 @@ def test_the_tables_for_the_grinder_are_the_relief_of_the_case(tmp_path):
     scene = build_scene(CASE, "c", tmp_path)
     written = export_gears(scene, tmp_path, (), "relief")
     assert written.files == ("a_relief.csv", "a_k_chart.csv")
-    assert any("Gear b, RELIEF: the case gives it none" in one for one in written.remarks)
+    assert any("Gear b, RELIEF: no relief specified" in one for one in written.remarks)
     with (tmp_path / "a_k_chart.csv").open() as file:
         head, *rows = csv.reader(file)
     assert head == ["point", "diameter [mm]", "roll_angle [deg]", "roll_length [mm]", "removal [um]"]
@@ -79,5 +79,5 @@ def test_the_tables_for_the_grinder_are_the_relief_of_the_case(tmp_path):
 
 def test_gears_without_relief_have_none_to_grind(tmp_path):
     scene = build_scene(CASE, "c", tmp_path)
-    with pytest.raises(InputError, match="leaves no relief to write"):
+    with pytest.raises(InputError, match="has nothing to write: no gear has a relief of"):
         export_gears(scene, tmp_path, ("b",), "relief")

@@ -78,7 +78,7 @@ def test_migrate_follows_no_link_to_where_the_old_case_is_kept(tmp_path):
     (tmp_path / "case.toml.old").symlink_to("elsewhere")
     done = fegear("migrate", "case.toml", cwd=tmp_path)
     assert done.returncode == 2
-    assert "is there already" in done.stderr
+    assert "already exists" in done.stderr
     assert (tmp_path / "case.toml").read_text("utf-8") == old
     assert not (tmp_path / "elsewhere").exists()
 

@@ -40,7 +40,7 @@ def test_an_idler_is_not_taken_by_one_tooth_over_its_holes():
     """Its other flank is loaded in the other mesh, which stands differently to them; the mean of all is alike."""
     holes = {"count": 5, "circle_diameter": "30 mm", "diameter": "4 mm"}
     one, second = {"driver": "b", "driven": "c"}, {"driver": "c", "driven": "b"}
-    with pytest.raises(InputError, match="pair I loads, and pair II loads the other one") as found:
+    with pytest.raises(InputError, match="loaded in pair I; pair II loads the other flank") as found:
         check_solid_gear(idler("0 mm", one, holes=holes | {"tooth": 3}), "b")
     assert found.value.key == "gear.b.body.holes.tooth"
     check_solid_gear(idler("0 mm", one, holes=holes), "b")

@@ -195,7 +195,9 @@ def test_a_call_is_the_function_and_its_arguments_however_they_are_given():
 
 def test_what_has_no_name_is_refused():
     for function in (lambda: 0, functools.partial(lambda: 0)):
-        with pytest.raises(ValueError, match="is no function of a module"):
+        with pytest.raises(
+            ValueError, match="is not a module-level function and cannot be imported by other processes"
+        ):
             SolutionCache().call(function)
 
 

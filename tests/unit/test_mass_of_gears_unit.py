@@ -38,8 +38,8 @@ def test_a_set_takes_the_inertia_of_its_teeth_or_the_given_one_and_says_so():
     assert own["P.sun.inertia"].si == pytest.approx(229.6569, rel=1e-6)
     assert own["P.planet.inertia"].meaning.endswith("of the teeth and the body of gear planet")
     assert own["P.carrier.mass"].si == 20000.0
-    assert own["P.carrier.mass"].meaning.endswith("as given by body.carrier")
-    assert given["P.planet.mass"].meaning.endswith("as given by body.planet")
+    assert own["P.carrier.mass"].meaning.endswith("from body.carrier")
+    assert given["P.planet.mass"].meaning.endswith("from body.planet")
     frequencies = [name for name in own if "natural_frequency" in name]
     assert frequencies
     for name in frequencies:

@@ -193,15 +193,15 @@ def test_a_topography_holds_its_own_traces(tmp_path):
 @pytest.mark.parametrize(
     ("measured", "words"),
     [
-        ({}, "names no file"),
+        ({}, "must have a file"),
         ({"profile": "none.csv"}, "none.csv"),
-        ({"profile": "l.csv"}, "needs the columns one of radius"),
-        ({"lead": "p.csv"}, r"needs the columns z \[mm\]"),
-        ({"lead": "short.csv"}, r"lead_range = -5.4 to 5.4 mm: is not covered by a trace from -3 to 3 mm"),
-        ({"lead": "twice.csv"}, "tooth 0: has fewer than five places, or one place twice"),
-        ({"lead": "l.csv", "lead_range": ["3 mm", "-3 mm"]}, "must rise"),
+        ({"profile": "l.csv"}, "requires the columns radius"),
+        ({"lead": "p.csv"}, r"requires the columns z \[mm\]"),
+        ({"lead": "short.csv"}, r"lead_range = -5.4 to 5.4 mm: is not covered by at least five points of the trace"),
+        ({"lead": "twice.csv"}, "tooth 0: has fewer than five points, or one point twice"),
+        ({"lead": "l.csv", "lead_range": ["3 mm", "-3 mm"]}, "must be strictly increasing"),
         ({"topography": "p.csv", "lead": "l.csv"}, "contradicts profile and lead"),
-        ({"topography": "p.csv"}, r"needs the column z \[mm\]"),
+        ({"topography": "p.csv"}, r"requires the column z \[mm\]"),
     ],
 )
 def test_what_is_no_measurement_is_refused_in_words(tmp_path, measured, words):
@@ -243,7 +243,7 @@ def test_what_no_tooth_can_be_measured_to_be_is_refused(tmp_path, change, said):
 def test_a_file_of_a_million_lines_is_refused_before_it_is_read_line_by_line(tmp_path):
     """Three million places took a minute and 1.4 GB until they were refused."""
     (tmp_path / "p.csv").write_text("roll_angle [deg],deviation [um]\n" + "x\n" * 1_000_000, "utf-8")
-    with pytest.raises(InputError, match="has more than 400,000 lines; drop every second"):
+    with pytest.raises(InputError, match="has more than 400,000 lines; use every second point"):
         measured_gear(scene_of(tmp_path, {"profile": "p.csv"}), "a")
 
 

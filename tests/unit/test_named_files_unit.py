@@ -60,11 +60,11 @@ def test_a_case_file_is_read_with_and_without_a_byte_order_mark(folder, mark, en
     ("data", "words"),
     [
         (CASE.encode("utf-16"), "is in UTF-16, not in UTF-8; save it as UTF-8"),
-        (CASE.encode("utf-32"), "is in UTF-16|is no text"),
+        (CASE.encode("utf-32"), "is in UTF-16|is not a text"),
         (CASE.encode("latin-1"), "is not in UTF-8: line 2 has the byte 0xe4; save it as UTF-8"),
-        (b"\x7fELF\0\0", "is no text"),
-        (b"a = " + b"9" * 5000, "is no valid TOML"),
-        (b"a = " + b"[" * 100000, "is no valid TOML"),
+        (b"\x7fELF\0\0", "is not a text file"),
+        (b"a = " + b"9" * 5000, "invalid TOML:"),
+        (b"a = " + b"[" * 100000, "invalid TOML:"),
     ],
 )
 def test_other_encodings_and_impossible_toml_are_refused_in_a_sentence(folder, data, words):
@@ -86,22 +86,22 @@ def test_tables_are_parted_by_what_parts_their_heads(folder):
     ("content", "words"),
     [
         ("radius [mm],relief [um],relief [mm]\n31,1,2\n33,2,3\n", "two columns relief"),
-        ("radius [mm],relief [um]\n31,1,5\n33,2\n", "3 entries in line 2 under 2 heads; decimal commas"),
+        ("radius [mm],relief [um]\n31,1,5\n33,2\n", "3 entries in line 2 but 2 column heads; use decimal points"),
         ("radius [mm],relief [um]\n31\n33,2\n", "1 entries in line 2"),
-        ("radius [mm];relief [um]\n31,5;1\n", r'has "31,5" in line 2, radius, which is no number'),
-        ("radius [mm],relief [um]\n31,1_0\n", "which is no number"),
-        ("radius [mm],relief [um]\n31,٣\n", "which is no number"),
-        ("radius [mm],relief [um]\n31,0x10\n", "which is no number"),
-        ("radius [mm],relief [um]\n31,\n33,2\n", "which is no number"),
+        ("radius [mm];relief [um]\n31,5;1\n", r'contains "31,5" in line 2, radius: not a number'),
+        ("radius [mm],relief [um]\n31,1_0\n", ": not a number"),
+        ("radius [mm],relief [um]\n31,٣\n", ": not a number"),
+        ("radius [mm],relief [um]\n31,0x10\n", ": not a number"),
+        ("radius [mm],relief [um]\n31,\n33,2\n", ": not a number"),
         ("radius [mm],relief [um]\n31,nan\n", "which is not finite"),
         ("radius [mm],relief [um]\n31,1e400\n", "which is not finite"),
         ("radius,relief [um]\n31,1\n", "column radius.*has no unit"),
         ("radius [N],relief [um]\n31,1\n", "column radius.*is not a length"),
-        ("radius [mm],relief [um]\n", "no heads with numbers"),
-        ("", "no heads with numbers"),
-        ("radius [mm],relief [um]\n31,1\n" + "9" * 200000 + ",1\n", "no table that can be read|no number"),
-        ('radius [mm],relief [um]\n31,"1\n', "no table that can be read"),
-        ("radius [mm],relief [µm]\n31,ä1\n", "which is no number"),
+        ("radius [mm],relief [um]\n", "must have column heads with numbers below"),
+        ("", "must have column heads with numbers below"),
+        ("radius [mm],relief [um]\n31,1\n" + "9" * 200000 + ",1\n", "not a readable table|not a number"),
+        ('radius [mm],relief [um]\n31,"1\n', "not a readable table"),
+        ("radius [mm],relief [µm]\n31,ä1\n", ": not a number"),
     ],
 )
 def test_what_is_no_table_is_refused_in_a_sentence(folder, content, words):
@@ -119,14 +119,14 @@ def test_tables_in_other_encodings_are_refused(folder, encoding):
 
 
 def test_a_relief_table_that_ends_early_is_held_and_the_result_says_so(folder):
-    assert not any("held" in remark for remark in pair_inputs(read_scene(folder / "case.toml"), "I").assumed)
+    assert not any("used beyond it" in remark for remark in pair_inputs(read_scene(folder / "case.toml"), "I").assumed)
     (folder / "relief.csv").write_text("radius [mm],relief [um]\n43,0\n44,5\n", encoding="utf-8")
     asked = pair_inputs(read_scene(folder / "case.toml"), "I")
-    remarks = [remark for remark in asked.assumed if "held" in remark]
+    remarks = [remark for remark in asked.assumed if "used beyond it" in remark]
     # toward the root nothing is removed any more, which needs no words
     assert len(remarks) == 1
     assert "ends at radius 44 mm, before the tip end of the active profile at 45" in remarks[0]
-    assert "beyond, it is held at 5 um" in remarks[0]
+    assert "last value 5 um used beyond it" in remarks[0]
     table, tip = asked.flanks[0].tables[0], asked.pair.roll_angle(asked.pair.x_end, "driver")
     assert table.removal(float(tip)) == pytest.approx(5e-6, rel=1e-14)
 
@@ -144,8 +144,8 @@ def test_a_pipe_or_a_device_is_refused_and_not_waited_for(folder):
     ("name", "words"),
     [
         ("n" * 3000, "cannot be read .File name too long.$"),
-        ("a\0b", 'case = "a b": can be no file\'s name'),
-        ("a\ud800b", 'case = "a b": can be no file\'s name'),
+        ("a\0b", 'case = "a b": is not a valid file name'),
+        ("a\ud800b", 'case = "a b": is not a valid file name'),
         (".", "cannot be read .Is a directory.$"),
     ],
     ids=["3,000 characters", "NUL", "half a character", "a folder"],
@@ -178,6 +178,6 @@ def test_no_file_is_written_in_the_place_of_a_folder_or_a_pipe(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "folder").mkdir()
     for name in ("pipe", "folder", "none/below", "n" * 3000, "a\0b"):
-        with pytest.raises(InputError, match=r"not a file|cannot be written|can be no file"):
+        with pytest.raises(InputError, match=r"not a file|cannot be written|is not a valid file name"):
             write_file(tmp_path / name, b"", "case")
     assert sorted(one.name for one in tmp_path.iterdir()) == ["folder", "pipe"]

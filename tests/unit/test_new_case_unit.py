@@ -85,7 +85,7 @@ def test_new_writes_what_the_options_say(say, tmp_path):
     assert scene.case.pair["I"].torque == pytest.approx(260.0)
     code, _, err = say("new", "drive")
     assert code == 2
-    assert "is there already" in err
+    assert "already exists" in err
     assert say("new", "drive", "--kind", "helical", "--force", "--quiet")[:2] == (0, "")
     assert [g.helix_angle > 0.0 for g in read_scene(tmp_path / "drive.toml").gears.values()] == [True, True]
     assert say("new", "one", "--teeth", "28", "-q")[0] == 0
@@ -128,11 +128,11 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--tip-relief", "20 um", "4"), '--relief-length = "4": has no unit'),
         (("x", "--tip-relief", "-20 um", "4 mm"), "must be greater than zero"),
         (("x", "--tip-relief", "20 um", "none"), "must have both amount and length"),
-        (("x", "--kind", "pair", "--lead-error", "9 um"), 'has no meaning for a case of kind "pair"'),
+        (("x", "--kind", "pair", "--lead-error", "9 um"), 'is not used for a case of kind "pair"'),
         (("x", "--kind", "bevel"), "known here: gear, helical, pair, planetary, relief, ring, study, train"),
-        (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": has no meaning for a case of kind "gear"'),
+        (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": is not used for a case of kind "gear"'),
         (("x", "--rack", "E"), "ISO 53"),
-        (("nowhere/x",), "lies in a folder that is not there"),
+        (("nowhere/x",), "is in a folder that does not exist"),
         (("x", "--profile-shift", "5", "0"), "pinion"),
     ],
 )
@@ -174,7 +174,7 @@ def test_questions_are_asked_until_an_answer_can_be_read(type_in, tmp_path):
     (code, out, _), asked = type_in("", "21", "21 53", "3,1 mm", "3 mm", "", "0.3 0.04", "A", "", "260 N m")
     assert code == 0
     assert "must be 2 numbers" in out
-    assert "has a comma in its number" in out
+    assert "contains a comma" in out
     assert len(asked) == 11  # nine questions, two of them twice; the last one left as it was
     assert asked[-1] == "Speed of the pinion [1500 rpm]: "
     text = (tmp_path / "drive.toml").read_text()
@@ -185,7 +185,9 @@ def test_questions_are_asked_until_an_answer_can_be_read(type_in, tmp_path):
     assert not re.search(r"torque.*# assumed", text)
 
 
-@pytest.mark.parametrize(("end", "code", "words"), [(KeyboardInterrupt, 130, "interrupted"), (EOFError, 2, "no more")])
+@pytest.mark.parametrize(
+    ("end", "code", "words"), [(KeyboardInterrupt, 130, "interrupted"), (EOFError, 2, "input ended")]
+)
 def test_an_interrupted_dialogue_writes_nothing(type_in, tmp_path, end, code, words):
     (found, _, err), _ = type_in("pair", "21 53", end)
     assert found == code
@@ -196,7 +198,7 @@ def test_an_interrupted_dialogue_writes_nothing(type_in, tmp_path, end, code, wo
 def test_a_kind_asks_no_more_than_ten_questions():
     for kind in KINDS:
         assert 5 <= sum(not question.optional for question in questions(kind, {})) + 1 <= 10
-    with pytest.raises(InputError, match="no kind of case"):
+    with pytest.raises(InputError, match="is an unknown kind of case"):
         Answers("worm", {})
 
 
@@ -217,17 +219,27 @@ def test_every_drafted_case_runs(say, tmp_path, kind):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("n" * 3000, "can be no file (File name too long); choose another name."),
-        ("a\nb", "has a character that a file's name must not have; leave it out."),
-        ("a\x1bb", "has a character that a file's name must not have; leave it out."),
+        ("n" * 3000, "cannot be used as a file (File name too long); choose another name."),
+        ("a\nb", "contains a character not allowed in file names; remove it."),
+        ("a\x1bb", "contains a character not allowed in file names; remove it."),
         ("", "must not be empty"),
         (".", "is a folder, not the name of a case"),
         ("/", "is a folder, not the name of a case"),
         ("folder", "is a folder; choose another name."),
-        ("link", "is there already; choose another name, or replace it with --force."),
-        ("nowhere/drive", "lies in a folder that is not there"),
+        ("link", "already exists; choose another name, or overwrite it with --force."),
+        ("nowhere/drive", "is in a folder that does not exist"),
     ],
-    ids=["long", "newline", "escape", "empty", "here", "root", "folder", "dangling link", "no folder"],
+    ids=[
+        "long",
+        "newline",
+        "escape",
+        "empty",
+        "here",
+        "root",
+        "folder",
+        "dangling link",
+        "cannot be used as a folder (",
+    ],
 )
 def test_a_name_that_no_new_case_can_have_is_refused_and_nothing_written(say, tmp_path, name, words):
     (tmp_path / "folder.toml").mkdir()
@@ -250,9 +262,7 @@ def test_a_schema_replaces_a_schema_and_nothing_else_unasked(say, tmp_path):
     mine.write_text('{"mine": true}')
     code, _, complaint = say("new", "drive")
     assert code == 2
-    assert (
-        "is there already and is no schema of fegear; move it elsewhere, or write none with --no-schema." in complaint
-    )
+    assert "already exists and is not a fegear schema; move it, or use --no-schema." in complaint
     assert [one.name for one in tmp_path.iterdir()] == [mine.name]
     assert say("schema", "--out", mine.name)[0] == 2
     assert mine.read_text() == '{"mine": true}'
@@ -282,12 +292,12 @@ def test_an_example_comes_with_its_files_and_replaces_nobody_s(say, tmp_path):
     mesh.write_text("mine")
     code, _, complaint = say("new", "other", "--example", "own_mesh")
     assert (code, mesh.read_text()) == (2, "mine")
-    assert "is there already, and is not the example's; move it away" in complaint
+    assert "already exists and differs from the example; rename it" in complaint
     assert not (tmp_path / "other.toml").exists()
     code, _, complaint = say("new", "third", "--example", "own_mash")
     assert code == 2
-    assert 'the nearest known name is "own_mesh"' in complaint
-    assert "is a whole case" in say("new", "third", "--example", "own_mesh", "--teeth", "20")[2]
+    assert 'did you mean "own_mesh"' in complaint
+    assert "is a complete case" in say("new", "third", "--example", "own_mesh", "--teeth", "20")[2]
 
 
 def test_an_example_is_written_whole_or_not_at_all(say, tmp_path, monkeypatch):
@@ -314,7 +324,7 @@ def test_what_stands_where_an_example_keeps_its_files_is_refused_at_once(say, tm
     made(place)
     code, _, complaint = say("new", "mine", "--example", "measured_flanks")
     assert code == 2
-    assert re.search("is no file, and the example needs one there; move it away|cannot be looked at", complaint)
+    assert re.search("is not a file, but required by the example|cannot be read", complaint)
     assert [one.name for one in tmp_path.rglob("*")] == ["data", place.name]
 
 
@@ -322,7 +332,7 @@ def test_an_example_needs_a_folder_where_another_file_stands(say, tmp_path):
     (tmp_path / "data").write_text("mine")
     code, _, complaint = say("new", "mine", "--example", "measured_flanks")
     assert code == 2
-    assert re.search("cannot be looked at|can be no folder", complaint)
+    assert re.search("cannot be read|cannot be used as a folder", complaint)
     assert (tmp_path / "data").read_text() == "mine"
 
 

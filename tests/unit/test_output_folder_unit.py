@@ -118,7 +118,7 @@ def results() -> Results:
         ),
     )
     values = (
-        Value("peak", 12.345678901234e6, "MPa", 1e3, "largest root stress"),
+        Value("peak", 12.345678901234e6, "MPa", 1e3, "maximum root stress"),
         Value("ratio", 1.638),
         Value("nothing", float("nan"), "mm"),
     )

@@ -80,11 +80,11 @@ def test_values_that_are_known_less_well_than_asked_are_named_the_worst_first():
         Value("I.largest_line_load", 406.9e3, "N/mm", 740e3),
     ]
     assert beyond_tolerance(values, 0.02) == (
-        "Errors beyond the tolerance of 0.02: I.largest_line_load = 407 +- 740 N/mm (182 %); "
-        "I.te_peak_to_peak = 1.22 +- 0.26 um (21.3 %)."
+        "Estimated errors above the tolerance of 2 %: I.largest_line_load = 407 +- 740 N/mm (182 %); "
+        "I.te_peak_to_peak = 1.22 +- 0.26 um (21 %)."
     )
     several = beyond_tolerance(values[:2] + values[:1] * 5, 0.001)
-    assert several.startswith("Errors beyond 1 % (the tolerance is 0.001): I.te_peak_to_peak")
+    assert several.startswith("Estimated errors above 1 % (tolerance 0.1 %): I.te_peak_to_peak")
     assert several.endswith("; and 2 more.")
     assert beyond_tolerance(values, 2.0) == ""
 
@@ -163,7 +163,7 @@ def test_another_command_can_make_a_page(tmp_path):
     assert "What it costs &amp; why" in text
     assert "knob &lt;a&gt;" in text
     assert ">Nothing<" not in text
-    assert "over the tolerance" in text
+    assert "above tolerance" in text
     (told,) = json.loads(text.split("id='figures'>")[1].split("</script>")[0])
     (trace,) = told["data"]
     assert np.frombuffer(base64.b64decode(trace["x"]["bdata"])).tolist() == [0.1, 1.0]

@@ -123,7 +123,7 @@ def test_what_has_no_attribute_is_said_and_a_case_without_pairs_refused():
         "Pair I, operation: mesh_load_factor not written to REXS.",
     )
     alone = build_scene({"gear": {"a": document["gear"]["gear_13"]}, "results": ["geometry"]}, "case", Path())
-    with pytest.raises(InputError, match="a REXS model holds gears in mesh"):
+    with pytest.raises(InputError, match="is required: a REXS model contains gears in mesh"):
         model_text(alone, "")
 
 

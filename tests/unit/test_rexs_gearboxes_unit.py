@@ -68,7 +68,7 @@ def test_a_torque_that_counts_losses_is_left_to_the_load_that_defines_its_own() 
     tree = put(two_stages(), 32, torque_around_u_axis=(870.0, "N m"))
     found = text_of(tree)
     assert tomllib.loads(found)["pair"] == case(two_stages())["pair"]
-    assert "external_load 32: its torque of 870 N m does not balance" in found
+    assert "external_load 32: torque of 870 N m is not in equilibrium" in found
     both = put(tree, 32, defines_torque="true")
     with pytest.raises(InputError, match=r"100 N\*m of external_load 31, 870 N\*m of external_load 32: contradict"):
         case(both)
@@ -79,7 +79,7 @@ def test_a_torque_that_counts_losses_is_left_to_the_load_that_defines_its_own() 
 def test_a_torque_on_a_shaft_without_gears_is_not_used() -> None:
     tree = more(two_stages(), shaft(6, 0.0, 300.0), part(33, "external_load", torque_around_u_axis=(5.0, "N m")),
                 relations=(link(160, "assembly", assembly=6, part=33),))  # fmt: skip
-    assert "external_load 33: its torque reaches no gear" in text_of(tree)
+    assert "external_load 33: torque does not act on any gear" in text_of(tree)
     assert case(tree) == case(two_stages())
 
 
@@ -98,7 +98,7 @@ def turned(tree: dict) -> dict:
 def test_shafts_along_another_axis_are_turned_into_that_of_the_case() -> None:
     text = text_of(turned(two_stages()))
     found, straight = tomllib.loads(text), case(two_stages())
-    assert "is turned so that the axis of shaft 3 runs along u" in text
+    assert "Model rotated: the axis of shaft 3 is along u" in text
     assert {key: one for key, one in found.items() if key != "shaft"} == {
         key: one for key, one in straight.items() if key != "shaft"
     }
@@ -135,7 +135,7 @@ def test_torque_passes_a_bevel_stage(ways: tuple[str, str], pushes: bool) -> Non
     """Of cones that point alike the gears turn against each other about their own axes: -100 N m at -1500 rpm drive."""
     text = text_of(with_bevels(ways))
     found = tomllib.loads(text)
-    assert "bevel_stage 23 is not read: torque and speed pass it" in text
+    assert "bevel_stage 23 ignored: torque and speed are transmitted" in text
     driver = found["pair"]["I"]["driver"]
     assert found["gear"][driver]["teeth"] == (20 if pushes else 60)
     torque = float(found["pair"]["I"]["torque"].split()[0])
@@ -205,7 +205,7 @@ def test_small_gaps_between_sections_are_closed_and_told() -> None:
     tree = more(two_stages(), part(44, "shaft_section", length=(30.0, "mm"), outer_diameter_begin=(20.0, "mm"),
                                    u_coordinate_on_shaft=(120.1, "mm")),
                 relations=(link(190, "ordered_assembly", assembly=3, part=44),))  # fmt: skip
-    assert "shaft 3: a gap of 0.1 mm between sections is closed" in text_of(tree)
+    assert "shaft 3: gap of 0.1 mm between sections closed" in text_of(tree)
     assert [one["length"] for one in case(tree)["shaft"]["shaft_3"]["sections"]] == ["120.1 mm", "30 mm"]
     with pytest.raises(InputError, match="leave a gap"):
         case(put(tree, 44, u_coordinate_on_shaft=(121.0, "mm")))
@@ -220,7 +220,7 @@ def test_a_stage_that_no_torque_passes_is_not_in_the_case() -> None:
         part(24, "cylindrical_stage", "idle"),
         relations=(link(191, "assembly", assembly=6, part=17), link(192, "stage", stage=24, gear_1=11, gear_2=17)),
     )
-    assert "No torque passes cylindrical_stage 24" in text_of(tree)
+    assert "No torque in cylindrical_stage 24" in text_of(tree)
     assert case(tree) == case(two_stages())
 
 
@@ -264,7 +264,7 @@ def test_no_rating_is_asked_for_where_the_standard_knows_none_of_the_pairs() -> 
         tree = put(tree, number, addendum_modification_coefficient=(-0.4, "none"))
     tree = put(put(tree, 21, center_distance=(79.5, "mm")), 22, center_distance=(82.0, "mm"))
     tree = put(put(tree, 4, support_vector=([0.0, 79.5, 0.0], "mm")), 5, support_vector=([0.0, 161.5, 0.0], "mm"))
-    assert "rating is not asked for: x_1 + x_2 = -0.8, -0.8 lies outside -0.5 to 2" in text_of(tree)
+    assert "rating not requested: x_1 + x_2 = -0.8, -0.8 is outside -0.5 to 2" in text_of(tree)
     assert "rating" not in tomllib.loads(text_of(tree))["results"]
     assert "rating" in case(two_stages())["results"]
 
@@ -298,7 +298,7 @@ def test_more_stages_than_any_gearbox_has_are_refused_at_once() -> None:
         parts += [shaft(1000 + n, 0.0, 0.0), gear(2000 + n, 20, 0.0), part(3000 + n, "cylindrical_stage")]
         links += [link(n, "assembly", assembly=1000 + n, part=2000 + n),
                   link(5000 + n, "stage", stage=3000 + n, gear_1=2000 + n, gear_2=2000 + (n + 1) % 201)]  # fmt: skip
-    with pytest.raises(InputError, match="201 of them: are more than the 200"):
+    with pytest.raises(InputError, match="exceed the maximum of"):
         text_of({**two_stages(), "components": parts, "relations": links})
 
 
@@ -313,4 +313,4 @@ def test_modules_and_stiffnesses_that_are_none_are_refused() -> None:
 def test_of_torques_at_two_places_the_model_leaves_open_one_is_taken_and_told() -> None:
     tree = more(two_stages(), part(35, "external_load", u_coordinate_on_shaft=(5.0, "mm"), transmits_torque="true"),
                 relations=(link(900, "assembly", assembly=5, part=35),))  # fmt: skip
-    assert "shaft 5: of its torque nothing says what enters at 5 mm; all of it is taken to at 120 mm" in text_of(tree)
+    assert "shaft 5: torque input at 5 mm not specified; total torque assumed at 120 mm" in text_of(tree)

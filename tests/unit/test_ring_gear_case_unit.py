@@ -76,10 +76,10 @@ def test_python_takes_the_same_keys():
     ("changed", "words"),
     [
         ({"cutter": None}, "gear.r.cutter = (not given)"),
-        ({"rack": "A"}, "has no meaning for an internal gear; describe its cutter"),
+        ({"rack": "A"}, "is not used for an internal gear; specify its cutter"),
         ({"bore_radius": "50 mm"}, "write outer_radius or rim_thickness"),
         ({"outer_radius": "140 mm", "rim_thickness": "12 mm"}, "contradicts outer_radius"),
-        ({"outer_radius": "120 mm"}, "gear.r.outer_radius = 120 mm: must lie outside the root circle"),
+        ({"outer_radius": "120 mm"}, "gear.r.outer_radius = 120 mm: must be outside the root circle"),
         ({"internal": False}, "gear.r.cutter"),
         ({"cutter": {"teeth": 58}}, "gear.r.cutter.teeth = 58: leaves a difference below 3"),
         ({"cutter": {"teeth": 20, "addendum": 1.2, "root_diameter": "248 mm"}}, "contradicts addendum"),
@@ -95,7 +95,7 @@ def test_what_no_ring_gear_has_is_refused_in_one_sentence(changed, words):
 
 
 def test_formulas_of_external_teeth_refuse_a_ring_gear():
-    with pytest.raises(GeometryError, match="is an internal gear; this result is computed for external gears alone"):
+    with pytest.raises(GeometryError, match="is an internal gear; this result is available for external gears only"):
         tooth_compliance(ring(), np.array([0.12]))
 
 
@@ -227,13 +227,13 @@ def test_reliefs_and_spacing_errors_of_a_ring_hold_its_flanks_back(cache):
     ("overrides", "words"),
     [
         (['results=["rating"]'], "gear.p.strength = (not given): is missing"),
-        (['results=["mesh-stiffness-matrix"]', 'pair.I.width="solid"'], "is computed for external gears alone"),
-        (['results=["crosscheck"]'], "is computed for external gears alone"),
+        (['results=["mesh-stiffness-matrix"]', 'pair.I.width="solid"'], "(external gears only"),
+        (['results=["crosscheck"]'], "(external gears only"),
         (['results=["flank-fracture"]'], "alone (ISO/TS 6336-4 is written for external teeth)"),
         (['pair.I.compliance={ source = "cornell" }', "effects.neighbour_coupling=false"], "and r is internal"),
         (['pair.I.root_stress={ source = "heywood" }', 'results=["root-stress-history"]'], "and r is internal"),
-        (['pair.I.width="slices"'], "is not known to slices, whose laws were fitted to external gears"),
-        (['pair.I.centre_distance="75 mm"'], "jams the teeth"),
+        (['pair.I.width="slices"'], 'is not available with width = "slices(external gears only)'),
+        (['pair.I.centre_distance="75 mm"'], "mm of centre distance until both flanks touch"),
     ],
 )
 def test_what_an_internal_pair_is_not_computed_for_is_refused_in_one_sentence(overrides, words):
@@ -256,7 +256,7 @@ def test_the_room_of_a_ring_s_centre_distance_is_toward_smaller_ones():
     """The teeth of this pair touch on both flanks at .11 mm more."""
     tolerances = ("gear.r.tolerance_class=6", 'results=["robustness"]')
     make_plan(meshing(*tolerances, 'robustness={ draws = 20, centre_distance = "100 um" }'), STAGES)
-    with pytest.raises(InputError, match=r"jams the teeth: pair I has 0\.1093 mm until .* a smaller centre_distance"):
+    with pytest.raises(InputError, match=r"mm of centre distance until both flanks touch.* a smaller centre_distance"):
         make_plan(meshing(*tolerances, 'robustness={ draws = 20, centre_distance = "120 um" }'), STAGES)
 
 
@@ -267,7 +267,7 @@ def test_what_a_helical_internal_pair_is_not_computed_for_is_refused_by_its_name
         gear |= {"helix_angle": "5 deg", "hand": "right", "normal_module": gear.pop("module")}
     with pytest.raises(InputError) as refused:
         make_plan(build_scene(document, "pair", Path()), STAGES)
-    told = 'is not taken by "mesh-stiffness-matrix", which is computed for external gears alone where gears'
+    told = 'is not supported by "mesh-stiffness-matrix" (external gears only for helical'
     assert told in str(refused.value)
 
 
@@ -275,7 +275,7 @@ def test_natural_frequencies_of_bodies_say_that_they_pass_ring_gears_over(monkey
     """With coarse elements; rings alone are refused by name."""
     document = copy.deepcopy(CASE) | {"results": ["body-modes"], "accuracy": {"tolerance": 0.1}}
     document["gear"]["r"]["face_width"] = "8 mm"
-    with pytest.raises(InputError, match=r'gear\.r.* is not taken by "body-modes"'):
+    with pytest.raises(InputError, match=r'gear\.r.* is not supported by "body-modes"'):
         make_plan(build_scene(document, "ring", Path()), STAGES)
     document["gear"]["p"] = {"teeth": 16, "module": "4 mm", "face_width": "4 mm", "bore_radius": "18 mm"}
     monkeypatch.setattr(body_modes, "_COARSER", 8.0)

@@ -25,11 +25,11 @@ from fegear.engine.declared import (
 class History:
     x: np.ndarray = shown("mm", "position on the line of action", label="line of action")
     load: np.ndarray = shown("N", "on the pair")
-    share: np.ndarray = shown("", "of the total load", name="load_share")
+    share: np.ndarray = shown("", "share of the total load", name="load_share")
     hidden: int = field(default=3)
 
     @property
-    @shows("um", "peak to peak")
+    @shows("um", "peak-to-peak value")
     def peak_to_peak(self) -> float:
         return 2e-6
 
@@ -45,7 +45,7 @@ FOUND = History(np.array([-1e-3, 2e-3]), np.array([[10.0, 20.0], [30.0, 40.0]]),
 def test_fields_and_properties_are_declared_once():
     assert declared(History, "x") == Shown("mm", "position on the line of action", "x", "line of action")
     assert declared(History, "share").name == "load_share"
-    assert declared(History, "peak_to_peak") == Shown("um", "peak to peak", "peak_to_peak", "peak to peak")
+    assert declared(History, "peak_to_peak") == Shown("um", "peak-to-peak value", "peak_to_peak", "peak-to-peak value")
     assert set(all_declared(History)) == {"x", "load", "share", "peak_to_peak", "largest"}
     for missing in ("hidden", "nothing"):
         with pytest.raises(TypeError, match=f"History.{missing} is not declared"):

@@ -50,7 +50,7 @@ def test_requests_beyond_measure_are_refused_with_their_size(part, words, tmp_pa
 
 def test_meshes_beyond_measure_are_refused_with_their_size():
     for one in ({"root_edge_length": 1e-5}, {"flank_edge_length": 1e-5}, {"body_fraction": 1e-3}, {"growth": 1e-5}):
-        with pytest.raises(InputError, match=r"asks for about .* triangles"):
+        with pytest.raises(InputError, match=r"requires about .* triangles"):
             MeshSettings(**one)
     settings_at(FINEST_LEVEL)
 

@@ -257,7 +257,7 @@ def test_configurations_over_the_face_are_compared_with_the_reference_and_charge
 
 
 def test_only_pairs_over_their_face_are_loaded_over_it():
-    with pytest.raises(TypeError, match="no pair that is loaded over its face"):
+    with pytest.raises(TypeError, match="is not a 3D pair"):
         measure._flank(SimpleNamespace(label="a plane one"))
 
 

@@ -155,7 +155,7 @@ def test_ends_of_axes_are_said_only_where_there_is_a_middle_and_eight_sentences_
         return shown.best_lines(results_of(axes), [value(name, numbers, error=error)])
 
     (middle,) = line([3, 3, 1, 2, 3, 3])
-    assert middle == "Least I.te_peak_to_peak: 1 um at k = 2, w = p."
+    assert middle == "Minimum I.te_peak_to_peak: 1 um at k = 2, w = p."
     (end,) = line([1, 3, 3, 3, 3, 3])
     assert end.endswith("at k = 1, w = p; it lies at the end of k.")
     (last,) = line([3, 3, 3, 3, 3, 1])
@@ -167,7 +167,7 @@ def test_ends_of_axes_are_said_only_where_there_is_a_middle_and_eight_sentences_
     many = [value(f"p{k}.K_Hbeta", [3, 3, 1, 2, 3, 3]) for k in range(12)]
     assert len(shown.best_lines(results_of(axes), many)) == 8
     for name in ("unloaded_te_peak_to_peak", "largest_root_tension", "largest_hertz_pressure", "K_Hbeta"):
-        assert line([3, 3, 1, 2, 3, 3], f"I.{name}")[0].startswith("Least")
+        assert line([3, 3, 1, 2, 3, 3], f"I.{name}")[0].startswith("Minimum")
     for name in ("S_F", "S_H"):
         assert line([3, 3, 9, 2, 3, 3], f"I.{name}")[0].startswith("Largest")
 
@@ -175,10 +175,10 @@ def test_ends_of_axes_are_said_only_where_there_is_a_middle_and_eight_sentences_
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("k=0,5:1:3", "START:STOP:COUNT"), ("k=1.5,2,5", "can be read with a decimal comma in 2,5"),
-        ("k=1 mm,2", "has numbers with a unit and numbers without"),
-        ("k=1,5 um,2,6 um", "has numbers with a unit and numbers without"), ("k=inf:1:3", "START:STOP:COUNT"),
-        ("k=1:2:1000001", "it must be 1 to 1000000"), ("k=1e400:2:3", "must have finite ends"),
+        ("k=0,5:1:3", "START:STOP:COUNT"), ("k=1.5,2,5", "may contain a decimal comma .2,5."),
+        ("k=1 mm,2", "mixes numbers with and without units"),
+        ("k=1,5 um,2,6 um", "mixes numbers with and without units"), ("k=inf:1:3", "START:STOP:COUNT"),
+        ("k=1:2:1000001", "must be 1 to 1000000"), ("k=1e400:2:3", "must have finite ends"),
     ],
 )  # fmt: skip
 def test_axes_that_can_be_misread_are_refused(text, words):

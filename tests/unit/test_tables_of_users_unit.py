@@ -114,7 +114,7 @@ def test_lead_tables_and_topographies_cover_the_face(tmp_path):
     lead = {"lead": {"file": file}}
     for off in (z * 1e-3, z + 15.0, z * 0.5):
         said = wide(tmp_path, rows(off, 0.1 * z**2, "z [mm],removal [um]"), "gear.a.lead.file", **lead)
-        assert "must cover the face, -10 to 10 mm" in said
+        assert "must cover the face width, -10 to 10 mm" in said
     topography = {"topography": {"file": file}}
     grid = [(r, a) for r in (40.0, 41.0, 44.0) for a in z * 1e-3]
     text = "radius [mm],z [mm],removal [um]\n" + "".join(f"{r},{a},1.0\n" for r, a in grid)
@@ -122,7 +122,7 @@ def test_lead_tables_and_topographies_cover_the_face(tmp_path):
     text = "radius [mm],roll_angle [deg],z [mm],removal [um]\n" + "".join(f"{r},{r},{a * 1e3},1.0\n" for r, a in grid)
     assert "only one of the columns" in wide(tmp_path, text, "gear.a.topography.file", **topography)
     text = "roll_angle [deg],z [mm],removal [um]\n" + "".join(f"{r + 100.0},{a * 1e3},1.0\n" for r, a in grid)
-    assert "elsewhere than the active profile" in wide(tmp_path, text, "gear.a.topography", **topography)
+    assert "lies outside the active profile," in wide(tmp_path, text, "gear.a.topography", **topography)
 
 
 def notes_of(tmp_path, text, **gear):
@@ -146,8 +146,8 @@ def test_tables_that_end_before_the_flank_does_say_where_and_what_is_held(tmp_pa
     relief = {"relief": {"table": {"file": file}}}
     head = "radius [mm],relief [um]"
     (said,) = notes_of(tmp_path, rows([39.9, 44.0], [0.0, 12.0], head), **relief)
-    assert "Gear a: its relief table ends at radius 44 mm, before the tip end of the active profile at 45 mm" in said
-    assert "held at 12 um" in said
+    assert "Gear a: relief table ends at radius 44 mm, before the tip end of the active profile at 45 mm" in said
+    assert "last value 12 um used" in said
     (said,) = notes_of(tmp_path, rows([42.0, 45.0], [3.0, 12.0], head), **relief)
     assert "ends at radius 42 mm, before the root end" in said
     assert notes_of(tmp_path, rows([39.9, 45.0], [3.0, 12.0], head), **relief) == []

@@ -133,9 +133,9 @@ def test_refinement_ends_at_the_finest_level_and_says_so(monkeypatch, tmp_path):
     monkeypatch.setattr(solution, "FINEST_LEVEL", -2)
     outcome = run(tmp_path, tolerance=1e-6)
     assert len(outcome.settings["rounds"]) == 2
-    said = [remark for remark in outcome.remarks if "was refined once for the tolerance 1e-06" in remark]
+    said = [remark for remark in outcome.remarks if "mesh refined once for tolerance 0.0001 %" in remark]
     assert len(said) == 1
-    assert "misses the tolerance" in said[0]
+    assert "the last mesh (finest allowed) is used although" in said[0]
     assert any("at radius" in remark and "c_self" in remark for remark in outcome.remarks)
 
 

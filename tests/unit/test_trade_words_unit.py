@@ -43,30 +43,30 @@ TYPED = {
     "gear.a.backlash": '"thickness_allowance" (with pair.NAME.centre_distance it gives the backlash',
     "gear.a.tooth_thickness": '"thickness_allowance"',
     "gear.a.span": '"thickness_allowance"',
-    "gear.a.crack": "cracks are not possible in fegear",
+    "gear.a.crack": "cracks are not supported",
     "gear.a.circular_pitch": '"module" (the circular pitch over pi)',
     # English
     "gear.a.number_of_teeth": '"teeth"',
     "gear.a.outside_diameter": '"tip_diameter"',
-    "gear.a.pitch_diameter": '"module" (the pitch diameter over the number of teeth)',
-    "gear.a.root_diameter": "set gear.NAME.cutter.root_diameter for it",
+    "gear.a.pitch_diameter": '"module" (the reference diameter over the number of teeth)',
+    "gear.a.root_diameter": "use gear.NAME.cutter.root_diameter",
     "gear.a.addendum_modification": '"profile_shift"',
     "gear.a.crowning": '"lead"',
     "gear.a.profile_crowning": '"relief"',
     "gear.a.tip_relief": '"relief"',
-    "gear.a.fillet_radius": "set gear.NAME.rack.tip_radius for it (in modules)",
+    "gear.a.fillet_radius": "use gear.NAME.rack.tip_radius (in modules)",
     "gear.a.hob": '"rack"',
-    "gear.a.youngs_modulus": "set gear.NAME.material.young_modulus for it",
-    "gear.a.hardness": "set gear.NAME.strength.hardness for it",
+    "gear.a.youngs_modulus": "use gear.NAME.material.young_modulus",
+    "gear.a.hardness": "use gear.NAME.strength.hardness",
     "gear.a.quality": '"tolerance_class"',
     "gear.a.runout": "gear.NAME.spacing_errors",
-    "gear.a.wear": "wear is not computed in fegear",
-    "gear.a.temperature": "gears are not heated in fegear",
-    "gear.a.herringbone": "double-helical gears are not possible",
-    "gear.a.asymmetric": "both flanks of a tooth are equal",
-    "gear.a.contact_ratio": "it follows from the gears, and geometry reports it",
-    "gear.a.torque": "set pair.NAME.torque for it",
-    "gear.a.speed": "set pair.NAME.speed for it",
+    "gear.a.wear": "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)",
+    "gear.a.temperature": "thermal expansion is not computed; flank-surface computes flank temperatures",
+    "gear.a.herringbone": "double-helical gears are not supported: model one half with half the face width and torque",
+    "gear.a.asymmetric": "asymmetric teeth are not supported (one pressure angle for both flanks)",
+    "gear.a.contact_ratio": "calculated from the gears, see geometry",
+    "gear.a.torque": "use pair.NAME.torque",
+    "gear.a.speed": "use pair.NAME.speed",
     "gear.a.material.youngs_modulus": '"young_modulus"',
     "gear.a.material.poisson": '"poisson_ratio"',
     "gear.a.rack.fillet_radius": '"tip_radius" (in modules)',
@@ -76,12 +76,12 @@ TYPED = {
     "pair.I.power": '"torque" (the power over the angular speed)',
     "pair.I.tangential_force": '"load" (along the line of action',
     "pair.I.rpm": '"speed"',
-    "pair.I.ratio": "set gear.NAME.teeth for it",
-    "pair.I.backlash": "set gear.NAME.thickness_allowance for it",
-    "pair.I.mesh_stiffness": "set train.mesh.NAME.stiffness for it",
-    "pair.I.crossed_axes": "axes that cross are not possible",
-    "pair.I.rack": "set gear.NAME.rack for it",
-    "pair.I.face_width": "set gear.NAME.face_width for it",
+    "pair.I.ratio": "use gear.NAME.teeth",
+    "pair.I.backlash": "use gear.NAME.thickness_allowance",
+    "pair.I.mesh_stiffness": "use train.mesh.NAME.stiffness",
+    "pair.I.crossed_axes": "only cylindrical gears on parallel axes are supported",
+    "pair.I.rack": "use gear.NAME.rack",
+    "pair.I.face_width": "use gear.NAME.face_width",
     "pair.I.lead_error": '"line_error"',
     "pair.I.oil": '"lubricant"',
     "pair.I.operation.service_factor": '"application_factor"',
@@ -100,8 +100,8 @@ TYPED = {
     "gear.a.Zahnweite": '"thickness_allowance"',
     "gear.a.Flankenspiel": '"thickness_allowance"',
     "gear.a.Kopfrücknahme": '"relief"',
-    "gear.a.Zahnstange": "a rack is not possible",
-    "gear.a.Kegelrad": "axes that cross are not possible",
+    "gear.a.Zahnstange": "racks are not supported; use a gear with 1000 teeth as an approximation",
+    "gear.a.Kegelrad": "only cylindrical gears on parallel axes are supported",
     "gear.a.rack.rhofP": '"tip_radius" (in modules)',
     "gear.a.rack.haP": '"addendum" (in modules)',
     "gear.a.strength.sigmaHlim": '"contact"',
@@ -130,7 +130,7 @@ TYPED = {
 @pytest.mark.parametrize("path", TYPED)
 def test_a_word_of_the_trade_leads_to_what_it_means(path):
     remedy = said(path)
-    assert remedy.removeprefix("the nearest known name is ").startswith(TYPED[path]) or (
+    assert remedy.removeprefix("did you mean ").startswith(TYPED[path]) or (
         TYPED[path] in remedy.partition("; known here")[0] and '"' not in TYPED[path]
     )
 
@@ -149,7 +149,7 @@ def test_of_a_result(word, tmp_path):
     document = {"results": [word], "gear": {"a": {"teeth": 24, "module": "3 mm"}}}
     with pytest.raises(InputError) as refusal:
         make_plan(build_scene(document, "case", tmp_path), STAGES)
-    wanted = f'nearest known name is "{RESULTS[word]}"' if word in RESULTS else "in fegear"
+    wanted = f'did you mean "{RESULTS[word]}"' if word in RESULTS else "not "
     assert wanted in refusal.value.remedy
 
 
@@ -188,10 +188,10 @@ def test_no_word_hides_a_key_of_its_own_table():
     ("change", "told"),
     [
         ({"gear": {"a": {"teeth": 30, "normal_module": "1 mm", "helix_angle": "30 deg", "hand": "double"}}},
-         "double-helical gears are not possible in fegear"),
+         "double-helical gears are not supported: model one half with half the face width and torque"),
         ({"gear": {"a": {"teeth": 1001, "module": "1 mm"}}}, "model a rack as a gear with many teeth"),
         ({"planetary": {"P": {"sun": "a", "planet": ["a", "b"], "torque": "1 N m"}}},
-         "stepped planets are not possible in fegear"),
+         "stepped planets are not supported: each planet is one gear meshing with sun and ring"),
     ],
     ids=["herringbone", "rack", "stepped planet"],
 )  # fmt: skip

@@ -189,7 +189,8 @@ def test_flanks_are_compared_by_load_approach_and_share(monkeypatch):
     step = {
         "tilt_um": 2.0, "approach_um": 5.0, "load_by_bore": {"driver": 905.0, "driven": 907.0},
         "quarters": {"0": [100.0, 200.0], "1": [250.0, 356.0]},
-        "root_stress": {"driver tension 0": [50.0, 61.0], "driver tension 1": [70.0], "driver compression": [99.0],
+        "root_stress": {"driver tension 0": [50.0, 61.0], "driver tension 1": [70.0],
+            "driver, compression side": [99.0],
                         "driven tension 0": [80.0]},
     }  # fmt: skip
     everything = {"two whole lines": {level: {"steps": [step]} for level in ("coarse", "fillets")}}
@@ -306,7 +307,7 @@ def test_a_mesh_is_handed_on_with_the_lag_that_its_load_takes(monkeypatch, tmp_p
     assert (given["path"].endswith("one.fmu"), given["kind"], given["stop"]) == (True, "ModelExchange", 1.0)
     assert (given["step"], given["start"], given["output"]) == (0.025, {"damping": 0.0}, ["mesh_force"])
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(Exception, match="needs a C compiler"):
+    with pytest.raises(Exception, match="exporting an FMU requires a C compiler"):
         list(handed_on.fmu())
 
 

@@ -100,7 +100,7 @@ def test_the_command_says_what_it_found_and_ends_with_1_where_a_row_does_not_hol
     wrong = Row("wrong", "capability", "own", "source", "What.", lambda: near(1.0, 2.0, 1e-3))
     monkeypatch.setattr("fegear.verify.rows.ALL", (wrong,))
     assert app(["verify"], standalone_mode=False) == 1
-    assert "DOES NOT HOLD" in capsys.readouterr().out
+    assert "FAILED" in capsys.readouterr().out
 
 
 def test_what_is_kept_of_a_row_changes_with_each_of_its_numbers():
@@ -131,12 +131,12 @@ def test_the_worst_number_is_told_with_what_is_stated_and_allowed():
         "holds": True, "seconds": pytest.approx(0.0, abs=1.0),
     }  # fmt: skip
     assert said(found).splitlines()[1].strip() == (
-        "numbers: 3, 1 known to differ, largest difference 2.0e-02, stated 3.0e-02, allowed 5e-02"
+        "numbers: 3, 1 with known differences, largest difference 2.0e-02, estimated error 3.0e-02, allowed 5e-02"
     )
     off = made(Compared(1.02, 1.0, 1.0, 0.01))
     lines = said(off).splitlines()
-    assert lines[1].endswith("allowed 1e-02  DOES NOT HOLD")
-    assert lines[2].strip() == "1.02 for 1"
+    assert lines[1].endswith("allowed 1e-02  FAILED")
+    assert lines[2].strip() == "1.02 instead of 1"
     assert Compared(1.0 + 1e-3 * (1.0 + 1e-10), 1.0, 1.0, 1e-3).holds
     assert not Compared(1.0 + 1.0001e-3, 1.0, 1.0, 1e-3).holds
     one, two = near([2.0, 3.0], [2.5, 0.0], 0.1, stated=[0.5, 0.6])

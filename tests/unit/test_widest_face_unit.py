@@ -22,7 +22,7 @@ def pair_of(width, tolerance):
 
 @pytest.mark.parametrize(
     ("width", "tolerance", "words"),
-    [("121 mm", 0.05, "60 modules"), ("118 mm", 1e-3, "coarser tolerance"), ("0.3 mm", 0.05, "0.2 and")],
+    [("121 mm", 0.05, "60 modules"), ("118 mm", 1e-3, "or increase the tolerance"), ("0.3 mm", 0.05, "0.2 and")],
 )
 def test_faces_that_cannot_be_solved_are_refused_before_the_run(width, tolerance, words):
     with pytest.raises(InputError, match=words) as refused:

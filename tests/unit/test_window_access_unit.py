@@ -123,7 +123,7 @@ def test_a_browser_is_led_to_the_page_by_a_file_of_its_owner(tmp_path, monkeypat
             await asyncio.sleep(0.01)
         shown = said[0].partition("key=")[2]
         assert door.keys.take(shown)
-        assert said[-1].startswith("That address has been used; for another browser open http://127.0.0.1:")
+        assert said[-1].startswith("This address has been used; for another browser open http://127.0.0.1:")
         assert door.keys.take(said[-1].partition("key=")[2])
         server.close()
 
@@ -204,7 +204,7 @@ def places(tmp_path, monkeypatch):
     return SimpleNamespace(mine=mine, others=others, reach=Reach.of(None))
 
 
-OUTSIDE = "is outside the folders opened here"
+OUTSIDE = "is outside the open folders"
 
 
 def test_the_page_opens_files_below_the_folders_that_were_opened(places):

@@ -72,7 +72,7 @@ def test_accuracy_is_ten_times_the_case_s_or_a_tenth_of_it(bench):
         bench.level = level
         assert bench.asked().loosened == factor
         bench._hear(Said(bench.asked_for[-1].number, "done", {"moving": False}))
-        assert bench.heard[-1][1]["level"] == ("" if level == "normal" else f" ({level}, not the case's own)")
+        assert bench.heard[-1][1]["level"] == ("" if level == "normal" else f" ({level}, differs from the case)")
     bench.export("report", "out")
     assert isinstance(bench.asked_for[-1], Export)
     assert bench.asked_for[-1].asked.loosened == 1.0  # what is written has the case's own
@@ -117,7 +117,7 @@ def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp
     bench.lay(None)
     assert bench.heard[-1][0] == "laid"
     for act in (lambda: bench.name_driven("I"), lambda: bench.drop_relief("a"), bench.asked):
-        with pytest.raises(InputError, match="is not open any more"):
+        with pytest.raises(InputError, match="is no longer open"):
             act()
 
 

@@ -132,7 +132,7 @@ def test_keys_with_their_defaults_come_when_somebody_looks(client, bench):
     assert path not in inputs._elements
     fold = inputs._places[path]
     count = sum(place is fold for place in inputs._places.values())
-    assert fold.text == f"{count} more with their defaults"
+    assert fold.text == f"{count} further keys (defaults)"
     fold.set_value(True)
     angle = inputs._elements[path]
     assert (angle.value, angle.props["placeholder"], angle.props["stack-label"]) == ("", "20 deg", True)
@@ -226,7 +226,7 @@ def test_remarks_of_results_mark_fields_and_the_folds_that_hide_them(client, ben
     bore = ("gear", "a", "bore_radius")
     inputs._warn({bore: "assumed", TEETH: "few"})
     fold = inputs._places[bore]
-    assert fold.props["caption"] == "assumed or not given: bore radius"
+    assert fold.props["caption"] == "assumed or not specified: bore radius"
     assert "warned" in inputs._elements[TEETH].classes
     assert inputs._elements[TEETH].props["hint"].startswith("few Number of teeth")
     fold.set_value(True)
@@ -266,14 +266,14 @@ def test_the_text_is_the_case_and_what_cannot_be_one_stays_in_its_field(client, 
     assert inputs._elements[TEETH].value == "29"
     inputs._text.set_value(TEXT + chr(0xD800))
     assert "teeth = 29" in bench.desk.text
-    assert inputs._text_refusal.text.startswith("Not taken, and kept in this field only: ")
-    assert inputs._refusal.text.startswith("The text is not taken: ")
+    assert inputs._text_refusal.text.startswith("Not accepted (kept in this field only): ")
+    assert inputs._refusal.text.startswith("Text not accepted: ")
     inputs.hear("changed", {})
     assert inputs._text.value == TEXT + chr(0xD800)
     inputs._text.set_value(TEXT.replace("28", "29"))
     assert inputs._text_refusal.text == inputs._refusal.text == ""
     inputs.leave_too_long()
-    assert "it is longer than" in inputs._text_refusal.text
+    assert "characters; move tables to separate files." in inputs._text_refusal.text
 
 
 def test_what_another_page_changes_waits_for_who_types_and_is_merged(client, bench, monkeypatch):
@@ -338,7 +338,7 @@ def test_the_bar_says_what_the_case_is_called_and_whether_it_is_saved(client, be
     assert (undo.enabled, redo.enabled) == (False, True)
     press(redo)
     assert "29" in bench.desk.text
-    press(button(client, "Give up changes"))
+    press(button(client, "Discard changes"))
     assert bench.desk.text == TEXT
     assert bench.changes == 3
 
@@ -354,7 +354,7 @@ def test_saving_asks_for_a_name_and_before_it_writes_over_others(client, bench, 
     assert path.props["error"] is True
     path.set_value(str(tmp_path / "there.toml"))
     press(button(client, "OK"))
-    press(button(client, "Replace it"))
+    press(button(client, "Overwrite"))
     assert (tmp_path / "there.toml").read_text() == TEXT
     assert client.said[-1] == f"Saved {tmp_path / 'there.toml'}"
     assert bench.changes == 1
@@ -365,7 +365,7 @@ def test_saving_asks_for_a_name_and_before_it_writes_over_others(client, bench, 
     bench.desk.change(TEXT)
     press(button(client, "Save"))
     assert (tmp_path / "there.toml").read_text() == "x = 2\n"
-    press([one for one in client.elements.values() if isinstance(one, ui.button) and one.text == "Replace it"][-1])
+    press([one for one in client.elements.values() if isinstance(one, ui.button) and one.text == "Overwrite"][-1])
     assert (tmp_path / "there.toml").read_text() == TEXT
 
 
@@ -414,7 +414,7 @@ def test_exports_go_into_the_folder_that_is_named(client, bench, tmp_path, monke
         assert client.said[-1] == "Writing ..."
     sent = []
     monkeypatch.setattr(ui.download, "content", lambda *given: sent.append(given))
-    press(items["Case (TOML), as it is now"])
+    press(items["Case (TOML), current state"])
     assert sent == [(TEXT.encode(), "c.toml", "application/toml")]
 
 
@@ -427,7 +427,7 @@ def test_the_bar_reports_what_has_been_done(client, bench):
     bench.desk = None
     bar.refresh()
     press(button(client, "Undo"))
-    assert "is not open any more" in client.said[-1]
+    assert "is no longer open" in client.said[-1]
 
 
 # ---- page ------------------------------------------------------------------------------------------------------------

@@ -217,7 +217,7 @@ def test_every_kind_of_export_writes_its_files(tmp_path, wire, worker):
     none = text.replace('relief = { tip = { amount = "12 um", length = "2.5 mm" } }', "")
     worker.answer(Export(9, Asked(none, "c", str(tmp_path)), "relief", str(tmp_path / "none")))
     assert wire.said[-1].what == "refused"
-    assert "no gear has one of known amount" in wire.said[-1].content["sentence"]
+    assert "has nothing to write: no gear has a relief of" in wire.said[-1].content["sentence"]
     assert not (tmp_path / "none").exists()
 
 

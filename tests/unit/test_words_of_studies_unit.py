@@ -79,8 +79,8 @@ def test_values_are_counted_by_what_is_known_of_their_errors():
     values = [Value("a", 2.0, "", 0.01), Value("b", 4.0, "", 0.1), Value("c", 1.0, "", 0.0), Value("d", 1.0)]
     summary, figure, title, bars = accuracy_blocks(results_of(values))
     assert summary == Paragraph(
-        "The case asks for a relative error of 0.01. Of its 4 values 2 carry an estimated error, 1 is exact, 1 have no "
-        "estimate. Over the tolerance: b."
+        "Relative tolerance of the case: 1 %. Of 4 values, 2 have an estimated error, 1 is exact, 1 have no error "
+        "estimate. Above tolerance: b."
     )
     (panel,) = figure.figure.panels
     assert panel.y.categories == ("a", "b")
@@ -88,11 +88,11 @@ def test_values_are_counted_by_what_is_known_of_their_errors():
     assert (list(within.x), list(within.y), list(over.x), list(over.y)) == ([0.005], [0.0], [0.025], [1.0])
     assert (within.size, panel.marks[0].at, panel.x.log) == (9.0, 1e-2, True)
     assert isinstance(figure, Plot)
-    assert (title.words, bars) == ("Seconds of each task:", Bars({"geometry": 0.5}, "s"))
+    assert (title.words, bars) == ("CPU time of each task:", Bars({"geometry": 0.5}, "s"))
     one = accuracy_blocks(results_of([Value("a", 2.0, "", 0.01), Value("c", 1.0, "", 0.0), Value("d", 1.0, "", 0.0)]))
-    assert "1 carry an estimated error, 2 are exact. None of the estimates exceeds the tolerance." in one[0].words
+    assert "1 have an estimated error, 2 are exact. No estimated error exceeds the tolerance." in one[0].words
     assert len(one) == 3  # one error is no figure
-    assert accuracy_blocks(results_of([]))[0] == Paragraph("Seconds of each task:", "table-title")
+    assert accuracy_blocks(results_of([]))[0] == Paragraph("CPU time of each task:", "table-title")
 
 
 def test_the_libraries_are_named_where_finite_elements_were_solved():
@@ -104,7 +104,7 @@ def test_the_libraries_are_named_where_finite_elements_were_solved():
     plain = told({"gear": {"solver": "condensed"}})
     assert "nested dissection assembles and eliminates" in plain[0].words
     other = told({"solver": "scikit-fem"}, "scikit-fem")
-    assert 'fegear closes the ring of all teeth (accuracy.solver = "scikit-fem").' in other[0].words
+    assert 'fegear couples the sectors to the full gear (accuracy.solver = "scikit-fem").' in other[0].words
     folded = accuracy_blocks(
         results_of([], {"t": SimpleNamespace(settings={"a": 1}), "u": SimpleNamespace(settings={})})
     )
@@ -122,18 +122,18 @@ def test_the_page_of_a_sweep_counts_points_and_tells_what_stays():
     nothing = Swept("none", "", "", np.full(312, math.nan), None)
     page = sweep_page(results, Table("sweep", ()), [level, moving, nothing], [], ["A note."])
     assert page.title == "Sweep: Two gears"
-    assert page.note == "Case two over gear.a.teeth and b and c. 311 of 312 points have results."
+    assert page.note == "Case two over gear.a.teeth and b and c. 311 of 312 points computed."
     by_title = {section.title: section.blocks for section in page.sections}
-    assert by_title["What was varied"][0] == Grid(("Key", "Values"), [
+    assert by_title["Varied keys"][0] == Grid(("Key", "Values"), [
         ("gear.a.teeth", ", ".join(map(str, range(20, 32)))), ("b", "1 to 13, 13 values"), ("c", "p, q"),
     ])  # fmt: skip
-    assert by_title["Values that do not change"] == (Facts({"n [µm]": "2.5"}),)
+    assert by_title["Constant values"] == (Facts({"n [µm]": "2.5"}),)
     (failures,) = by_title["Failures"]
     assert failures.rows == [(1, "InputError", "gear.a.teeth = 20, b = 2, c = q", "too thin")]
     assert len(by_title["Warnings"]) == 1
     whole = SweepResults("two", "t", axes[2:], tuple(points[:2]), 1.0, 0, (0, 0, 0.0))
     page = sweep_page(whole, Table("sweep", ()), [], [], [])
-    assert page.note.endswith("All 2 points have results.")
+    assert page.note.endswith("All 2 points computed.")
     assert [section.blocks for section in page.sections if section.title in ("Warnings", "Failures")] == [(), ()]
 
 
@@ -154,7 +154,7 @@ def um(name, size, error=None):
 
 def test_an_effect_is_told_by_the_value_that_it_changes_most():
     found = switched([um("I.te", 8.0, 0.1), um("I.mean", 20.0, 0.1)], [um("I.te", 10.0, 0.1), um("I.mean", 21.0, 0.1)])
-    assert sentence(found) == "hertz changes I.te most: 8 -> 10 um; processor time 1.00 s without, 2.50 s with."
+    assert sentence(found) == "hertz: largest change in I.te: 8 -> 10 um; CPU time 1.00 s without, 2.50 s with."
     assert kernel_changes(found) == "spline 2 -> 5; edge 0 -> 1"
     table = effects_table([found])
     data = {one.name: list(one.values) for one in table.columns}
@@ -166,11 +166,11 @@ def test_an_effect_is_told_by_the_value_that_it_changes_most():
     assert (data["processor_without"], data["processor_with"]) == ([1.0, 1.0], [2.5, 2.5])
     assert len(effects_table([]).columns[0]) == 0
     none = switched([um("I.te", 8.0)], [um("I.te", 8.0)], named=False)
-    assert sentence(none) == "hertz changes no value; processor time 1.00 s without, 2.50 s with."
+    assert sentence(none) == "hertz: no value changes; CPU time 1.00 s without, 2.50 s with."
     within = switched([um("I.te", 8.0, 1.0), um("I.k", 5.0, 4.0)], [um("I.te", 9.0, 1.0), um("I.k", 7.0)])
     assert sentence(within) == (
-        "hertz changes no value by more than its error; I.k: +2 um, not resolved (+- 4); "
-        "processor time 1.00 s without, 2.50 s with."
+        "hertz: no change above the estimated error; I.k: +2 um, not resolved (+- 4); CPU time 1.00 s without, 2.50 "
+        "s with."
     )
     assert stated_errors(Pairing("x", um("x", 1.0, 0.25), um("x", 2.0, 0.5))) == "+- 0.25 and +- 0.5"
     assert stated_errors(Pairing("x", um("x", 1.0), um("x", 2.0, 0.0))) == "round-off"
@@ -187,7 +187,7 @@ def test_the_page_of_effects_lists_the_largest_changes_first():
     said, _, values, kernels = effect.blocks
     assert said == Paragraph("It does.")
     assert effect.title == "hertz (on in the case)"
-    assert values.title == "The 2 values that it changes"
+    assert values.title == "The 2 values it changes"
     assert values.blocks[0].rows == [
         ("I.te", pytest.approx(8.0), pytest.approx(10.0), "µm", "+20 %"),
         ("I.mean", pytest.approx(20.0), pytest.approx(21.0), "µm", "+4.76 %"),

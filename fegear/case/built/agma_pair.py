@@ -61,7 +61,7 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
     """What AGMA 2101 is asked for a pair, or None; and sentences about what was assumed, or why there is nothing."""
     part, geometry, duty = scene.case.pair[asked.name], asked.conditions.geometry, asked.conditions.duty
     if geometry.internal:
-        return None, (f"Pair {asked.name}: AGMA 2101 is not evaluated: its I and J are those of external gears.",)
+        return None, (f"Pair {asked.name}: AGMA 2101 not evaluated: I and J are defined for external gears only.",)
     said: list[str] = []
     allowed = []
     for i, member in enumerate(geometry.members):
@@ -72,22 +72,30 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
         try:
             found = _allowed(strength, gear, said)
         except InputError as error:
-            return None, (f"Pair {asked.name}: AGMA 2101 is not evaluated: gear {gear}: {error}",)
+            return None, (f"Pair {asked.name}: AGMA 2101 not evaluated: gear {gear}: {error}",)
         if found is None:
             why = (
-                "own stress numbers are those of ISO" if strength.material in _TREATMENTS else "it has no such material"
+                "user-defined stress limits are those of ISO 6336"
+                if strength.material in _TREATMENTS
+                else "material not included"
             )
-            return None, (f"Pair {asked.name}: AGMA 2101 is not evaluated: {why} (gear {gear}, {strength.material}).",)
+            return None, (f"Pair {asked.name}: AGMA 2101 not evaluated: {why} (gear {gear}, {strength.material}).",)
         allowed.append(found.reversed_bending if asked.stress_ratio[i] < 0.0 else found)
     if allowed[1].treatment == "through-hardened" and allowed[0].treatment in HARD_CASES:
-        said.append(f"Pair {asked.name}: Z_W of AGMA 2101 of a through-hardened wheel on a hard pinion is recalled.")
+        said.append(
+            f"Pair {asked.name}: Z_W of AGMA 2101 (through-hardened driven gear, surface-hardened pinion) is "
+            "not verified against a printed source."
+        )
     if _ABOVE_MEDIAN < scene.case.rating.reliability < _USUAL_TABLE:
-        said.append(f"Pair {asked.name}: Y_Z of AGMA 2101 between reliabilities of .5 and .9 is recalled.")
+        said.append(
+            f"Pair {asked.name}: Y_Z of AGMA 2101 for reliabilities between 0.5 and 0.9 is not verified "
+            "against a printed source."
+        )
     shafts, grade = part.shafts, max(one.grade for one in asked.conditions.quality)
     level = min(max(grade, _LEVELS[0]), _LEVELS[1])
     offset = shafts.offset / shafts.bearing_span if shafts and shafts.bearing_span else 0.0
     said.append(
-        f"Pair {asked.name}: AGMA 2101 takes accuracy level A_v = {level}, an enclosed commercial gear unit and the "
+        f"Pair {asked.name}: AGMA 2101 assumes accuracy level A_v = {level}, an enclosed commercial gear unit and "
         f"reliability {scene.case.rating.reliability:g}; K_o is K_A K_gamma."
     )
     backup = [math.inf if g.rim_thickness is None else g.rim_thickness / g.depth for g in geometry.gears]
@@ -116,7 +124,7 @@ def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStr
         return None
     grade = min(_GRADES[strength.quality], _HIGHEST[treatment])
     if grade != _GRADES[strength.quality]:
-        said.append(f"Gear {gear}: AGMA 2101 has no grade 3 of {treatment} steel; grade {grade} was taken.")
+        said.append(f"Gear {gear}: AGMA 2101 defines no grade 3 for {treatment} steel; grade {grade} is used.")
     if treatment == "through-hardened":
         hardness = strength.hardness
         if hardness is None:
@@ -126,11 +134,11 @@ def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStr
     else:
         hardness = strength.core_hardness or HRC_30
         if strength.core_hardness is None:
-            said.append(f"Gear {gear}: AGMA 2101 takes a core of {HRC_30 * BRINELL:.0f} HBW (core_hardness).")
+            said.append(f"Gear {gear}: core hardness {HRC_30 * BRINELL:.0f} HBW assumed for AGMA 2101 (core_hardness).")
     found = allowable_stress(treatment, 1 if grade == 1 else 2 if grade == 2 else 3, hardness * BRINELL)
     if treatment in RECALLED_ROOTS:
         said.append(
-            f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa of {treatment} roots by AGMA 2101 is recalled "
-            "from memory: no printed source was at hand."
+            f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa (AGMA 2101, {treatment} steel) is not verified "
+            "against a printed source."
         )
     return found

@@ -84,7 +84,7 @@ class FaceModifications:
                 raise InputError(
                     f"gear.{self.gear}.topography",
                     f"from roll angle {math.degrees(part.roll[0]):.5g} to {math.degrees(part.roll[-1]):.5g} deg",
-                    f"lies elsewhere than the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
+                    f"lies outside the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
                     "check the units of its radii and angles",
                 )  # fmt: skip
         half = 0.5 * gear.face_width
@@ -95,7 +95,7 @@ class FaceModifications:
         if total.max() > DEEPEST_RELIEF * gear.module:
             raise InputError(
                 f"gear.{self.gear}", f"lead, bias and topography of {total.max() * 1e6:.4g} um",
-                f"are {total.max() / gear.module:.3g} modules, and {DEEPEST_RELIEF:g} is what a tooth can take",
+                f"equal {total.max() / gear.module:.3g} modules, more than the maximum of {DEEPEST_RELIEF:g} modules",
                 "check the unit: modifications are some tens of micrometres",
             )  # fmt: skip
         return found
@@ -151,7 +151,7 @@ def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankMo
         key = f"gear.{name}.lead.file"
         columns = read_columns(scene.file(part.file, key), key, {"z": "length", "removal": "length"})
         if not {"z", "removal"} <= columns.keys() or not (np.diff(columns["z"]) > 0.0).all():
-            raise InputError(key, f'"{part.file}"', "needs the columns z [mm], ascending, and removal [um]")
+            raise InputError(key, f'"{part.file}"', "requires the columns z [mm], ascending, and removal [um]")
         _refuse_uncovered(columns["z"], width, key)
         found.append(LeadTable(columns["z"], columns["removal"]))
     return found
@@ -164,8 +164,8 @@ def _refuse_uncovered(z: Array, width: float, key: str) -> None:
     if missing > _LEFT_OUT:
         raise InputError(
             key, f"z from {z.min() * 1e3:.6g} to {z.max() * 1e3:.6g} mm",
-            f"must cover the face, {-half * 1e3:.6g} to {half * 1e3:.6g} mm, but for a fifth of it at either end",
-            "give the whole face; check the unit of z and that it counts from mid-face",
+            f"must cover the face width, {-half * 1e3:.6g} to {half * 1e3:.6g} mm, except at most a fifth at each end",
+            "specify the full face width; check the unit of z (measured from mid-face)",
         )  # fmt: skip
 
 
@@ -177,7 +177,7 @@ def _topography(scene: Scene, name: str, part: TopographyPart) -> Topography:
     )  # fmt: skip
     if not {"z", "removal"} <= columns.keys() or not columns.keys() & {"roll_angle", "radius"}:
         raise InputError(
-            key, f'"{part.file}"', "needs the columns roll_angle [deg] or radius [mm], z [mm] and removal [um]"
+            key, f'"{part.file}"', "requires the columns roll_angle [deg] or radius [mm], z [mm] and removal [um]"
         )
     at = columns[one_column(columns, ("roll_angle", "radius"), key, part.file)]
     _refuse_uncovered(columns["z"], scene.gears[name].face_width, key)
@@ -188,7 +188,7 @@ def _topography(scene: Scene, name: str, part: TopographyPart) -> Topography:
     if min(rows.size, heights.size) < 2 or at.size != values.size or np.isnan(values).any():
         raise InputError(
             key, f'"{part.file}"', f"has {at.size} entries at {rows.size} roll angles or radii and {heights.size} "
-            "heights", "give every roll angle at every height once, two or more of each",
+            "heights", "specify each roll angle at each height once, at least two of both",
         )  # fmt: skip
     return Topography(rows if "roll_angle" in columns else _rolls(scene.gears[name], rows, key), heights, values)
 
@@ -233,7 +233,7 @@ def described_relief(scene: Scene, gear: str) -> DescribedRelief:
     if "relief" in flanks.wrong:
         raise flanks.wrong["relief"]
     if flanks.wants_delta:
-        return DescribedRelief(left_out="its amount counts in deflections (amount_over_delta)")
+        return DescribedRelief(left_out="amount depends on the deflection (amount_over_delta)")
     built: dict[str, Relief] = {}
     for name, pair in scene.pairs.items():
         for member in MEMBERS:
@@ -243,7 +243,7 @@ def described_relief(scene: Scene, gear: str) -> DescribedRelief:
                 except InputError as error:
                     raise at(f"gear.{gear}", error) from None
     if not built:
-        return DescribedRelief(left_out="its ends follow from the path of contact, and the gear is in no pair")
+        return DescribedRelief(left_out="start and end depend on the path of contact, and the gear belongs to no pair")
     (first, relief), *others = built.items()
     involute = scene.gears[gear].tooth.involute
     roll = np.linspace(involute.start, involute.end, 101)

@@ -26,17 +26,18 @@ def gear_quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality
     grade = part.tolerance_class
     if grade is None:
         grade = max(scene.case.pair[name].iso_6336.accuracy_grade, 1)
-        rest = "" if part.deviations is None else ", for what its own deviations do not say"
+        rest = "" if part.deviations is None else " for deviations not specified"
         said.append(
-            f"Gear {gear}: tolerance class {grade} was assumed{rest}, accuracy_grade of iso_6336 (tolerance_class)."
+            f"Gear {gear}: tolerance class {grade} assumed{rest} (from iso_6336.accuracy_grade; specify "
+            "tolerance_class)."
         )
     pitch, form, slope = _deviations(part, made, grade, gear)
     rough = part.roughness
     flank, root = (None, None) if rough is None else (rough.flank_height, rough.root_height)
     if flank is None:
-        said.append(f"Gear {gear}: Rz = {USUAL_FLANK * 1e6:g} um of the flanks was assumed (roughness).")
+        said.append(f"Gear {gear}: flank roughness Rz = {USUAL_FLANK * 1e6:g} um assumed (roughness).")
     if root is None:
-        said.append(f"Gear {gear}: Rz = {USUAL_ROOT * 1e6:g} um of the fillets was assumed (roughness).")
+        said.append(f"Gear {gear}: root fillet roughness Rz = {USUAL_ROOT * 1e6:g} um assumed (roughness).")
     return Quality(
         grade, pitch, form, slope, flank or USUAL_FLANK, root or USUAL_ROOT, _tip_relief(scene, gear, part, said)
     )  # fmt: skip
@@ -47,7 +48,7 @@ def _deviations(part: GearPart, made: Gear, grade: int, gear: str) -> tuple[floa
     try:
         found = gear_deviations(part, made, grade, _RATED, rounded=True)
     except InputError as error:
-        remedy = f"give gear.{gear}.{_OWN}: a rating needs them, and no class has them for such a gear"
+        remedy = f"specify gear.{gear}.{_OWN}: required for the rating, tolerance classes do not cover this gear"
         error = type(error)(error.key, error.value, error.rule, remedy)
         raise at(f"gear.{gear}", error, {"normal_module": "module"} if not part.is_helical else None) from None
     return found["base_pitch"], found["profile_form"], found["helix_slope"]
@@ -59,6 +60,6 @@ def _tip_relief(scene: Scene, gear: str, part: GearPart, said: list[str]) -> flo
     if not amounts:
         return 0.0
     if not scene.case.effects.relief:
-        said.append(f"Gear {gear} has a relief, but effects.relief is off: its rating has none.")
+        said.append(f"Gear {gear}: relief ignored in the rating because effects.relief is off.")
         return 0.0
     return float(max(amounts))

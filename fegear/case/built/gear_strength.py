@@ -24,14 +24,15 @@ def _refuse_soft(scene: Scene, gear: str, material: str, said: list[str]) -> Non
         raise InputError(
             f"gear.{gear}.strength.material", material,
             f"contradicts the Young's modulus of {modulus * 1e-9:.4g} GPa: life, notch and film factors of ISO 6336 "
-            f"are valid for steel and iron (above {_SOFTEST_METAL * 1e-9:g} GPa), with own stress limits as well",
-            "remove strength from gears of plastics, whose strength is that of VDI 2736; root-stress-history and "
-            "load-sharing are valid for any material",
+            f"are valid for steel and iron (above {_SOFTEST_METAL * 1e-9:g} GPa), also with user-defined stress "
+            "limits",
+            "remove strength from plastic gears (VDI 2736 applies); root-stress-history and load-sharing are valid "
+            "for any material",
         )  # fmt: skip
     if MATERIALS[material] not in TOUGH_IRON | SOFT_IRON and modulus < _SOFTEST_STEEL:
         said.append(
-            f"Gear {gear}: strength names {material}, but its Young's modulus of {modulus * 1e-9:.4g} GPa is below "
-            "that of any steel (material)."
+            f"Gear {gear}: strength.material is {material}, but the Young's modulus of {modulus * 1e-9:.4g} GPa is "
+            "below that of any steel (material)."
         )
 
 
@@ -56,12 +57,12 @@ def gear_strength(scene: Scene, gear: str, said: list[str]) -> Strength:
             said += [f"Gear {gear}: {one}." for one in law.remark.split("; ") if one]
         hardness = usual_hardness(part.material, part.quality) if part.hardness is None else part.hardness
         if part.hardness is None and len(found) == 2:  # of own numbers no law has said it; Z_W asks for it
-            said.append(f"Gear {gear}: hardness {hardness:.4g} HV was assumed, the middle of the range.")
+            said.append(f"Gear {gear}: hardness {hardness:.4g} HV assumed (middle of the range).")
         modulus = scene.gears[gear].material.young_modulus
         if MATERIALS[part.material] in TOUGH_IRON | SOFT_IRON and modulus > _STIFFEST_IRON:
             said.append(
-                f"Gear {gear}: strength names {part.material}, but its Young's modulus of {modulus * 1e-9:.4g} GPa is "
-                "that of steel (material); irons have 110 to 180 GPa, with which the contact stress is lower."
+                f"Gear {gear}: strength.material is {part.material}, but the Young's modulus of {modulus * 1e-9:.4g} "
+                "GPa is that of steel (material); cast irons have 110 to 180 GPa, which lowers the contact stress."
             )
         return Strength(
             MATERIALS[part.material], found["contact"], found["bending"], BRINELL * hardness,

@@ -65,22 +65,22 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
             continue
         found = _body(gear, place, senses.get(place.gear, 1))
         if gear.body is not None and gear.body.holes is not None:
-            said.append(f"{place.gear} stiffens it as if its web had no holes")
+            said.append(f"stiffening by {place.gear} is computed without the holes of its web")
         low, high = (min(max(place.at + end, 0.0), bare.length) for end in found.held)
         if not high - low > _PIECE * bare.length:
-            said.append(f"{place.gear} sits on no part of its shaft and does not stiffen it")
+            said.append(f"{place.gear} is not seated on its shaft and does not stiffen it")
             continue
         outer, inner = bare.diameters(np.linspace(low, high, 17)[1:-1])
         if inner.max() > 2.0 * found.seat * (1.0 - _SAME):
             said.append(
-                f"{place.gear} is held at a radius of {found.seat * 1e3:.4g} mm, within the hole of its shaft, and "
+                f"{place.gear} is fixed at a radius of {found.seat * 1e3:.4g} mm, inside the bore of its shaft, and "
                 "does not stiffen it"
             )
             continue
         if outer.max() > 2.0 * found.seat * (1.0 + _SAME):
-            said.append(f"{place.gear} is taken as cut into its shaft, solid up to its root circle")
+            said.append(f"{place.gear} is treated as integral with its shaft, solid up to its root circle")
         elif outer.min() < 2.0 * found.seat * (1.0 - _SAME):
-            said.append(f"{place.gear} is taken as solid between its shaft and the radius at which it is held")
+            said.append(f"{place.gear} is treated as solid between shaft and bore_radius")
         shaft = _filled(shaft, low, high, 2.0 * found.seat)
         bodies[place.gear] = GearOnShaft(found, place.at, gear.material.young_modulus)
     return StiffenedShaft(replace(shaft, gears=tuple(bodies.values())), bodies, tuple(said))

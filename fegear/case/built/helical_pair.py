@@ -86,7 +86,7 @@ def helical_pair_inputs(scene: Scene, name: str) -> HelicalPairInputs:
         if given is not None and given.half_face_width is not None and abs(given.half_face_width - half) > 1e-9 * half:
             raise InputError(
                 f"transmissibility.{name}.{role}.half_face_width", f"{given.half_face_width * 1e3:.6g} mm",
-                f"is not half the common face width of pair {part.mesh.pair}, {half * 1e3:.6g} mm", "leave it out",
+                f"is not half the common face width of pair {part.mesh.pair}, {half * 1e3:.6g} mm", "remove it",
             )  # fmt: skip
     found = HelicalPairInputs(part.with_gears(*(_body(pair, m) for m in MEMBERS)), None, pair, name)
     found.refuse_unbuilt()

@@ -188,15 +188,17 @@ def _check_misalignment(scene: Scene, name: str) -> None:
     if on_shafts(scene, name):
         if scene.pairs[name].driver.tooth.internal:
             raise InputError(
-                f"pair.{name}.driver", f'"{part.driver}"', "is a ring gear, whose shafts bend no flanks with a width",
-                "let the planet drive, or give the misalignment of the pair",
+                f"pair.{name}.driver", f'"{part.driver}"', "is an internal gear: misalignment from shafts is not "
+                                                           "available for 3D flanks",
+                "make the planet the driver, or specify the misalignment of the pair",
             )  # fmt: skip
         check_heights(scene, name)
     elif part.line_error is None and part.misalignment is None:
         raise InputError(
-            "effects.misalignment", "true", f"finds no misalignment and no gap over the face of pair {name}",
-            f'give pair.{name}.misalignment = {{ driven = {{ out_of_plane = "10 um" }} }} or shafts that carry both '
-            "gears, or leave the effect out",
+            "effects.misalignment", "true", "has no effect: no misalignment or gap over the face width of pair "
+                                            f"{name} is specified",
+            f"specify pair.{name}.misalignment = {{ driven = {{ out_of_plane = \"10 um\" }} }} or shafts for both "
+            "gears, or switch the effect off",
         )  # fmt: skip
 
 
@@ -212,7 +214,9 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
         check_solid_gear(scene, gear)
         check_source(scene, gear, f"pair.{name}.width", "slices" if part.width == "slices" else "solid")
     if part.normal_load(pair) is None:
-        raise InputError(f"pair.{name}.load", "(not given)", "is needed to load the flanks", "give load or torque")
+        raise InputError(
+            f"pair.{name}.load", "(not given)", "is required for the load distribution", "specify load or torque"
+        )
     try:
         refuse_load(pair, max(part.all_loads(pair)))
     except InputError as error:
@@ -220,8 +224,8 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
     if pair.total_contact_ratio < 1.0 and not effects.corner_contact:
         raise InputError(
             f"pair.{name}", f"total contact ratio {pair.total_contact_ratio:.4f}",
-            "is below 1: at some roll positions no tooth pair is on the path of contact",
-            "lengthen the teeth, widen the face, raise the number of teeth, or set effects.corner_contact = true",
+            "is below 1: no tooth pair is in contact at some roll positions",
+            "increase tooth depth, face width or number of teeth, or set effects.corner_contact = true",
         )  # fmt: skip
     if effects.misalignment:
         _check_misalignment(scene, name)
@@ -229,18 +233,18 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
     gears = scene.case.gear.values()
     if effects.relief and not (asked.cutter or any(gear.relieved or gear.over_face for gear in gears)):
         raise InputError(
-            "effects.relief", "true", "finds no gear with relief, lead, bias or topography in this case",
-            f"give gear.{part.driver}.relief or lead, or leave the effect out",
+            "effects.relief", "true", "has no effect: no gear of this case has relief, lead, bias or topography",
+            f"specify gear.{part.driver}.relief or lead, or switch the effect off",
         )  # fmt: skip
     if effects.spacing_errors and all(gear.spacing_errors is None for gear in gears):
         raise InputError(
-            "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
-            f"give gear.{part.driver}.spacing_errors, or leave the effect out",
+            "effects.spacing_errors", "true", "has no effect: no gear of this case has spacing_errors",
+            f"specify gear.{part.driver}.spacing_errors, or switch the effect off",
         )  # fmt: skip
     for flank in asked.flanks:
         if effects.relief and flank.wants_delta:
             raise InputError(
-                f"gear.{flank.gear}.relief", "amount_over_delta", "counts in deflections of plane teeth",
-                "give the amount as a length for a pair with a width",
+                f"gear.{flank.gear}.relief", "amount_over_delta", "is defined for the plane (2D) model only",
+                "specify the amount as a length for 3D gears",
             )  # fmt: skip
     asked.gaps(relief=effects.relief, misalignment=False)

@@ -239,7 +239,7 @@ def check_pair(scene: Scene, name: str) -> None:
     part, effects = scene.case.pair[name], scene.case.effects
     pair, key = scene.pairs[name], f"pair.{name}"
     if part.normal_load(pair) is None:
-        raise InputError(f"{key}.load", "(not given)", "is needed for load sharing", "give load, loads or torque")
+        raise InputError(f"{key}.load", "(not given)", "is required for load sharing", "specify load, loads or torque")
     refuse_gaps(pair, key, corner_contact=effects.corner_contact)
     try:
         refuse_load(pair, max(part.all_loads(pair)))
@@ -251,23 +251,24 @@ def check_pair(scene: Scene, name: str) -> None:
         _check_closed_forms(scene, name)
     if effects.neighbour_coupling and source != "fe":
         raise InputError(
-            "effects.neighbour_coupling", "true", f'is not known to the compliances of {key}, source = "{source}"',
-            f'set {key}.compliance.source = "fe", or leave the effect out',
+            "effects.neighbour_coupling", "true", f"is not available with {key}.compliance source = \"{source}\"",
+            f"set {key}.compliance.source = \"fe\", or switch the effect off",
         )  # fmt: skip
     if source == "table" and effects.hertz != "none":
         raise InputError(
-            "effects.hertz", f'"{effects.hertz}"', f"cannot change the contact that the table of {key} holds already",
+            "effects.hertz", f'"{effects.hertz}"', f"has no effect: the compliance table of {key} already includes "
+                                                   "the contact deformation",
             'set effects.hertz = "none"',
         )  # fmt: skip
     if source == "table" and part.compliance.of != "pair" and pair.driver.base_radius != pair.driven.base_radius:
         raise InputError(
-            f"{key}.compliance.of", '"tooth"', "takes the table for a tooth of either gear, but the gears differ",
-            'give the compliance of the pair and set of = "pair"',
+            f"{key}.compliance.of", '"tooth"', "uses one tooth compliance for both gears, but the gears differ",
+            'specify the compliance of the tooth pair and set of = "pair"',
         )  # fmt: skip
     if effects.spacing_errors and all(gear.spacing_errors is None for gear in scene.case.gear.values()):
         raise InputError(
-            "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
-            f"give gear.{part.driver}.spacing_errors, or leave the effect out",
+            "effects.spacing_errors", "true", "has no effect: no gear of this case has spacing_errors",
+            f"specify gear.{part.driver}.spacing_errors, or switch the effect off",
         )  # fmt: skip
     _check_flanks(scene, name)
 
@@ -307,6 +308,6 @@ def check_relief(scene: Scene, name: str) -> None:
     part = scene.case.pair[name]
     if scene.case.effects.relief and not any(gear.relieved for gear in scene.case.gear.values()):
         raise InputError(
-            "effects.relief", "true", "finds no gear with a relief in this case",
-            f"give gear.{part.driver}.relief, or leave the effect out",
+            "effects.relief", "true", "has no effect: no gear of this case has a relief",
+            f"specify gear.{part.driver}.relief, or switch the effect off",
         )  # fmt: skip

@@ -133,7 +133,7 @@ def _profile_ends(scene: Scene, name: str) -> tuple[float, float]:
     given = None if part is None else part.profile_range
     if given is not None:
         if min(given) < gear.base_radius:
-            raise InputError(f"gear.{name}.measured.profile_range", "(a list)", "reaches inside the base circle")
+            raise InputError(f"gear.{name}.measured.profile_range", "(a list)", "extends inside the base circle")
         ends = gear.base_radius * roll_of_radius(gear, np.array(given))
         return float(ends.min()), float(ends.max())
     involute = gear.tooth.involute
@@ -165,10 +165,10 @@ def _columns(scene: Scene, file: str, key: str, gear: Gear, *, over_face: bool =
     found = read_columns(scene.file(file, key), key, {**known, "tooth": ""})
     place = ["z"] if over_face else [one for one in ("radius", "roll_angle", "roll_length") if one in found]
     if len(place) != 1 or place[0] not in found or "deviation" not in found:
-        what = "z [mm]" if over_face else "one of radius [mm], roll_angle [deg] and roll_length [mm]"
-        raise InputError(key, f'"{file}"', f"needs the columns {what}, and deviation [um]")
+        what = "z [mm]" if over_face else "radius [mm], roll_angle [deg] or roll_length [mm]"
+        raise InputError(key, f'"{file}"', f"requires the columns {what}, and deviation [um]")
     if found["deviation"].size > _MOST:
-        raise InputError(key, f'"{file}"', f"has more than {_MOST:,} places", "drop every second")
+        raise InputError(key, f'"{file}"', f"has more than {_MOST:,} points", "use every second point")
     _check(found, key, gear)
     x = found[place[0]]
     if place[0] == "radius":
@@ -206,12 +206,12 @@ def _traces(
         x, y = rows["x"][mine], rows["deviation"][mine]
         if x.size < 5 or (np.diff(x) <= 0.0).any():
             raise InputError(
-                key, f"tooth {tooth:g}", "has fewer than five places, or one place twice", "give every trace once"
+                key, f"tooth {tooth:g}", "has fewer than five points, or one point twice", "specify each trace once"
             )
         each.append((x, filtered(x, y, wavelength) if smooth else y))
     low, high = max(x[0] for x, _ in each), min(x[-1] for x, _ in each)
     if not low < high:
-        raise InputError(key, "(traces)", "have no part of the flank in common", "measure all teeth alike")
+        raise InputError(key, "(traces)", "do not overlap", "use the same measuring range for all teeth")
     common = distinct(np.clip(ends, low, high), np.linspace(low, high, _PLACES))
     deviation = np.array([np.interp(common, x, y) for x, y in each])
     found = Traces(kind, common, deviation, tuple(int(one) for one in numbers), ends, wavelength)
@@ -231,7 +231,7 @@ def _flank(
     file = part.topography or ""
     rows = _columns(scene, file, key, gear)
     if "z" not in rows:
-        raise InputError(key, f'"{file}"', "needs the column z [mm]")
+        raise InputError(key, f'"{file}"', "requires the column z [mm]")
     numbers = np.unique(rows["tooth"])
     x, i = np.unique(rows["x"], return_inverse=True)
     z, k = np.unique(rows["z"], return_inverse=True)
@@ -239,8 +239,8 @@ def _flank(
     values[np.searchsorted(numbers, rows["tooth"]), i, k] = rows["deviation"]
     if min(x.size, z.size) < 5 or i.size != values.size or np.isnan(values).any():
         raise InputError(
-            key, f'"{file}"', f"has {i.size} entries of {numbers.size} teeth at {x.size} places of the profile and "
-            f"{z.size} heights", "give every place at every height once, five or more of each",
+            key, f'"{file}"', f"has {i.size} entries of {numbers.size} teeth at {x.size} profile points and {z.size} "
+                              "heights", "specify each profile point at each height once, at least five of both",
         )  # fmt: skip
     if part.filter:
         across, along = (cutoff(ends[1] - ends[0]) for ends in (over_profile, over_face))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.base.tally import note
 from fegear.case.built.loaded_pair import relieved, spaced
 from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 _SAID: dict[Answer, tuple[str, float, str]] = {
     "transmission error": (" um", 1e6, "its mean"),
     "load on a tooth pair": (" N", 1.0, "the load"),
-    "root tension": (" MPa", 1e-6, "its largest value"),
+    "root tension": (" MPa", 1e-6, "its maximum"),
     "mean transmission error": (" um", 1e6, "it"),
     "K_Hbeta": ("", 1.0, "it"),
 }
@@ -43,25 +44,20 @@ _EQUALLY_GOOD = 0.01
 _NEAR_WHOLE = 1e-3
 
 
-def percent(share: float) -> str:
-    """A share with two or three figures."""
-    return f"{100.0 * share:.{0 if share >= 0.1 else 1 if share >= 0.01 else 2}f} %"
-
-
 def remark(who: str, effects: EffectsPart, tolerance: float, effect: str, sizes: Iterable[str]) -> str:
     """Say which effect is off, how much it would change, for which tolerance, and what to write to have it."""
     now = 'is "linear"' if effects.is_on(effect) else "is off"
     return (
-        f"{who}: {effect} {now}; it would change {', '.join(sizes)}. "
-        f"The tolerance is {tolerance:.2g}. {remedy(effects, effect)}"
+        f"{who}: {effect} {now}; including it changes {', '.join(sizes)} (tolerance {100.0 * tolerance:g} %). "
+        f"{remedy(effects, effect)}"
     )
 
 
 def remedy(effects: EffectsPart, effect: str) -> str:
     """The line that switches an effect on, and what has to go for it."""
-    line = f"Write {effect} = {effects.example(effect)} under [effects]"
+    line = f"Set {effect} = {effects.example(effect)} under [effects]"
     if effect in ("corner_contact", "neighbour_coupling") and effects.friction:
-        return f"{line}, without friction, which needs tooth pairs that stand alone."
+        return f"{line} and switch friction off: friction requires uncoupled tooth pairs."
     return f"{line}."
 
 
@@ -145,7 +141,7 @@ def neglected_remarks(
 ) -> tuple[str, ...]:
     """Effects of load sharing that are off and would change the wanted answers by more than the tolerance."""
     said = [
-        f"Pair {name}: {effect} is off; its effect cannot be estimated from the data given: {error}"
+        f"Pair {name}: {effect} is off; its influence cannot be estimated from the data specified: {error}"
         for effect, error in found.wrong.items()
     ]
     for effect, parts in found.changes.items():
@@ -162,11 +158,11 @@ def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart)
     if engagement.corner_contact or abs(off) >= _NEAR_WHOLE:
         return ()
     said = (
-        f"Pair {name}: the contact ratio is {ratio:.9g}, within {_NEAR_WHOLE:g} of a whole number, and corner_contact "
-        f"is off: one tooth pair {'more' if off >= 0.0 else 'less'} is in contact over "
-        f"{abs(off) * engagement.pair.base_pitch * 1e6:.3g} um of the base pitch alone, a spike of transmission error "
-        "and stiffness of almost no width. Peak to peak jumps where the ratio passes the whole number, and with it all "
-        f"that is searched for by it. {remedy(effects, 'corner_contact')} With it both are continuous."
+        f"Pair {name}: the contact ratio is {ratio:.9g}, within {_NEAR_WHOLE:g} of an integer, and corner_contact is "
+        f"off: one tooth pair {'more' if off >= 0.0 else 'less'} is in contact over only "
+        f"{abs(off) * engagement.pair.base_pitch * 1e6:.3g} um of the base pitch, which gives a very narrow spike in "
+        "transmission error and stiffness. The peak-to-peak value is discontinuous at an integer contact ratio, and "
+        f"so is any optimum based on it. {remedy(effects, 'corner_contact')} With it both are continuous."
     )
     return (said,)
 
@@ -212,7 +208,7 @@ def neglected_in_design(
                 size = float(then[at] - now[at])
                 if abs(size) > tolerance * largest:
                     share = percent(abs(size) / largest)
-                    where = f"{share} of its largest value, at x = {x[at] * 1e3:.4g} mm"
+                    where = f"{share} of its maximum, at x = {x[at] * 1e3:.4g} mm"
                     sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
         if effect == "corner_contact" and ground is not None:
             shape, best = ground
@@ -231,7 +227,7 @@ def _to_grind(found: TipReliefPair) -> str:
         f"{relief.amount * 1e6:.3g} um from {np.degrees(relief.start):.4g} deg on the {member}"
         for member, relief in (("driver", found.driver), ("driven gear", found.driven))
     ]
-    return f"{' and '.join(each)}, which leave {found.objective * 1e6:.3g} um"
+    return f"{' and '.join(each)}, remaining transmission error {found.objective * 1e6:.3g} um"
 
 
 def design_remarks(
@@ -245,7 +241,9 @@ def design_remarks(
 
 def _size(change: Change, nominal: float) -> str:
     unit, factor, scale = _SAID[change.answer]
-    what = {"root tension": "the largest root tension", "K_Hbeta": "K_Hbeta"}.get(change.answer, f"the {change.answer}")
+    what = {"root tension": "the maximum root stress (tension side)", "K_Hbeta": "K_Hbeta"}.get(
+        change.answer, f"the {change.answer}"
+    )
     where = "" if np.isnan(change.x) else f", at x = {change.x * 1e3:.4g} mm"
     load = "" if change.load == nominal else f" under {change.load:.5g} N"
     return f"{what} by {change.size * factor:+.3g}{unit} ({percent(change.share)} of {scale}{where}{load})"

@@ -153,7 +153,7 @@ def motion_remarks(
     said = []
     for effect in ("contact_loss", "friction"):
         if effect in found.failed:
-            said.append(f"{effect} is off, and what it would change cannot be estimated: {found.failed[effect]}")
+            said.append(f"{effect} is off; its influence cannot be estimated: {found.failed[effect]}")
         sizes = [
             f"the dynamic factor of mesh {data.names[change.mesh]} by {change.size:+.3g} ({percent(change.share)}, at "
             f"{change.speed * data.speed_ratio * 30.0 / np.pi:.5g} rpm of {data.speed_of})"

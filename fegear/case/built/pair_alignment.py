@@ -28,8 +28,7 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
         return Alignment(modification=modification, computed=_of_computed_shafts(scene, name))
     if shafts is None:
         said.append(
-            f"Pair {name}: no shafts were given; K_Hbeta of ISO 6336 knows the misalignment from manufacture alone "
-            "(f_sh = 0)."
+            f"Pair {name}: no shaft data; K_Hbeta of ISO 6336 includes manufacturing misalignment f_ma only (f_sh = 0)."
         )
         return Alignment(deformation=0.0, modification=modification)
     shaft = None
@@ -45,8 +44,8 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
                 for g in (scene.gears[gear] for gear in gears)
             )
         except InputError as error:
-            rule = f"takes off the helix slope of class 5, which a gear of {error.key} = {error.value} has none of"
-            key, remedy = f"pair.{name}.shafts.contact_pattern", "leave it out, or give face_load_factor (operation)"
+            rule = f"uses the helix slope tolerance of class 5, which is not defined for {error.key} = {error.value}"
+            key, remedy = f"pair.{name}.shafts.contact_pattern", "remove it, or set operation.face_load_factor"
             raise InputError(key, shafts.contact_pattern, rule, remedy) from None
     return Alignment(shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope)
 
@@ -68,7 +67,7 @@ def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixM
     if not leads:
         return "none"
     if not scene.case.effects.relief:
-        said.append("The gears have a lead modification, but effects.relief is off: K_Hbeta of ISO 6336 has none.")
+        said.append("Lead modification of the gears ignored in K_Hbeta of ISO 6336 because effects.relief is off.")
         return "none"
     crowned, sloped = any(lead.crowning for lead in leads), any(lead.slope for lead in leads)
     if sloped:

@@ -210,17 +210,13 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]
         if part.relieved and not effects.relief:
-            remarks.append(
-                f"Gear {gear} has a relief, but effects.relief is off: its flanks are assumed to be involutes."
-            )
+            remarks.append(f"Gear {gear}: relief ignored because effects.relief is off (unmodified involute flanks).")
         if part.spacing_errors is not None and not effects.spacing_errors:
-            remarks.append(
-                f"Gear {gear} has spacing_errors, but the effect is off: its teeth are assumed to be evenly spaced."
-            )
+            remarks.append(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch).")
         if part.over_face:
             remarks.append(
-                f"Gear {gear} has {' and '.join(part.over_face)}, which plane teeth do not know: they are the same all "
-                f'along the face. Write width = "solid" for pair {name}.'
+                f"Gear {gear}: {' and '.join(part.over_face)} ignored in the plane (2D) model, which has no "
+                f'variation along the face; set width = "solid" for pair {name}.'
             )
         remarks += width_remarks(scene, gear)
         if scene.case.pair[name].compliance.source == "fe":
@@ -228,16 +224,16 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     given = [key for key in ("misalignment", "line_error", "modification") if getattr(scene.case.pair[name], key)]
     if given:
         remarks.append(
-            f"Pair {name} has {' and '.join(given)}, which plane teeth do not know: they are the same all along the "
-            f'face. Write width = "solid" for it.'
+            f"Pair {name}: {' and '.join(given)} ignored in the plane (2D) model, which has no variation along the "
+            'face; set width = "solid".'
         )
     pair = scene.pairs[name]
     if sentence := heavy_load(pair, max(scene.case.pair[name].all_loads(pair), default=0.0)):
         remarks.append(f"Pair {name}: {sentence}")
     if effects.corner_contact:
         remarks += [
-            f"Pair {name}: the tip of the {member} gear reaches below the form circle of its mate, where the path "
-            "ends: there is no corner contact at that end."
+            f"Pair {name}: tip of the {member} gear reaches below the root form circle of the mating gear "
+            "(interference); the path of contact ends there and no corner contact is computed at that end."
             for member in MEMBERS
             if interference(pair, member).below_form_circle
         ]
@@ -262,13 +258,11 @@ def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:
     columns = read_columns(scene.file(part.file or "", key), key, dimensions)
     if "compliance" in columns:
         if "deflection" in columns:
-            raise InputError(
-                key, f'"{part.file}"', "has both compliance and deflection", "remove the column that is not meant"
-            )
+            raise InputError(key, f'"{part.file}"', "has both compliance and deflection", "remove one of the columns")
         c = columns["compliance"]
     elif "load" in columns and "deflection" in columns:
         if not (columns["load"] > 0.0).all():
-            raise InputError(key, f'"{part.file}"', "has a load that is not positive, which leaves no compliance")
+            raise InputError(key, f'"{part.file}"', "contains a load that is not positive: compliance is undefined")
         c = columns["deflection"] / columns["load"]
     else:
         raise InputError(key, f'"{part.file}"', "has neither a column compliance nor load and deflection")
@@ -309,7 +303,7 @@ def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> 
             {"roll_angle": "angle", "radius": "length", "relief": "length"},
         )  # fmt: skip
         if "relief" not in columns or not ("roll_angle" in columns or "radius" in columns):
-            raise InputError(f"{key}.file", f'"{part.file}"', "needs the columns relief and roll_angle or radius")
+            raise InputError(f"{key}.file", f'"{part.file}"', "requires the columns relief and roll_angle or radius")
         one_column(columns, ("roll_angle", "radius"), f"{key}.file", part.file)
         values = columns["relief"]
         roll = columns["roll_angle"] if "roll_angle" in columns else _rolls(gear, columns["radius"], key)
@@ -409,8 +403,8 @@ def refuse_formulas(scene: Scene, name: str) -> None:
         for source in sources:
             if source not in ("fe", "table"):
                 raise InputError(
-                    f"pair.{name}.{key}.source", f'"{source}"', f"is of external teeth, and {ring} is internal",
-                    'write source = "fe"',
+                    f"pair.{name}.{key}.source", f'"{source}"', f"is valid for external gears only; {ring} is internal",
+                    'set source = "fe"',
                 )  # fmt: skip
 
 
@@ -446,6 +440,6 @@ def _does_not_hold(found: FormulaRootStress, source: str, name: str, gear: str) 
     from fegear.formulas.sources import ROOT_STRESS_SOURCES
 
     others = ", ".join(f'"{other}"' for other in ROOT_STRESS_SOURCES if other != source)
-    rule = f"does not hold on the flank: {found.missing[0]} (gear {gear})"
+    rule = f"is not valid on the flank: {found.missing[0]} (gear {gear})"
     remedy = f'choose "fe" or another formula ({others})'
     return RangeError(f"pair.{name}.root_stress.source", f'"{source}"', rule, remedy)

@@ -105,7 +105,7 @@ class PairFriction:
         (name,) = (law for law in MEAN_LAWS if law == self.law)
         surface = self.surface
         if surface is None:
-            raise InputError("friction.law", f'"{self.law}"', "needs oil and roughness")
+            raise InputError("friction.law", f'"{self.law}"', "requires lubricant and roughness")
         tilt = math.cos(pair.driver.base_helix_angle) if name == "iso-6336-20" else 1.0
 
         def local(at: FlankSpeeds, w: Array) -> Array:
@@ -159,8 +159,8 @@ def check_speed(scene: Scene, name: str, result: str) -> None:
     """Refuse a pair that stands still, or whose speed is not known."""
     if not pair_speed(scene, name) > 0.0:
         raise InputError(
-            f"pair.{name}.speed", "(not given)", f"is needed for {result}: nothing slides on flanks that stand still",
-            'write the speed of the driver: speed = "1500 rpm"',
+            f"pair.{name}.speed", "(not given)", f"is required for {result} (sliding velocity)",
+            'set the driver speed: speed = "1500 rpm"',
         )  # fmt: skip
 
 
@@ -182,8 +182,8 @@ def surface_of(scene: Scene, name: str, wanted_by: str) -> Surface:
     part = scene.case.pair[name]
     if part.lubricant is None:
         raise InputError(
-            f"pair.{name}.lubricant", "(not given)", f"is needed for {wanted_by}",
-            'write lubricant = { viscosity_40 = "220 mm^2/s", temperature = "60 degC" }',
+            f"pair.{name}.lubricant", "(not given)", f"is required for {wanted_by}",
+            'set lubricant = { viscosity_40 = "220 mm^2/s", temperature = "60 degC" }',
         )  # fmt: skip
     roughness = mean_roughness(scene, part)
     if roughness is None:
@@ -192,8 +192,8 @@ def surface_of(scene: Scene, name: str, wanted_by: str) -> Surface:
             if (one := scene.case.gear[gear].roughness) is None or one.flank_ra is None
         )  # fmt: skip
         raise InputError(
-            f"gear.{missing}.roughness", "(not given)", f"is needed for {wanted_by}",
-            'write roughness = { flank = "0.4 um" }',
+            f"gear.{missing}.roughness", "(not given)", f"is required for {wanted_by}",
+            'set roughness = { flank = "0.4 um" }',
         )  # fmt: skip
     return Surface(oil_of(part.lubricant), part.lubricant.temperature, roughness)
 
@@ -218,8 +218,8 @@ def pair_friction(scene: Scene, name: str, wanted_by: str) -> PairFriction:
     if law == "benedict-kelley":
         if given is None and part.lubricant is None:
             raise InputError(
-                f"pair.{name}.friction.viscosity", "(not given)", f'is needed by law = "{law}"',
-                "give it, or a lubricant",
+                f"pair.{name}.friction.viscosity", "(not given)", f"is required by law = \"{law}\"",
+                "specify it, or a lubricant",
             )  # fmt: skip
         if given is None and part.lubricant is not None:
             given = float(oil_of(part.lubricant).dynamic(part.lubricant.temperature))
@@ -251,8 +251,8 @@ def load_factors(scene: Scene, name: str) -> tuple[LoadFactors, tuple[str, ...]]
     if missing:
         names = ", ".join(missing)
         told = (
-            f"Pair {name}: {names} count as 1 for the surface; ISO 6336-1 gives them where both gears have a strength, "
-            "operation by dynamic_factor, face_load_factor and transverse_load_factor."
+            f"Pair {name}: {names} = 1 for scuffing and micropitting. Specify strength of both gears (ISO 6336-1) or "
+            "operation.dynamic_factor, face_load_factor, transverse_load_factor."
         )
         remarks = (*remarks, told)
     dynamic, face, transverse = (value or 1.0 for value in found.values())
@@ -300,27 +300,29 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
     surface = surface_of(scene, name, "flank-surface")
     oil = part.lubricant
     if oil is None:  # surface_of refuses that
-        raise InputError(f"pair.{name}.lubricant", "(not given)", "is needed for flank-surface")
+        raise InputError(f"pair.{name}.lubricant", "(not given)", "is required for flank-surface")
     load = part.normal_load(pair)
     if load is None:
-        raise InputError(f"pair.{name}.load", "(not given)", "is needed for flank-surface", "give load or torque")
+        raise InputError(f"pair.{name}.load", "(not given)", "is required for flank-surface", "specify load or torque")
     factors, remarks = load_factors(scene, name)
     gears = [scene.case.gear[gear] for gear in (part.driver, part.driven)]
     classes = [gear.tolerance_class for gear in gears]
     told = list(remarks)
     if None in classes:
-        told.append(f"Pair {name}: flanks without tolerance_class count as class {_CLASS}.")
+        told.append(f"Pair {name}: flank tolerance class {_CLASS} assumed (tolerance_class).")
     if any(gear.flank_treatment is None for gear in gears):
-        told.append(f"Pair {name}: flanks without flank_treatment count as through-hardened, X_W = 1.")
+        told.append(f"Pair {name}: X_W = 1 (through-hardened flanks) assumed (flank_treatment).")
     if oil.viscosity_100 is None:
-        told.append(f"Pair {name}: viscosity_100 of the oil is that of a mineral oil of viscosity index 95.")
+        told.append(f"Pair {name}: viscosity_100 assumed for a mineral oil of viscosity index 95.")
     single, mesh = _USUAL_STIFFNESS
     try:
         applied = factors.application * pair.specific_load(load)
         stiffness = pair_stiffness(pair, specific_load=applied, blank=blank_factor(scene, name))
         single, mesh = stiffness.single, stiffness.mesh_alpha
     except RangeError as error:
-        told.append(f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um), as ISO 6336-1 has no value here: {error}")
+        told.append(
+            f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um) assumed, outside the range of ISO 6336-1: {error}"
+        )
     relief = _with_running_in(scene, name, tip_relief, told)
     rated = RatedSurface(
         pair, pair_speed(scene, name), load, factors, surface, SUPPLY_FACTOR[oil.supply],
@@ -345,7 +347,7 @@ def _with_running_in(scene: Scene, name: str, relief: Both, told: list[str]) -> 
     if all(relief):
         return relief
     if any(scene.case.gear[gear].strength is None for gear in gears):
-        told.append(f"Pair {name}: tips without relief count as not run in (C_a = 0), for strength is not given.")
+        told.append(f"Pair {name}: C_a = 0 for tips without relief (running-in not included, strength not specified).")
         return relief
     one, other = (gear_strength(scene, gear, []).contact for gear in gears)
     worn = running_in_relief((one, other))
@@ -369,8 +371,8 @@ def _material_factor(scene: Scene, name: str, told: list[str]) -> float:
             )
         elif steel in RECALLED_MATERIALS:
             told.append(
-                f"Gear {gear}: W_W = {MATERIAL_FACTOR[steel]:g} of {steel} flanks is recalled from memory: no printed "
-                "source backs it (micropitting_material_factor of iso_6336)."
+                f"Gear {gear}: W_W = {MATERIAL_FACTOR[steel]:g} for {steel} flanks is not verified against a printed "
+                "source (iso_6336.micropitting_material_factor)."
             )
     one, other = (MATERIAL_FACTOR.get(steels[gear], 1.0) for gear in (part.driver, part.driven))
     return 0.5 * (one + other)

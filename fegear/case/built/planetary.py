@@ -84,8 +84,8 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
     for one in (set_pair(name, mesh) for mesh in MESHES):
         if sun.helix_angle and scene.pairs.get(one, pair).axial_offset:
             raise InputError(
-                f"pair.{one}.axial_offset", "(given)", "moves the phase of one mesh of a helical set",
-                "leave it out: faces of a set stand middle to middle",
+                f"pair.{one}.axial_offset", "(given)", "shifts the phase of one mesh of a helical planetary set",
+                "remove it: gears of a planetary set are centred axially",
             )  # fmt: skip
     tooth, teeth = planet.tooth, set_teeth(scene.case, part)
     at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
@@ -129,7 +129,7 @@ def body_masses(scene: Scene, name: str) -> tuple[tuple[str, float, float, str],
         given, gear = getattr(part.body, member), getattr(part, member, None)
         if given is None and gear is None:
             continue
-        source = f"as given by body.{member}" if given is not None else f"of the teeth and the body of gear {gear}"
+        source = f"from body.{member}" if given is not None else f"from teeth and body of gear {gear}"
         found.append((member, *_mass(given, None if gear is None else scene.gears[gear]), source))
     return tuple(found)
 
@@ -158,8 +158,9 @@ def check_masses(scene: Scene, name: str) -> None:
         moves = math.isfinite(body.bearing) or math.isfinite(body.turning)
         if moves and math.isnan(body.mass):
             raise InputError(
-                f"planetary.{name}.body.{member}", "(not given)", f"is needed for vibration, as the {member} can move",
-                f'write body = {{ {member} = {{ mass = "2 kg", inertia = "0.01 kg*m^2" }} }}',
+                f"planetary.{name}.body.{member}", "(not given)", f"is required for vibration ({member} is free to "
+                                                                  "move)",
+                f"set body = {{ {member} = {{ mass = \"2 kg\", inertia = \"0.01 kg*m^2\" }} }}",
             )  # fmt: skip
 
 

@@ -31,11 +31,11 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
     if not backup > LEAST_RIM:
         raise InputError(
             f"gear.{gear}.bore_radius", f"{made.bore_radius * 1e3:.6g} mm",
-            f"leaves a rim of {told}, and Y_B of ISO 6336-3 holds above {LEAST_RIM:g}",
-            "make the bore smaller, or give the rim_thickness of what carries the teeth",
+            f"leaves a rim of {told}; Y_B of ISO 6336-3 requires more than {LEAST_RIM:g}",
+            "reduce bore_radius, or specify the rim_thickness below the teeth",
         )  # fmt: skip
     if backup < SOLID_RIM or part.web_thickness is not None:
-        said.append(f"Gear {gear}: bore_radius leaves a rim of {told}, which was taken (rim_thickness).")
+        said.append(f"Gear {gear}: rim thickness {told} from bore_radius used (rim_thickness).")
     return body
 
 

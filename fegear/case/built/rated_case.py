@@ -24,8 +24,9 @@ def gear_case(scene: Scene, gear: str, said: list[str]) -> HardenedCase:
     if part is None or not part.material.startswith(_SURFACE_HARDENED):
         given = "(not given)" if part is None else f'"{part.material}"'
         raise InputError(
-            f"{key}.material" if part else key, given, "has no hard case: flank fracture is for surface-hardened teeth",
-            'write material = "case-hardened-steel"',
+            f"{key}.material" if part else key, given, "has no hardened case: flank fracture applies to "
+                                                       "surface-hardened teeth",
+            'set material = "case-hardened-steel"',
         )  # fmt: skip
     profile = part.hardness_profile
     measured: Profile | None = None if profile is None else (tuple(profile.depth), tuple(profile.hardness))
@@ -33,20 +34,20 @@ def gear_case(scene: Scene, gear: str, said: list[str]) -> HardenedCase:
     residual: Profile | None = None if own is None else (tuple(own.depth), tuple(own.stress))
     if measured is None and part.case_depth is None:
         raise InputError(
-            f"{key}.case_depth", "(not given)", "is missing: flank fracture depends on how deep the case is",
-            'write case_depth = "0.8 mm", or hardness_profile',
+            f"{key}.case_depth", "(not given)", "is required for flank fracture",
+            'set case_depth = "0.8 mm", or hardness_profile',
         )  # fmt: skip
     if measured is not None:
         found = depth_of(measured) if part.case_depth is None else part.case_depth
         return HardenedCase(measured[1][0], part.core_hardness or measured[1][-1], found, measured, residual)
     if part.core_hardness is None:
         raise InputError(
-            f"{key}.core_hardness", "(not given)", "is missing: the hardness falls to it below the case",
-            'write core_hardness = "32 HRC"',
+            f"{key}.core_hardness", "(not given)", "is required: core hardness below the case",
+            'set core_hardness = "32 HRC"',
         )  # fmt: skip
     surface = usual_hardness(part.material, part.quality) if part.hardness is None else part.hardness
     if part.hardness is None:
-        said.append(f"Gear {gear}: hardness {surface:.4g} HV was assumed, the middle of the range.")
+        said.append(f"Gear {gear}: hardness {surface:.4g} HV assumed (middle of the range).")
     case = HardenedCase(surface, part.core_hardness, part.case_depth or 0.0, None, residual)
     try:
         case.hardness(0.0)

@@ -87,7 +87,9 @@ def load_cycles(part: PairPart, pair: GearPair, said: list[str], name: str) -> B
         life = sum(level.time or 0.0 for level in operation.spectrum)
     if life is None:
         if not operation.spectrum:
-            said.append(f"Pair {name}: no life was given; it is rated for {UNLIMITED:g} load cycles (operation.life).")
+            said.append(
+                f"Pair {name}: required life not specified; rated for {UNLIMITED:g} load cycles (operation.life)."
+            )
         return UNLIMITED, UNLIMITED
     turns = life * speed / (2.0 * math.pi)
     if max(turns * one, turns * ratio * other) < 1.0:
@@ -108,7 +110,7 @@ def refuse_fast(part: PairPart, pair: GearPair, name: str) -> None:
         if velocity > _FASTEST:
             raise InputError(
                 f"pair.{name}.{key}", f"{(speed or 0.0) * 30.0 / math.pi:.4g} rpm",
-                f"gives a pitch line velocity of {velocity:.4g} m/s, and gears burst below {_FASTEST:g} m/s",
+                f"gives a pitch line velocity of {velocity:.4g} m/s, above the burst limit of {_FASTEST:g} m/s",
                 "check its unit",
             )  # fmt: skip
 
@@ -126,8 +128,8 @@ def spectrum_levels(
     total = sum(time or 0.0 for time in times)
     life = operation.life or (total or None)
     if life is None:
-        rule = "is missing: shares of a spectrum are shares of a life"
-        raise InputError(f"pair.{name}.operation.life", "(not given)", rule, 'write life = "20000 h"')
+        rule = "is required with a load spectrum given as shares"
+        raise InputError(f"pair.{name}.operation.life", "(not given)", rule, 'set life = "20000 h"')
     shares = sum(level.share or 0.0 for level in bins)
     one, other = operation.loaded_per_turn
     ratio = pair.driver.teeth / pair.driven.teeth
@@ -144,7 +146,9 @@ def spectrum_levels(
         )  # fmt: skip
     if not any(level.tangential > 0.0 and level.share > 0.0 for level in found):
         raise InputError(
-            f"pair.{name}.operation.spectrum", "(a list)", "has no level with a load and a share of the time"
+            f"pair.{name}.operation.spectrum",
+            "(a list)",
+            "must have at least one level with a load and a share of the time",
         )
     return tuple(found), life
 
@@ -161,20 +165,20 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
     part, pair = scene.case.pair[name], scene.pairs[name]
     operation = part.operation
     if "application_factor" not in operation.model_fields_set and not operation.spectrum:
-        said.append(f"Pair {name}: K_A = 1 was assumed (operation.application_factor).")
+        said.append(f"Pair {name}: K_A = 1 assumed (operation.application_factor).")
     for gear in dict.fromkeys((part.driver, part.driven)):
         _assumed_of_gear(scene, gear, said)
     for member, gear in zip(MEMBERS, (part.driver, part.driven), strict=True):
         made = pair.gear(member)
         if made.tooth.undercut and not made.external_tooth.rack.residual_undercut:
             said.append(
-                f"Gear {gear}: its root is undercut up to {2e3 * made.form_radius:.5g} mm of diameter; ISO 6336 is for "
-                "gears without undercut, and of its factors the contact ratio alone counts it (profile_shift)."
+                f"Gear {gear}: undercut up to diameter {2e3 * made.form_radius:.5g} mm; ISO 6336 applies to gears "
+                "without undercut and includes it in the contact ratio only (profile_shift)."
             )
     if pair.normal_backlash < 0.0:
         said.append(
-            f"Pair {name}: without allowance the teeth jam by {-pair.normal_backlash * 1e6:.2g} um along the line of "
-            "action, as gears at rounded profile shifts do; it is rated without backlash."
+            f"Pair {name}: without thickness allowance the backlash is negative by {-pair.normal_backlash * 1e6:.2g} "
+            "um along the line of action (rounded profile shifts); rated with zero backlash."
         )
 
 
@@ -186,7 +190,7 @@ def _assumed_of_gear(scene: Scene, gear: str, said: list[str]) -> None:
         and part.rack.profile is None
         and None in (part.rack.addendum, part.rack.dedendum, part.rack.tip_radius)
     ):
-        found.append(("the rack ISO 53 C for what is not given", "rack"))
+        found.append(("basic rack ISO 53 C for values not specified", "rack"))
     if "young_modulus" not in part.material.model_fields_set:
         found.append((f"E = {made.material.young_modulus * 1e-9:.4g} GPa", "material.young_modulus"))
     strength = part.strength
@@ -195,7 +199,7 @@ def _assumed_of_gear(scene: Scene, gear: str, said: list[str]) -> None:
         found.append((f"quality {strength.quality}", "strength.quality"))
     if found:
         what, keys = (", ".join(one) for one in zip(*found, strict=True))
-        said.append(f"Gear {gear}: {what} was assumed ({keys}).")
+        said.append(f"Gear {gear}: {what} assumed ({keys}).")
     said += bore_remarks(scene, gear)
 
 
@@ -205,15 +209,15 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
     if part.internal:
         if part.outer_radius is not None or part.rim_thickness is not None:
             return ()
-        held = f"held outside of a rim of {USUAL_RING_RIM:g} modules, at {bore:.6g} mm"
-        return (f"Gear {gear}: no outer_radius or rim_thickness was given; assumed default: the body is {held}.",)
+        held = f"fixed outside a rim of {USUAL_RING_RIM:g} modules, at radius {bore:.6g} mm"
+        return (f"Gear {gear}: outer_radius or rim_thickness not specified; gear body {held}.",)
     if part.body is not None and part.face_width is not None:
-        plane = f"Gear {gear}: plane results take its body for a disc; rim, web and hub count where it is solid."
+        plane = f"Gear {gear}: plane (2D) results use a solid disc; rim, web and hub are included in 3D results only."
         return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
     if part.bore_radius is not None:
         return thin_rim_remarks(gear, scene.gears[gear])
-    held = f"held at half the root radius, {bore:.6g} mm"
-    return (f"Gear {gear}: no bore_radius was given; assumed default: the body is {held}.",)
+    held = f"fixed at half the root radius, {bore:.6g} mm"
+    return (f"Gear {gear}: bore_radius not specified; gear body {held}.",)
 
 
 def thin_rim_remarks(gear: str, made: Gear) -> tuple[str, ...]:
@@ -224,9 +228,9 @@ def thin_rim_remarks(gear: str, made: Gear) -> tuple[str, ...]:
     if made.tooth.internal or backup >= LEAST_RIM:
         return ()
     said = (
-        f"Gear {gear}: its rim of {backup:.2g} tooth depths (below {LEAST_RIM:g}) is fixed all round its bore, so root "
-        "stress and deflection are underestimated. Describe rim and web by body (rim_thickness, web_thickness) and set "
-        'width = "solid" for its pairs.'
+        f"Gear {gear}: rim of {backup:.2g} tooth depths (below {LEAST_RIM:g}) fixed around the bore; root stress and "
+        "deflection are underestimated. Specify rim and web in body (rim_thickness, web_thickness) and set width = "
+        '"solid" for its pairs.'
     )
     return (said,)
 
@@ -235,5 +239,5 @@ def width_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
     """On which width a gear carries its load, if the case does not say."""
     if scene.case.gear[gear].face_width is not None:
         return ()
-    remedy = f"Give gear.{gear}.face_width."
-    return (f"Gear {gear}: no face_width was given; assumed default: the load is carried on 1 mm. {remedy}",)
+    remedy = f"Specify gear.{gear}.face_width."
+    return (f"Gear {gear}: face_width not specified, 1 mm assumed. {remedy}",)

@@ -42,9 +42,8 @@ _BENT = -1.2
 
 #: What ISO 6336 says of internal teeth alone.
 _RECALLED_OF_RINGS = (
-    "what ISO 6336 has for internal teeth alone is recalled; q' with 1/z_n2 = 0, Y_F and Y_S at the 60 degree tangent "
-    "(6.2 and 7.2 of part 3) give the printed digits of two published spur rings; Z_D = 1, Y_B of thin rims and a held "
-    "ring as an infinite mass in K_v had no printed example at hand"
+    "internal gears: c' with 1/z_n2 = 0 and Y_F, Y_S at the 60 degree tangent reproduce two published spur ring "
+    "gears; Z_D = 1, Y_B for thin rims and infinite ring mass in K_v are not verified by a published example"
 )
 
 
@@ -116,18 +115,20 @@ def check_pair_to_rate(scene: Scene, name: str) -> None:
         for key, why, example in (
             (
                 "strength",
-                "a rating needs the allowable stress numbers of the material",
+                "required for rating (allowable stress numbers)",
                 'strength = { material = "case-hardened-steel" }',
             ),
-            ("face_width", "a rating is for a face", 'face_width = "20 mm"'),
+            ("face_width", "required for the rating", 'face_width = "20 mm"'),
         ):
             if getattr(scene.case.gear[gear], key) is None:
-                raise InputError(f"gear.{gear}.{key}", "(not given)", f"is missing: {why}", f"write {example}")
+                raise InputError(f"gear.{gear}.{key}", "(not given)", f"is missing: {why}", f"set {example}")
     if part.normal_load(scene.pairs[name]) is None:
-        raise InputError(f"pair.{name}.torque", "(not given)", "is missing, and load too", "give torque or load")
+        raise InputError(
+            f"pair.{name}.torque", "(not given)", "is missing, and no load is specified", "specify torque or load"
+        )
     if part.speed is None:
-        rule = "is missing: dynamic factor, film and load cycles depend on it"
-        raise InputError(f"pair.{name}.speed", "(not given)", rule, 'write speed = "1500 rpm"')
+        rule = "is required for dynamic factor, lubricant film and load cycles"
+        raise InputError(f"pair.{name}.speed", "(not given)", rule, 'set speed = "1500 rpm"')
 
 
 def pair_to_rate(scene: Scene, name: str) -> PairToRate:
@@ -144,7 +145,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
     driver, driven = (gear_body(scene, gear, said, fixed=_stands_still(scene, name, gear)) for gear in gears)
     said += [
-        f"Gear {gear}: C_R takes its inclined web for a straight one of its thickness along the axis."
+        f"Gear {gear}: C_R is computed for a straight web of the same axial thickness."
         for gear in gears
         if (body := scene.gears[gear].body) is not None and body.lean
     ]
@@ -159,7 +160,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     tangential = pair.tangential_load(load)
     speed = (part.speed or math.nan) * pair.driver.teeth / pair.gear(geometry.members[0]).teeth
     if part.lubricant is None:
-        said.append(f"Pair {name}: an oil of ISO VG 220 was assumed (lubricant).")
+        said.append(f"Pair {name}: oil ISO VG 220 assumed (lubricant).")
     viscosity = USUAL_VISCOSITY if part.lubricant is None else part.lubricant.viscosity_40
     first = geometry.members[0] == "driver"
     refuse_fast(part, pair, name)
@@ -180,12 +181,9 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     one, other = (_BENT * (1.0 if bent else operation.reversed_load) for bent in idler)
     own = operation.mean_stress_factor
     if levels and operation.application_factor != 1.0:
-        said.append(
-            f"Pair {name}: application_factor multiplies every level of the spectrum; it is 1 where these are the real "
-            "loads."
-        )
+        said.append(f"Pair {name}: K_A multiplies every level of the spectrum; use 1 if the levels are actual loads.")
     if levels and (operation.idler is not None or operation.reversed_load):
-        said.append(f"Pair {name}: every level of the spectrum bends the teeth to either side in the same ratio.")
+        said.append(f"Pair {name}: the same load ratio of alternating bending is used for all levels of the spectrum.")
     said += _of_its_set(scene, name)
     return PairToRate(
         conditions, pair, load, {key: value for key, value in given.items() if value is not None}, levels,
@@ -223,12 +221,15 @@ def _of_its_set(scene: Scene, name: str) -> list[str]:
     part, operation = scene.case.planetary[found], scene.case.pair[name].operation
     told = f"Pair {name} belongs to planetary set {found}"
     if operation.idler is not None:
-        told += f": the planet's teeth count as bent to either side, and contacts as {operation.loaded_per_turn}"
+        told += (
+            ": alternating bending of the planet teeth is included (Y_M), contacts per revolution "
+            f"{operation.loaded_per_turn}"
+        )
     if set_that_shares(scene.case, name):
-        told += "; K_gamma is that of its planet-load-sharing"
+        told += "; K_gamma from its planet-load-sharing"
     elif operation.mesh_load_factor is None and part.count > 1:
-        told += f"; K_gamma counts as 1, for planetary.{found}.stiffness.ring_mesh is not given"
+        told += f"; K_gamma = 1, planetary.{found}.stiffness.ring_mesh is not specified"
     said = [f"{told}."]
     if part.ring is not None and not scene.pairs[name].internal and scene.case.gear[part.ring].strength is None:
-        said.append(f"Pair {set_pair(found, 'ring')} is not rated: gear.{part.ring}.strength is not given.")
+        said.append(f"Pair {set_pair(found, 'ring')} not rated: gear.{part.ring}.strength is not specified.")
     return said

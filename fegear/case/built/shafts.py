@@ -53,9 +53,9 @@ def check_heights(scene: Scene, pair: str) -> None:
     if abs(higher - given) > _APART:
         raise InputError(
             f"pair.{pair}.axial_offset", f"{given * 1e3:.6g} mm",
-            f"is not where shafts {mesh.shafts[0]} and {mesh.shafts[1]} hold its gears: the driven one "
-            f"stands {higher * 1e3:.6g} mm toward end I",
-            f'write axial_offset = "{higher * 1e3:.6g} mm", or move a gear',
+            f"contradicts the gear positions on shafts {mesh.shafts[0]} and {mesh.shafts[1]}: the driven gear is "
+            f"offset by {higher * 1e3:.6g} mm towards end I",
+            f"set axial_offset = \"{higher * 1e3:.6g} mm\", or move a gear",
         )  # fmt: skip
 
 
@@ -72,10 +72,10 @@ def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
         for n, place in enumerate(part.gears):
             key = f"shaft.{name}.gears.{n}.gear"
             if place.gear not in scene.gears:
-                raise InputError(key, f'"{place.gear}"', "is no gear of this case", nearest(place.gear, scene.gears))
+                raise InputError(key, f'"{place.gear}"', "is not a gear of this case", nearest(place.gear, scene.gears))
             if place.gear in where:
                 raise InputError(
-                    key, f'"{place.gear}"', f"stands on shaft {where[place.gear][0]} already", "name it once"
+                    key, f'"{place.gear}"', f"is already mounted on shaft {where[place.gear][0]}", "mount it once"
                 )
             where[place.gear] = name, place.at
         _refuse_overlap(scene, name)
@@ -88,7 +88,7 @@ def mesh_places(scene: Scene) -> tuple[MeshPlace, ...]:
         ready = [name for name, one in left.items() if where[one.driver][0] in senses]
         if not ready:
             raise InputError(
-                "shaft", ", ".join(sorted(driven)), "drive each other in a loop", "let one drive the others"
+                "shaft", ", ".join(sorted(driven)), "form a closed loop of drives", "choose one shaft as the input"
             )
         for name in ready:
             one = left.pop(name)
@@ -107,7 +107,7 @@ def _refuse_overlap(scene: Scene, shaft: str) -> None:
         if room < -_OVERLAP * min(widths):
             raise InputError(
                 f"shaft.{shaft}.gears", f"{one.gear} and {two.gear}", f"overlap by {-room * 1e3:.4g} mm",
-                "move one of them, or make its face narrower",
+                "move one of them, or reduce its face width",
             )  # fmt: skip
 
 
@@ -137,18 +137,20 @@ def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, flo
         raise InputError(
             f"shaft.{ends[1][0]}.axis", f"{apart * 1e3:.6g} mm from shaft {ends[0][0]}",
             f"is not at the centre distance of pair {name}, {pair.centre_distance * 1e3:.6g} mm",
-            "move one of the axes",
+            "correct the position of one axis",
         )  # fmt: skip
     middles = first.start + ends[0][1], second.start + ends[1][1]
     if abs(middles[0] - middles[1]) >= 0.5 * (pair.driver.face_width + pair.driven.face_width):
         raise InputError(
             f"shaft.{ends[1][0]}.gears", f"middle at {middles[1] * 1e3:.6g} mm",
-            f"does not meet its mate of pair {name} at {middles[0] * 1e3:.6g} mm",
-            "move the gear, or the shaft's start",
+            f"does not mesh axially with its mating gear of pair {name} at {middles[0] * 1e3:.6g} mm",
+            "correct the position of the gear or the start of the shaft",
         )  # fmt: skip
     load = part.normal_load(pair)
     if load is None:
-        raise InputError(f"pair.{name}.load", "(not given)", "is needed to bend its shafts", "give load or torque")
+        raise InputError(
+            f"pair.{name}.load", "(not given)", "is required for the shaft calculation", "specify load or torque"
+        )
     return MeshPlace(name, (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1]), across / apart, sense, pair, load)
 
 
@@ -159,7 +161,10 @@ def _refuse_many(scene: Scene) -> None:
     for key, count, most in (("shaft", len(shafts), _SHAFTS), ("shaft.bearings", bearings, _BEARINGS)):
         if count > most:
             raise InputError(
-                key, f"{count:,} in all", "are more than are solved together", f"give {most} at most; split the case"
+                key,
+                f"{count:,} in all",
+                "exceed the number of meshes that can be solved together",
+                f"specify at most {most}; split the case",
             )
 
 
@@ -211,7 +216,9 @@ def gearbox_of(scene: Scene) -> Gearbox:
             known = scene.case.bearing
             if place.bearing not in known:
                 key = f"shaft.{name}.bearings.{n}.bearing"
-                raise InputError(key, f'"{place.bearing}"', "is no bearing of this case", nearest(place.bearing, known))
+                raise InputError(
+                    key, f'"{place.bearing}"', "is not a bearing of this case", nearest(place.bearing, known)
+                )
             data = known[place.bearing]
             try:
                 made = data.build(mirrored=place.reversed)
@@ -252,11 +259,11 @@ def _around(scene: Scene, shaft: str, number: int, bodies: list[StiffenedShaft])
     key, name = f"shaft.{shaft}.bearings.{number}.around", str(place.around)
     if name not in parts or name == shaft:
         known = [one for one in parts if one != shaft]
-        raise InputError(key, f'"{name}"', "is no other shaft of this case", nearest(name, known))
+        raise InputError(key, f'"{name}"', "is not another shaft of this case", nearest(name, known))
     if (apart := float(np.hypot(*np.subtract(parts[name].axis, own.axis)))) > _APART:
         raise InputError(
-            key, f'"{name}"', f"has its axis {apart * 1e3:.6g} mm from that of {shaft}",
-            "name a shaft on the same axis, or none for the housing",
+            key, f'"{name}"', f"is {apart * 1e3:.6g} mm from the axis of {shaft}",
+            "specify a shaft on the same axis, or none (housing)",
         )  # fmt: skip
     order = list(parts).index(name)
     return Around(order, bodies[order].shaft.place(own.start + place.at - parts[name].start, key))

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.printed import percent
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.tooth_influence import given_settings, planets_taken_alone, teeth_on_pins_differ
 from fegear.case.part import at
@@ -98,8 +99,9 @@ def _source(scene: Scene, name: str) -> Literal["solid", "slices"]:
         one = next(key for key, value in wanted.items() if value == "slices")
         other = next(key for key, value in wanted.items() if value == "solid")
         raise InputError(
-            one, '"slices"', f"contradicts {other}: gear {name} is solved once in a case, as a solid or in slices",
-            "write the same for both, or ask for one of them in a case of its own",
+            one, '"slices"', f"contradicts {other}: gear {name} must use the same width model (\"solid\" or "
+                             "\"slices\") throughout the case",
+            "set the same width model for both, or use a separate case",
         )  # fmt: skip
     table = scene.case.stiffness
     tabled = table.face_positions is not None and table.gear in (None, name)
@@ -129,8 +131,9 @@ def check_source(scene: Scene, name: str, key: str, source: str) -> None:
         return
     other = next((f"pair.{pair}.width" for pair in _widths(scene, name)), "stiffness.source")
     raise InputError(
-        key, f'"{source}"', f"contradicts {other}: gear {name} is solved once in a case, as a solid or in slices",
-        "write the same for both, or ask for one of them in a case of its own",
+        key, f'"{source}"', f"contradicts {other}: gear {name} must use the same width model (\"solid\" or "
+                            "\"slices\") throughout the case",
+        "set the same width model for both, or use a separate case",
     )  # fmt: skip
 
 
@@ -167,24 +170,24 @@ def check_solid_gear(scene: Scene, name: str) -> None:
     part, sliced = scene.case.gear[name], _source(scene, name) == "slices"
     if sliced and part.internal:
         raise InputError(
-            f"gear.{name}.internal", "true", "is not known to slices, whose laws were fitted to external gears",
-            'solve the gear as a solid: write "solid" for "slices"',
+            f"gear.{name}.internal", "true", 'is not available with width = "slices" (external gears only)',
+            'set width = "solid"',
         )  # fmt: skip
     if sliced and part.body is not None:
         raise InputError(
-            f"gear.{name}.body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
-            'solve the gear as a solid: write "solid" for "slices"',
+            f"gear.{name}.body", "web and hub", 'are not available with width = "slices" (solid disc only)',
+            'set width = "solid"',
         )  # fmt: skip
     check_ends(scene, name, _wide_pairs(scene))
     if part.face_width is None:
         raise InputError(
-            f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",
-            'write face_width = "20 mm", or leave face_positions out',
+            f"gear.{name}.face_width", "(none)", "is required for 3D gears",
+            'set face_width = "20 mm", or remove face_positions',
         )  # fmt: skip
     if part.tooth_mesh is not None:
         raise InputError(
-            f"gear.{name}.tooth_mesh", f'"{part.tooth_mesh}"', "is a plane mesh, and solid teeth are meshed by fegear",
-            "leave tooth_mesh out, or leave face_positions out",
+            f"gear.{name}.tooth_mesh", f'"{part.tooth_mesh}"', "is a 2D mesh and cannot be used for a 3D gear",
+            "remove tooth_mesh or face_positions",
         )  # fmt: skip
     from fegear.fem.solid.settings import check_solid
 
@@ -213,16 +216,15 @@ def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
     if driven is not None and drives is not None and body.even:
         raise InputError(
             f"gear.{name}.body.holes.tooth", tooth,
-            f"stands to the holes with the flank that pair {driven} loads, and pair {drives} loads the other one",
-            "leave tooth out, for the mean of all teeth, or load each pair in a case of its own; in one angle changes "
-            "sign and teeth are counted the other way",
+            f"refers to the flank loaded in pair {driven}; pair {drives} loads the other flank",
+            "remove tooth (mean of all teeth), or use one case for each pair; in one of them angle changes sign and "
+            "the teeth are counted in the other direction",
         )  # fmt: skip
     if driven is not None and drives is not None:
         raise InputError(
-            f"gear.{name}.body", "web_inclination" if body.lean else "off the middle of the face",
-            f"counts toward end II, which pairs {driven} and {drives} have at opposite ends of gear {name}: "
-            "it is driven in one and drives in the other",
-            "load each pair in a case of its own; in one all of web_offset, web_inclination and hub_offset change sign",
+            f"gear.{name}.body", "web_inclination" if body.lean else "off mid-face",
+            f"is ambiguous for idler {name}: end II is at opposite ends in pairs {driven} and {drives}",
+            "use one case for each pair; in one of them web_offset, web_inclination and hub_offset change sign",
         )  # fmt: skip
 
 
@@ -302,7 +304,7 @@ def solid_support_remarks(name: str, influence: SolidInfluence, tooth: int | Non
     if teeth is None:
         return (planets_taken_alone(name),)
     spread = teeth_on_pins_differ(
-        name, support.pins, "at half height in the middle of the face", teeth.deflection, teeth.root_tension
+        name, support.pins, "at half tooth height, mid-face", teeth.deflection, teeth.root_tension
     )
     return spread, planets_taken_alone(name)
 
@@ -310,20 +312,21 @@ def solid_support_remarks(name: str, influence: SolidInfluence, tooth: int | Non
 def _over_holes(name: str, holes: WebHoles, teeth: UnevenTeeth, tooth: int | None) -> str:
     """How far teeth over holes depart from their mean, and which of them most."""
     c, tension, count = teeth.deflection, teeth.root_tension, holes.count
-    what = f"the {count} holes of its web" if count > 1 else "the hole of its web"
+    what = f"the {count} web holes" if count > 1 else "the web hole"
     if c.size == 1:
-        return f"Gear {name}: all teeth stand alike to {what}; the stress at the holes' edges is neglected."
+        return f"Gear {name}: all teeth are identical relative to {what}; stress at the hole edges is not computed."
     off, under = c / c.mean() - 1.0, tension / tension.mean() - 1.0
     stiff, soft, low, high = (int(i) for i in (off.argmin(), off.argmax(), under.argmin(), under.argmax()))
-    taken = "the mean compliance and stress of all teeth"
+    taken = "mean compliance and stress of all teeth"
     if tooth is not None:
-        taken = f"all teeth as if they stood to the holes as tooth {tooth} does"
+        taken = f"those of tooth {tooth} for all teeth"
     return (
-        f"Gear {name}: over {what} {c.size} teeth in a row differ. Loaded at half height in the middle of the "
-        f"face, c_self of tooth {stiff}, the stiffest, is {off[stiff]:+.2%} of its mean over the teeth, of tooth "
-        f"{soft}, the softest, {off[soft]:+.2%}; root tension {under[low]:+.2%} (tooth {low}) to {under[high]:+.2%} "
-        f"(tooth {high}). Tables, pairs and sets take {taken}; what holes add to the "
-        "transmission error at their own frequency, and the stress at their edges, are neglected."
+        f"Gear {name}: compliance varies over {c.size} consecutive teeth because of {what}. Load at half tooth "
+        f"height, mid-face: c_self of tooth {stiff} (stiffest) {percent(off[stiff], signed=True)}, of tooth {soft} "
+        f"(most compliant) {percent(off[soft], signed=True)} from the mean; root stress, tension side, "
+        f"{percent(under[low], signed=True)} (tooth {low}) to {percent(under[high], signed=True)} (tooth {high}). "
+        f"Tables, pairs and planetary sets use {taken}; hole-order transmission error and stress at the hole edges "
+        "are neglected."
     )
 
 

@@ -74,8 +74,9 @@ def _ends_of_profile(
             continue
         here, there = (float(gear.tooth.radius_of_roll(t)) * gear.module * 1e3 for t in (at, end))
         yield (
-            f"Gear {name}: its {what} ends at radius {here:.6g} mm, before the {side} end of the active profile at "
-            f"{there:.6g} mm; beyond, it is held at {value * 1e6:.4g} um. Extend the table to the end of the profile."
+            f"Gear {name}: {what} ends at radius {here:.6g} mm, before the {side} end of the active profile at "
+            f"{there:.6g} mm; last value {value * 1e6:.4g} um used beyond it. Extend the table to the end of the "
+            "profile."
         )
 
 
@@ -86,6 +87,6 @@ def _ends_of_face(pair: GearPair, member: Member, name: str, what: str, z: Array
         if abs(there) - abs(at) <= _UNCOVERED * width or abs(at) > abs(there):
             continue
         yield (
-            f"Gear {name}: its {what} ends at z = {at * 1e3:.6g} mm, before end {end} of the face at "
-            f"{there * 1e3:.6g} mm; beyond, its last values are held. Extend the table to the end of the face."
+            f"Gear {name}: {what} ends at z = {at * 1e3:.6g} mm, before end {end} of the face at {there * 1e3:.6g} "
+            "mm; last values used beyond it. Extend the table to the end of the face."
         )

@@ -26,7 +26,7 @@ _NAMES: dict[Kind, Deviation] = {
 def tolerance_part(scene: Scene) -> TolerancePart:
     """``[robustness]``, which the case must have."""
     if scene.case.robustness is None:
-        raise InputError("robustness", "(not given)", "is needed to draw deviations", "write a table [robustness]")
+        raise InputError("robustness", "(not given)", "is required to sample deviations", "add a table [robustness]")
     return scene.case.robustness
 
 
@@ -37,11 +37,14 @@ def chosen_pair(scene: Scene) -> tuple[str, ...]:
         return ()
     if part.pair is not None:
         if part.pair not in scene.pairs:
-            raise InputError("robustness.pair", f'"{part.pair}"', "is no pair of this case")
+            raise InputError("robustness.pair", f'"{part.pair}"', "is not a pair of this case")
         return (part.pair,)
     if len(scene.pairs) != 1:
         raise InputError(
-            "robustness.pair", "(not given)", f"is needed in a case of {len(scene.pairs)} pairs", "name one of them"
+            "robustness.pair",
+            "(not given)",
+            f"is required in a case with {len(scene.pairs)} pairs",
+            "specify one of them",
         )
     return tuple(scene.pairs)
 
@@ -51,8 +54,8 @@ def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
     pairs = (limits.profile_slope, limits.profile_form, limits.helix_slope, limits.pitch)
     if not limits.centre_distance and not any(any(pair) for pair in pairs):
         raise InputError(
-            "robustness", "no tolerance", "leaves nothing to draw",
-            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class or deviations",
+            "robustness", "no tolerance", "gives no deviations to sample",
+            f"specify gear.{gear_name(scene, name, 'driver')}.tolerance_class or deviations",
         )  # fmt: skip
 
 
@@ -63,8 +66,8 @@ def refuse_jammed(pair: GearPair, name: str, limits: Limits) -> None:
     if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
         raise InputError(
             "robustness.centre_distance", f"{limits.centre_distance * 1e3:.6g} mm",
-            f"jams the teeth: pair {name} has {room * 1e3:.4g} mm until they touch on both flanks",
-            f"give a gear of pair {name} a thickness_allowance, or the pair a {other} centre_distance",
+            f"leaves no backlash: pair {name} has only {room * 1e3:.4g} mm of centre distance until both flanks touch",
+            f"specify thickness_allowance of a gear of pair {name}, or a {other} centre_distance",
         )  # fmt: skip
 
 
@@ -92,7 +95,7 @@ def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
             found.append(gear_deviations(drawn, scene.gears[gear], drawn.tolerance_class, kinds))
         except InputError as error:
             missing = ", ".join(one for one in kinds if own_deviation(drawn, one) is None)
-            remedy = f"give {missing} of gear.{gear}.deviations, or name other robustness.deviations"
+            remedy = f"specify {missing} of gear.{gear}.deviations, or change robustness.deviations"
             error = type(error)(error.key, error.value, error.rule, remedy)
             raise at(f"gear.{gear}", error, None if drawn.is_helical else {"normal_module": "module"}) from None
 
@@ -115,11 +118,11 @@ def untold(scene: Scene, gears: tuple[str, str], usual: tuple[Kind, ...]) -> tup
             continue
         missing = [kind for kind in kinds if own_deviation(part, kind) is None]
         if len(missing) == len(kinds):
-            told.append(f"Gear {gear} has no tolerance_class: its flanks are taken as the drawing's in every draw.")
+            told.append(f"Gear {gear}: no tolerance_class specified; nominal flanks used in every sample.")
         elif missing:
             told.append(
-                f"Gear {gear} has no tolerance_class, and no {', '.join(missing)} among its own deviations: those are "
-                "taken as the drawing's in every draw."
+                f"Gear {gear}: no tolerance_class and no {', '.join(missing)} specified in its deviations; nominal "
+                "values of these used in every sample."
             )
     return tuple(told)
 

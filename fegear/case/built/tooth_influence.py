@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import RangeError
+from fegear.base.printed import percent
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.accuracy import AccuracyPart
 from fegear.case.part import at
@@ -165,24 +166,26 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
     low, high = influence.gear.involute_radii
     each = influence.over_the_teeth([0.5 * (low + high)], [influence.reference_half_width])
     c, tension = each["c_self"][:, 0], each["root_tension"][:, 0]
-    return teeth_on_pins_differ(name, support.pins, "at half height", c, tension), apart
+    return teeth_on_pins_differ(name, support.pins, "at half tooth height", c, tension), apart
 
 
 def teeth_on_pins_differ(name: str, pins: int, where: str, c: Array, tension: Array) -> str:
     """How far c_self and root tension of teeth on pins, shape (T,), depart from their means."""
     return (
-        f"Gear {name}: on {pins} pins {c.size} teeth in a row differ. Loaded {where}, c_self is "
-        f"{c.min() / c.mean() - 1.0:+.1%} to {c.max() / c.mean() - 1.0:+.1%} of its mean over the teeth, root tension "
-        f"{tension.min() / tension.mean() - 1.0:+.1%} to {tension.max() / tension.mean() - 1.0:+.1%}. Tables, pairs "
-        "and sets take the mean compliance and stress of all teeth."
+        f"Gear {name}: compliance varies over {c.size} consecutive teeth because of its {pins} pins. Load {where}: "
+        f"c_self {percent(c.min() / c.mean() - 1.0, signed=True)} to "
+        f"{percent(c.max() / c.mean() - 1.0, signed=True)} from the mean, root stress, tension side, "
+        f"{percent(tension.min() / tension.mean() - 1.0, signed=True)} to "
+        f"{percent(tension.max() / tension.mean() - 1.0, signed=True)}. Tables, pairs and planetary sets use the "
+        "mean of all teeth."
     )
 
 
 def planets_taken_alone(name: str) -> str:
     """What a ring that is not held all round leaves out."""
     return (
-        f"Gear {name}: its rim deflects as a whole; planets of a set are each taken alone with the ring, and what one "
-        "planet's load does to the rim below another is neglected."
+        f"Gear {name}: flexible ring rim; each planet-ring mesh is computed separately, rim deflection at one planet "
+        "due to the others is neglected."
     )
 
 
@@ -190,16 +193,16 @@ def _tolerance_remarks(name: str, influence: GearInfluence, tolerance: float) ->
     rounds = influence.rounds
     if not rounds or (len(rounds) == 1 and rounds[0].error <= tolerance):
         return ()
-    steps = ", ".join(f"{one.error:.1e} with {one.unknowns} unknowns a tooth" for one in rounds)
+    steps = ", ".join(f"{percent(one.error)} with {one.unknowns} unknowns per tooth" for one in rounds)
     last = rounds[-1]
     if last.error <= tolerance:
-        end = "the last is kept."
+        end = "the last mesh is used."
     else:
         worst = max(last.errors, key=lambda key: last.errors[key])
-        end = f"the last is kept, though {worst} misses the tolerance: it is the finest mesh, or the last one tried."
+        end = f"the last mesh (finest allowed) is used although {worst} exceeds the tolerance."
     times = "once" if len(rounds) == 2 else f"{len(rounds) - 1} times"
-    how = f"was refined {times}" if len(rounds) > 1 else "was solved"
-    return (f"Gear {name} {how} for the tolerance {tolerance:.2g}; largest estimated errors: {steps}; {end}",)
+    how = f"mesh refined {times}" if len(rounds) > 1 else "solved"
+    return (f"Gear {name}: {how} for tolerance {100.0 * tolerance:g} %; maximum estimated errors: {steps}; {end}",)
 
 
 def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:

@@ -42,8 +42,8 @@ def torque_ripples(scene: Scene, part: TrainPart, train: Train) -> tuple[tuple[T
     """
     if not part.torque_ripple:
         raise InputError(
-            "effects.torque_ripple", "true", "finds no train.torque_ripple",
-            'write [train.torque_ripple], motor = { body = "motor", order = 2, amplitude = "8 N*m" }',
+            "effects.torque_ripple", "true", "has no effect: train.torque_ripple is not specified",
+            'add [train.torque_ripple] with motor = { body = "motor", order = 2, amplitude = "8 N*m" }',
         )  # fmt: skip
     found: list[TorqueRipple] = []
     means: dict[str, float] = {}
@@ -65,7 +65,7 @@ def _of_harmonic(name: str, part: TorqueRipplePart, train: Train, ratio: Fractio
         if mean == 0.0:
             raise InputError(
                 f"train.torque_ripple.{name}.amplitude_over_mean", part.amplitude_over_mean,
-                f"refers to the constant torque of body {part.body}, which has none", 'write amplitude = "8 N*m"',
+                f"refers to the constant torque of body {part.body}, which has none", 'set amplitude = "8 N*m"',
             )  # fmt: skip
         size = (part.amplitude_over_mean or 0.0) * abs(mean)
         phase += math.pi if mean < 0.0 else 0.0
@@ -80,17 +80,19 @@ def _of_file(scene: Scene, name: str, part: TorqueRipplePart, file: str, ratio: 
     columns = read_columns(scene.file(file, key), key, {"angle": "angle", "time": "time", "torque": "torque"})
     places = [column for column in ("angle", "time") if column in columns]
     if len(places) != 1 or "torque" not in columns:
-        raise InputError(key, f'"{file}"', "needs the columns angle [deg] or time [s], one of them, and torque [N*m]")
+        raise InputError(
+            key, f'"{file}"', "requires the columns angle [deg] or time [s], one of them, and torque [N*m]"
+        )
     place, torque = columns[places[0]], columns["torque"]
     if place.size < _FEWEST or not np.all(np.diff(place) > 0.0):
-        rule = f"needs at least {_FEWEST} lines, and {places[0]} must rise from each to the next"
+        rule = f"needs at least {_FEWEST} lines, with {places[0]} strictly increasing"
         raise InputError(key, f'"{file}"', rule)
     _refuse_open(torque, key, file)
     if places[0] == "time":
         if part.order_of is not None:
             raise InputError(
-                f"train.torque_ripple.{name}.order_of", f'"{part.order_of}"', "has no meaning with torques over time",
-                "leave it out",
+                f"train.torque_ripple.{name}.order_of", f'"{part.order_of}"', "is not used with torques over time",
+                "remove it",
             )  # fmt: skip
         return ripple_of_curve(name, part.body, place, torque, part.harmonics)
     return ripple_of_curve(name, part.body, place / (2.0 * math.pi), torque, part.harmonics, ratio)
@@ -100,6 +102,6 @@ def _refuse_open(torque: Array, key: str, file: str) -> None:
     """Refuse a torque that ends elsewhere than it began: its period is not all there."""
     if abs(torque[-1] - torque[0]) > _CLOSED * np.ptp(torque):
         raise InputError(
-            key, f'"{file}"', f"begins with {torque[0]:.6g} N*m and ends with {torque[-1]:.6g} N*m, so it is no period",
-            "add the line one period after the first, with the first torque",
+            key, f'"{file}"', f"begins with {torque[0]:.6g} N*m and ends with {torque[-1]:.6g} N*m: not a full period",
+            "add a last line one period after the first with the same torque",
         )  # fmt: skip

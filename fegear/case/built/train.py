@@ -54,7 +54,7 @@ LOAD_AGREES = 2e-3
 def train_part(scene: Scene) -> TrainPart:
     """The case's train, or a refusal."""
     if scene.case.train is None:
-        raise InputError("train", "(not given)", "is needed for this result", "describe bodies, meshes and torques")
+        raise InputError("train", "(not given)", "is required for this result", "specify bodies, meshes and torques")
     return scene.case.train
 
 

@@ -58,8 +58,8 @@ _ALL = {
     "helix_angle": ("Helix angle", "20 deg", "angle"),
     "speed": ("Speed of the pinion", "1500 rpm", "speed"),
     "tip_relief": ("Tip relief of both gears, at the tip", _NONE, "length"),
-    "relief_length": ("Its length along the line of action", _NONE, "length"),
-    "lead_error": ("Lead error over the face", _NONE, "length"),
+    "relief_length": ("Length of the relief along the line of action", _NONE, "length"),
+    "lead_error": ("Helix deviation over the face width", _NONE, "length"),
 }
 
 
@@ -80,19 +80,17 @@ class Answers:
     def __post_init__(self) -> None:
         """Refuse what cannot be read, or has no meaning for this kind."""
         if self.kind not in KINDS:
-            raise InputError("--kind", f'"{self.kind}"', "is no kind of case", nearest(self.kind, KINDS))
+            raise InputError("--kind", f'"{self.kind}"', "is an unknown kind of case", nearest(self.kind, KINDS))
         asked = {question.name: question for question in questions(self.kind, self.given)}
         for name, text in self.given.items():
             if name not in asked:
                 raise InputError(
-                    _option(name), f'"{text}"', f'has no meaning for a case of kind "{self.kind}"', "leave it out"
+                    _option(name), f'"{text}"', f'is not used for a case of kind "{self.kind}"', "remove it"
                 )
             check(asked[name], len(KINDS[self.kind].gears), text)
         if self.has("tip_relief") != self.has("relief_length"):
             told = f'"{self["tip_relief"]}" over "{self["relief_length"]}"'
-            raise InputError(
-                "--tip-relief", told, "must have both amount and length", 'write for example "20 um" "4 mm"'
-            )
+            raise InputError("--tip-relief", told, "must have both amount and length", 'for example "20 um" "4 mm"')
 
     def __getitem__(self, name: str) -> str:
         """Return an answer, given or assumed."""
@@ -181,12 +179,12 @@ def check(question: Question, gears: int, text: str) -> None:
     key = _option(question.name)
     if question.dimension == "teeth":
         if not all(re.fullmatch(r"[0-9]{1,9}", part) for part in _split(text)):
-            raise InputError(key, f'"{text}"', "must be whole numbers", "write for example 21 53")
+            raise InputError(key, f'"{text}"', "must be whole numbers", "for example 21 53")
         if len(_split(text)) != gears:
             raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, for so many gears")
     elif question.dimension == "numbers":
         if not 1 <= len(_split(text)) <= gears or not all(_number(part) for part in _split(text)):
-            raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "write for example 0.3")
+            raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "for example 0.3")
     elif question.dimension == "rack":
         BasicRack.named(text)
     elif text != question.default and to_si(text, question.dimension, key) <= 0.0:

@@ -33,15 +33,16 @@ _RELIEVED = (*_LOADED, "tip_relief", "relief_length")
 
 #: Kinds by name.
 KINDS: Mapping[str, Kind] = MappingProxyType({
-    "gear": Kind("one gear: its tooth's stiffness and root stress, and the standards' formulas", ("gear",), _TOOTH),
-    "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _RELIEVED),
-    "relief": Kind("a pair whose profile relief is to be designed", ("pinion", "wheel"), _LOADED),
-    "helical": Kind("a helical pair: where its face carries, transmission error, errors of its assembly",
+    "gear": Kind("gear: tooth stiffness and root stress, formulas of the standards", ("gear",), _TOOTH),
+    "pair": Kind("gear pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _RELIEVED),
+    "relief": Kind("gear pair: design of profile modification", ("pinion", "wheel"), _LOADED),
+    "helical": Kind("helical pair: load distribution over the face width, transmission error, misalignment",
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
-    "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _RELIEVED),
-    "planetary": Kind("a planetary set: load sharing of its planets, phases, modes, vibration", ("sun", "planet"),
+    "train": Kind("drive train dynamics: motor, gear pair, driven machine; resonances, dynamic factor",
+                  ("pinion", "wheel"), _RELIEVED),
+    "planetary": Kind("planetary gear set: planet load sharing, phasing, modes, vibration", ("sun", "planet"),
                       _LOADED),
-    "ring": Kind("a ring gear: stiffness and root stress of its internal teeth", ("ring",),
+    "ring": Kind("internal gear: tooth stiffness and root stress", ("ring",),
                  ("pressure_angle", "profile_shift", "face_width")),
-    "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
+    "study": Kind("root-stress formulas compared with FE for many gears", ("gear",), _TOOTH),
 })  # fmt: skip

@@ -78,18 +78,21 @@ speed = {speed}{speed_note}
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
 _RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
 _NO_RELIEF = 'relief = { tip = { amount = "15 um", length = "4 mm" } }'
-_LINE_ERROR = "line_error = {{ over_face = {lead_error} }}     # gap along the line of action, over the whole face\n"
+_LINE_ERROR = (
+    "line_error = {{ over_face = {lead_error} }}     # gap along the line of action, over the full face width\n"
+)
 _NO_LINE_ERROR = (
-    '# line_error = { over_face = "10 um" }     # off: lead error over the face; misalignment = true lets it count\n'
+    '# line_error = { over_face = "10 um" }     # off: helix deviation over the face width; also set misalignment = '
+    "true\n"
 )
 _EFFECTS = {
     "tip_relief": (
-        "relief = true     # on: the tip reliefs of both gears count",
+        "relief = true     # on: tip relief of both gears",
         f"# relief = true     # off: for gears with {_NO_RELIEF}",
     ),
     "lead_error": (
-        "misalignment = true     # on: the lead error counts",
-        "# misalignment = true     # off: for a pair with line_error or misalignment",
+        "misalignment = true     # on: helix deviation",
+        "# misalignment = true     # off: for pairs with line_error or misalignment",
     ),
 }
 #: Column of comments behind keys.

@@ -25,7 +25,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.tooth import Tooth
 
-_REASON = "why the formula gives nothing; empty where it does"
+_REASON = "reason if the formula gives no value"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +54,10 @@ class ComplianceAnswers:
     """
 
     total: Array = shown(
-        "um.mm/N", "by the formula, deflection along the line of action per line load", name="compliance",
+        "um.mm/N", "deflection by the formula along the line of action per line load", name="compliance",
         label="deflection per line load",
     )  # fmt: skip
-    parts: Array = shown("um.mm/N", "part of the formula's sum")
+    parts: Array = shown("um.mm/N", "component of the formula")
     reasons: tuple[str, ...] = shown("", _REASON, name="reason")
 
 
@@ -66,15 +66,15 @@ class PairReference(ReadOnlyArrays):
     """Finite elements of one tooth pair over contact positions, shape (N,); compliances per unit line load."""
 
     x: Array = shown(
-        "mm", "contact point from the pitch point, positive toward the driver's tip",
+        "mm", "contact point from the pitch point, positive towards the driver's tip",
         label="contact point from the pitch point",
     )  # fmt: skip
-    driver: Array = shown("um.mm/N", "FE, the driver's tooth with its side of the contact", name="driver_fe")
-    driven: Array = shown("um.mm/N", "FE, the driven tooth with its side of the contact", name="driven_fe")
-    half_width: Array = shown("mm", "Hertz's half-width under the line load", name="contact_half_width")
+    driver: Array = shown("um.mm/N", "FE, driver tooth with its share of the contact deformation", name="driver_fe")
+    driven: Array = shown("um.mm/N", "FE, driven tooth with its share of the contact deformation", name="driven_fe")
+    half_width: Array = shown("mm", "Hertzian half-width under the line load", name="contact_half_width")
 
     @property
-    @shows("um.mm/N", "FE, one tooth pair with its contact", name="compliance_fe")
+    @shows("um.mm/N", "FE, one tooth pair including contact", name="compliance_fe")
     def total(self) -> Array:
         """Deflection of the pair per unit line load [m^2/N]."""
         return self.driver + self.driven
@@ -92,7 +92,7 @@ def root_stress_answers(tooth: Tooth, radii: ArrayLike) -> dict[str, RootStressA
         reasons = [o.reason for o in outcomes]
         for i in np.flatnonzero(values[:, 0] <= 0.0):
             # low loads on teeth with wide roots: there the radial compression outweighs the bending
-            reasons[i] = f"gives {values[i, 0]:.3g}, no tension: its compression outweighs its bending"
+            reasons[i] = f"gives {values[i, 0]:.3g}: radial compression exceeds bending"
             values[i] = np.nan
         found[name] = RootStressAnswers(values[:, 0], values[:, 1], values[:, 2], tuple(reasons))
     return found
@@ -184,7 +184,7 @@ def refuse_wide_contacts(pair: GearPair, line_load: float, key: str) -> None:
     except InputError as error:
         raise InputError(key, value, f"{error.key} = {error.value} {error.rule}", remedy) from None
     if not contact_fits(pair, x, width).any():
-        rule = f"gives contacts of {width.min() * 1e3:.4g} mm half-width at least, wider than the flanks"
+        rule = f"gives a contact half-width of at least {width.min() * 1e3:.4g} mm, wider than the flanks"
         raise InputError(key, value, rule, remedy)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.printed import percent
 
 #: A formula is near where it is within this of the finite elements, and so many of the points there have to be.
 NEAR, SURE = 0.10, 0.95
@@ -158,22 +159,22 @@ def sentence(found: Reach, words: Mapping[str, tuple[str, str]], rated: str = "l
         What loads the percentiles `Reach.rated` are of.
     """
     if not np.isfinite(found.median):
-        return f"{found.formula} gives nothing anywhere in this population."
-    silent = f"; it gives nothing at {found.silent:.0%} of the points" if found.silent >= 0.005 else ""
+        return f"{found.formula} gives no value for any gear of this population."
+    silent = f"; no value at {percent(found.silent, whole=True)} of the points" if found.silent >= 0.005 else ""
     over = f"{_ends(found.low, found.median, found.high)} over all loads{silent}"
     if np.isfinite(found.rated[1]):
         over = f"{_ends(*found.rated)} under {rated}, {over}"
-    whole = f"nine in ten of its answers are {over}"
+    whole = f"90 % of its values are {over}"
     if found.range is None:
-        text = f"{found.formula} is within {NEAR:.0%} of the finite elements in no range worth naming; {whole}."
+        text = f"{found.formula}: no parameter range found in which it is within {100.0 * NEAR:g} % of FE; {whole}."
     else:
         where = " and ".join(_condition(c, words) for c in found.range)
         text = (
-            f"{found.formula} is within {NEAR:.0%} of the finite elements {'for ' + where if where else 'everywhere'}, "
-            f"which is {found.part:.0%} of the population (true of {found.held:.0%} of {found.held_points} points on "
-            f"gears on which the range was not looked for); {whole}."
+            f"{found.formula} is within {100.0 * NEAR:g} % of FE {'for ' + where if where else 'everywhere'}, "
+            f"{percent(found.part, whole=True)} of the population (confirmed for {percent(found.held, whole=True)} "
+            f"of {found.held_points} points on other gears); {whole}."
         )
-    return text.replace("%", " %")
+    return text
 
 
 def _ends(low: float, median: float, high: float) -> str:
@@ -186,6 +187,6 @@ def _condition(c: Condition, words: Mapping[str, tuple[str, str]]) -> str:
 
 
 def off(ratio: float) -> str:
-    """How far off a ratio is, in words: "3% low", "right"."""
+    """How far off a ratio is, in words: "3 % low", "right"."""
     miss = ratio - 1.0
-    return "right" if abs(miss) < 0.005 else f"{abs(miss):.0%} {'high' if miss > 0.0 else 'low'}"
+    return "right" if abs(miss) < 0.005 else f"{percent(abs(miss), whole=True)} {'high' if miss > 0.0 else 'low'}"

@@ -96,9 +96,7 @@ def drawn_gears(base: Gear, bounds: Mapping[str, tuple[float, float]], samples: 
             if len(found) == samples:
                 break
     if len(found) < samples:
-        raise InputError(
-            "study", f"{len(found)} of {tried} draws", "gave a tooth that can be cut", "choose narrower ranges"
-        )
+        raise InputError("study", f"{len(found)} of {tried} samples", "gave a feasible tooth", "choose narrower ranges")
     return Population(tuple(found), tried)
 
 

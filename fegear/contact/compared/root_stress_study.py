@@ -69,7 +69,7 @@ def verdict(ratio: float) -> str:
     if not np.isfinite(ratio):
         return "breaks down"
     if abs(ratio - 1.0) <= BAND:
-        return f"within {BAND:.0%}".replace("%", " %")
+        return f"within {100.0 * BAND:g} %"
     return "high" if ratio > 1.0 else "low"
 
 
@@ -137,7 +137,7 @@ def root_stress_study(
             try:
                 known = solve_gear(gear, settings, reach=0, estimate_error=estimate_error, cache=cache)
             except FegearError as error:
-                gear, reason = None, f"no finite elements: {error}"
+                gear, reason = None, f"no FE solution: {error}"
             else:
                 value, arc = known.largest_root_stress(0, "tension", radii)
                 fillet = known.fine.fillets["tension"]

@@ -1,1 +1,1 @@
-"""Loaded pairs of plane teeth: compliance, load sharing, transmission error, root stress over the path of contact."""
+"""Loaded pairs, plane (2D): compliance, load sharing, transmission error, root stress over the path of contact."""

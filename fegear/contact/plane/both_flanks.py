@@ -66,7 +66,7 @@ def fillet_trace(engagement: Engagement, member: Member, load: float) -> FilletT
     curves = {side: source.fillet_curve(0, side) for side in _FILLETS}
     if any(curve is None for curve in curves.values()):
         raise InputError(
-            "compliance.source", "a formula", "knows no stress along the fillet, which bending to both sides needs",
+            "compliance.source", "a formula", "gives no stress along the fillet, which alternating bending requires",
             'set compliance = { source = "fe" }',
         )  # fmt: skip
     at = with_peaks(engagement, load, roll_positions(engagement, _POSITIONS), {member: (source,)})
@@ -99,28 +99,30 @@ class AlternatingStress:
         Estimated [Pa]; NaN where nothing tells them.
     """
 
-    place: float = shown("", "of the most pulled place along the fillet, from the root land, in modules")
-    highest: float = shown("MPa", "largest stress at this place over a turn", name="stress_highest")
-    lowest: float = shown("MPa", "smallest stress at this place over a turn", name="stress_lowest")
+    place: float = shown(
+        "", "arc length of the point of maximum tensile stress on the fillet, from the root land, in modules"
+    )
+    highest: float = shown("MPa", "maximum stress at this point over one revolution", name="stress_highest")
+    lowest: float = shown("MPa", "minimum stress at this point over one revolution", name="stress_lowest")
     highest_error: float = shown(
         "MPa", "estimated error of stress_highest", name="stress_highest_error", default=math.nan
     )
     lowest_error: float = shown("MPa", "estimated error of stress_lowest", name="stress_lowest_error", default=math.nan)
 
     @property
-    @shows("MPa", "highest less lowest stress", name="stress_range")
+    @shows("MPa", "stress range (maximum - minimum)", name="stress_range")
     def range(self) -> float:
         """[Pa]."""
         return self.highest - self.lowest
 
     @property
-    @shows("MPa", "mean of highest and lowest stress", name="stress_mean")
+    @shows("MPa", "mean stress", name="stress_mean")
     def mean(self) -> float:
         """[Pa]."""
         return 0.5 * (self.highest + self.lowest)
 
     @property
-    @shows("", "lowest over highest stress, R of the mean-stress factor Y_M", name="stress_ratio")
+    @shows("", "stress ratio R (minimum / maximum) for Y_M", name="stress_ratio")
     def ratio(self) -> float:
         """R."""
         return self.lowest / self.highest

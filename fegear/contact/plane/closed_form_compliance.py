@@ -82,7 +82,7 @@ class ConstantCompliance(Rigid):
 
     def describe(self) -> str:
         """Return source and limits."""
-        return f"{self.source}; the same at every position, no coupling to the neighbouring teeth"
+        return f"{self.source}; constant over the mesh, no coupling of neighbouring teeth"
 
 
 def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
@@ -116,5 +116,5 @@ def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
     elif abs(exponent - EXPONENT) < 1e-9:
         power = float(here[0] / w**EXPONENT)
     else:
-        raise InputError("compliance.source", f'"{name}"', f"has a contact that grows with the power {exponent:.4f}")
+        raise InputError("compliance.source", f'"{name}"', f"has a contact deformation of exponent {exponent:.4f}")
     return ClosedFormCompliance(gear, formula, spline(lengths, own), b, max(slope, 0.0), power)

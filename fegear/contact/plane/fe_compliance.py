@@ -136,8 +136,8 @@ class FiniteElementCompliance(AlikeTeeth):
 
     def describe(self) -> str:
         """Return what it includes."""
-        coupled = f"neighbours up to {self.reach} teeth away" if self.reach else "no neighbours"
-        return f"finite elements of the whole gear, {coupled}, contact by the Hertzian half-width"
+        coupled = f"coupling to neighbours up to {self.reach} teeth away" if self.reach else "no neighbour coupling"
+        return f"FE of the full gear, {coupled}, contact with Hertzian half-width"
 
 
 def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) -> Array:
@@ -156,8 +156,7 @@ def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) ->
         raise RangeError(
             "radius",
             f"{float(r[off].flat[0]) * 1e3:.6g} mm",
-            f"is off the flank, which runs from {math.hypot(rb, lowest) * 1e3:.6g} mm "
-            f"to {math.hypot(rb, highest) * 1e3:.6g} mm",
+            f"is outside the flank, {math.hypot(rb, lowest) * 1e3:.6g} mm to {math.hypot(rb, highest) * 1e3:.6g} mm",
         )
     return np.clip(length, lowest, highest)
 

@@ -60,7 +60,7 @@ class FormulaRootStress(AlikeTeeth):
     @property
     def remarks(self) -> tuple[str, ...]:
         """What is to be said of it."""
-        others = "; blank there, and extremes are those of the other loads" if self.over_length else ""
+        others = "; left blank, extremes are from the other loads" if self.over_length else ""
         return (*self.own_remarks, *(f"{one}{others}" for one in self.missing))
 
     @property
@@ -99,7 +99,7 @@ class FormulaRootStress(AlikeTeeth):
 
     def describe(self) -> str:
         """Return source and limits."""
-        return f"{self.formula.citation}: {self.formula.compared}; neighbouring teeth's loads do not count"
+        return f"{self.formula.citation}: {self.formula.compared}; loads on neighbouring teeth not included"
 
 
 def formula_root_stress(
@@ -130,7 +130,7 @@ def formula_root_stress(
     """
     if name not in ROOT_STRESS_SOURCES:
         raise InputError(
-            "source", f'"{name}"', f"is no root-stress formula; known are {', '.join(ROOT_STRESS_SOURCES)}"
+            "source", f'"{name}"', f"is an unknown root-stress formula; available: {', '.join(ROOT_STRESS_SOURCES)}"
         )
     source, rb = ROOT_STRESS_SOURCES[name], gear.base_radius
     low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (lowest, highest))
@@ -171,7 +171,7 @@ def _root_tension(source: RootStressSource, gear: Gear, radius: float) -> RootSt
     """What a formula gives for a load at a radius [modules]; compression is no root tension."""
     found = source.formula(gear.external_tooth, radius)
     if not found.stress > 0.0:
-        raise RangeError("root tension", f"{found.stress:.3g}", "is none: its compression outweighs its bending")
+        raise RangeError("root tension", f"{found.stress:.3g}", "is not positive: radial compression exceeds bending")
     return found
 
 

@@ -105,7 +105,7 @@ def share_load(
         raise InputError(
             "pair",
             f"({int((~somewhere).sum())} of {positions} roll positions)",
-            "has no tooth pair in reach of the line of action there",
+            "no tooth pair in contact there",
             "increase the contact ratio",
         )
     near = reach.any(axis=(1, 2))  # pairs that are nowhere in reach would only cost time
@@ -198,8 +198,8 @@ def _refuse_wide_contact(diagonal: Array, kappa: Array, total: Array) -> None:
         raise RangeError(
             "load",
             f"{np.broadcast_to(total, bad.shape)[bad][0]:.6g} N",
-            "makes the Hertzian contact so wide that a tooth pair has no positive stiffness left",
-            "lower the load, widen the face, or check the compliances given",
+            "is too high: contact width leads to a non-positive tooth pair stiffness",
+            "reduce the load, increase the face width, or check the compliances",
         )
 
 
@@ -308,7 +308,7 @@ def _enumerate(problem: _Problem) -> tuple[Array, Array]:
         shares[:, hit], approach[hit], found[hit] = np.where(active, new, 0.0)[:, right], z[right], True
     if not found.all():
         raise ConvergenceError(
-            f"Load sharing found no consistent set of loaded pairs for {int((~found).sum())} of {size} problems; "
-            "the compliance matrix given is not positive definite. Check the neighbour compliances."
+            f"No consistent load sharing found for {int((~found).sum())} of {size} problems; the compliance matrix "
+            "is not positive definite. Check the neighbour compliances."
         )
     return shares, approach

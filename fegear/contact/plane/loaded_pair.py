@@ -99,7 +99,7 @@ class LoadedPair:
         )
         shifts = [load_shift(found, pair_history(other, self.loads, POSITIONS)) for other in self.shifted]
         error = np.maximum(np.sum(shifts, axis=0), apart) if shifts else None
-        where = ", outside which tip corners touch" if e.corner_contact else ""
+        where = ", corner contact outside it" if e.corner_contact else ""
         return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS)
 
     def _off_path(self, found: PairHistory) -> Array:
@@ -123,7 +123,9 @@ class LoadedPair:
             self.loads,
             i,
             POSITIONS,
-            "integrated exactly between its jumps" if self.exact else "integrated between its geometric jumps",
+            "integrated exactly between discontinuities"
+            if self.exact
+            else "integrated between geometric discontinuities",
             tuple(te.series for te in exact),
             transmission_error_shift(exact[i], self.shifted),
             x=curve.x,

@@ -105,7 +105,7 @@ def reciprocal_series(points: Panels, stiffness: ArrayLike, harmonics: int, term
     """
     stiff, wanted = np.asarray(stiffness, dtype=float), np.unique(np.asarray(terms, dtype=int))
     if not (stiff > 0.0).all():
-        raise InputError("mesh stiffness", float(stiff.min()), "must be positive all over the base pitch")
+        raise InputError("mesh stiffness", float(stiff.min()), "must be positive over the entire base pitch")
     mean = float(stiff @ points.weights / points.period)
     k = stiff / mean
     none = np.zeros(2 * harmonics + 1, dtype=complex)

@@ -87,9 +87,9 @@ def refuse_gaps(pair: GearPair, key: str, *, corner_contact: bool) -> None:
     closed = pair.contact_ratio + corners >= 1.0
     if corner_contact and closed:
         return
-    rule = "is below 1: at some roll positions no tooth pair is on the path of contact"
+    rule = "is below 1: no tooth pair is in contact at some roll positions"
     if not closed:
-        rule += f", and tip corners reach over {corners:.4g} of a base pitch beyond it only"
+        rule += f", and corner contact extends it by {corners:.4g} base pitches only"
     longer = "increase addendum, numbers of teeth or profile shift"
     remedy = f"{longer}, or set effects.corner_contact = true" if closed else longer
     raise InputError(key, f"contact ratio {pair.contact_ratio:.4f}", rule, remedy)

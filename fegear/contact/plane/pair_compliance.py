@@ -95,11 +95,11 @@ class PairCompliance:
         """Refuse helical pairs, and a linear contact without a load to be linear about."""
         if self.pair.driver.helix_angle != 0.0:
             angle = f"helix angle {math.degrees(self.pair.driver.helix_angle):.6g} deg"
-            raise InputError("pair", angle, "is no plane problem: its contact runs along the face", "take spur gears")
+            raise InputError("pair", angle, "is not possible in the plane (2D) model", "use spur gears")
         if self.hertz not in ("load-dependent", "linear", "none"):
             raise InputError("effects.hertz", f'"{self.hertz}"', 'must be "load-dependent", "linear" or "none"')
         if self.hertz == "linear" and not self.nominal_load > 0.0:
-            raise InputError("effects.hertz", '"linear"', "needs a load at which the contact's width is taken")
+            raise InputError("effects.hertz", '"linear"', "requires a load for the contact width")
 
     @property
     def face_width(self) -> float:

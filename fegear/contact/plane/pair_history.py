@@ -39,12 +39,14 @@ class PairHistory:
     x: Array = shown(
         "mm", "position of the pair on the line of action, from the pitch point", label="line of action", table="path"
     )
-    driver_roll_angle: Array = shown("deg", "of the contact point on the driver", name="roll_angle", table="path")
-    load: Array = shown("N", "on the pair along the line of action", label="load on the pair", table="path")
-    share: Array = shown("", "of the total load", table="path")
-    deflection: Array = shown("um", "of both teeth and their contact", table="path")
+    driver_roll_angle: Array = shown(
+        "deg", "radius of the contact point on the driver", name="roll_angle", table="path"
+    )
+    load: Array = shown("N", "load on the tooth pair along the line of action", label="load on the pair", table="path")
+    share: Array = shown("", "share of the total load", table="path")
+    deflection: Array = shown("um", "deflection of both teeth including contact", table="path")
     hertz_pressure: Array = shown(
-        "MPa", "largest pressure of smooth flanks", label="largest Hertzian pressure", table="path"
+        "MPa", "maximum Hertzian pressure (smooth flanks)", label="maximum Hertzian pressure", table="path"
     )
     transmission_error: Array = shown("um", "loaded transmission error")
 

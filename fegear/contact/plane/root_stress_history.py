@@ -199,7 +199,7 @@ def _rows(source: RootStressInfluence, reach: int, tooth: int, radius: Array, si
                 raise InputError(
                     "results",
                     '"root-stress"',
-                    "cannot come from a compliance source that knows deflections alone",
+                    "is not available with this compliance source (deflections only)",
                     'set pair.root_stress.source = "fe" or a formula',
                 )
             found[k] = np.ascontiguousarray(stress.T)

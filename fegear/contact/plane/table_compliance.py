@@ -86,7 +86,7 @@ def fit_compliance(x: ArrayLike, compliance: ArrayLike, fit: Fit = "cubic") -> C
         raise InputError("compliance.fit", f'"{fit}"', 'must be "linear" or "cubic"')
     if at.ndim != 1 or at.shape != c.shape or at.size < least:
         raise InputError(
-            "compliance.file", f"{at.size} entries", f"must have at least {least} positions with one compliance each"
+            "compliance.file", f"{at.size} entries", f"must have at least {least} positions, one compliance each"
         )
     if not (np.isfinite(at).all() and np.isfinite(c).all() and (c > 0.0).all()):
         raise InputError("compliance.file", "an entry", "must be a finite position with a positive compliance")
@@ -150,7 +150,7 @@ class TableCompliance(OneTooth):
 
     def describe(self) -> str:
         """Return what the table includes."""
-        return "compliance from a table, contact included and independent of load, no neighbour coupling"
+        return "compliance from a table, including load-independent contact deformation, no neighbour coupling"
 
 
 def _needed(pair: GearPair, of: Of) -> tuple[float, float]:
@@ -187,9 +187,9 @@ def refuse_table(pair: GearPair, x: ArrayLike, compliance: ArrayLike, of: Of = "
     if (part := _left_out(pair, at, of)) > _LEFT_OUT:
         raise InputError(
             "compliance.file", f"x from {_ends(at)}",
-            f"must cover the path of contact, {_ends(needed)}, but for 15 % of it at either end; {100.0 * part:.3g} % "
-            "of its length is missing",
-            "give the whole path; check the unit of the positions and that they count from the pitch point",
+            f"must cover the path of contact, {_ends(needed)}, except at most 15 % at each end; {100.0 * part:.3g} % "
+            "is missing",
+            "specify the entire path; check the unit of the positions (measured from the pitch point)",
         )  # fmt: skip
     soft = sum(1.0 / pair.gear(member).material.young_modulus for member in MEMBERS)
     relative = c * pair.face_width / soft
@@ -198,16 +198,17 @@ def refuse_table(pair: GearPair, x: ArrayLike, compliance: ArrayLike, of: Of = "
         low, high = (limit * soft / pair.face_width * 1e6 for limit in _TEETH)
         raise InputError(
             "compliance.file", f"compliance {worst * 1e6:.6g} um/N",
-            f"is outside {low:.3g} to {high:.3g} um/N, beyond any tooth of this material and face width",
+            f"is outside {low:.3g} to {high:.3g} um/N, the plausible range for this material and face width",
             "check the unit in the head of the column",
         )  # fmt: skip
     fitted = table(np.linspace(*needed, _LOOKED_AT))
     if fitted.min() < 0.2 * c.min() or fitted.max() > 5.0 * c.max():
         raise InputError(
             "compliance.fit", f'"{fit}"',
-            f"gives {fitted.min() * 1e6:.4g} to {fitted.max() * 1e6:.4g} um/N on the path of contact, and the table "
-            f"has {c.min() * 1e6:.4g} to {c.max() * 1e6:.4g} um/N",
-            'set fit = "linear" or give more positions' if fit == "cubic" else "give positions up to the path's ends",
+            f"gives {fitted.min() * 1e6:.4g} to {fitted.max() * 1e6:.4g} um/N on the path of contact; the table has "
+            f"{c.min() * 1e6:.4g} to {c.max() * 1e6:.4g} um/N",
+            'set fit = "linear" or specify more positions' if fit == "cubic" else
+                "specify positions up to the path's ends",
         )  # fmt: skip
 
 
@@ -216,8 +217,8 @@ def table_note(pair: GearPair, x: ArrayLike, of: Of = "tooth") -> str:
     if _left_out(pair, x, of) <= _NOTHING:
         return ""
     return (
-        f"The compliance table covers {_ends(x)}, the path of contact is {_ends(_needed(pair, of))}; the fit is "
-        "extrapolated to its ends."
+        f"The compliance table covers {_ends(x)}, the path of contact is {_ends(_needed(pair, of))}; extrapolated to "
+        "its ends."
     )
 
 

@@ -43,11 +43,11 @@ class ToothStress:
     x: Array = shown("mm", "position of the tooth's contact on the line of action")
     tension: Array = shown(
         "MPa",
-        "largest tangential tension of the fillet below the loaded flank",
+        "root stress, tension side: maximum tangential stress in the fillet of the loaded flank",
         name="stress",
-        label="largest root stress",
+        label="maximum root stress",
     )
-    compression: Array | None = shown("MPa", "most negative stress of the other fillet")
+    compression: Array | None = shown("MPa", "root stress, compression side: minimum stress in the opposite fillet")
     tension_error: Array = shown("MPa", "estimated error of stress", name="stress_error")
     compression_error: Array | None = shown("MPa", "estimated error of compression")
 
@@ -91,7 +91,7 @@ class ToothStress:
         return None if self.compression is None else np.asarray(self.compression.min(axis=0))
 
     @property
-    @shows("MPa", "peak to peak of the stress below the loaded flank over the mesh", name="root_stress_range")
+    @shows("MPa", "stress range in the fillet of the loaded flank over the mesh cycle", name="root_stress_range")
     def tension_range(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
         return np.asarray(np.fmax.reduce(self.tension, axis=0) - np.fmin.reduce(self.tension, axis=0))

@@ -62,13 +62,13 @@ class TransmissionError:
         return float(self.series.mean)
 
     @property
-    @shows("um", "peak to peak", name="te_peak_to_peak")
+    @shows("um", "peak-to-peak value", name="te_peak_to_peak")
     def peak_to_peak(self) -> float:
         """Largest less smallest value [m], on either side of every jump and kink and between the points, too."""
         return self.points.highest(self.values) + self.points.highest(-self.values)
 
     @property
-    @shows("um", "A_e of NASA TM-89901, 0-peak", name="te_effective")
+    @shows("um", "effective transmission error A_e (amplitude, NASA TM-89901)", name="te_effective")
     def effective_error(self) -> float:
         """A_e of TM-89901 [m]."""
         return float(effective_error(self.series))
@@ -212,9 +212,9 @@ def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> 
     pair = engagement.pair
     if pair.contact_ratio < 1.0:
         raise InputError(
-            "pair", f"contact ratio {pair.contact_ratio:.4f}", "leaves perfect flanks no stiffness where no tooth pair "
-            "is on the path of contact, so that Mark's K_T and its mean compliance do not exist below 1",
-            'take transmission_error.method = "quadrature", which has tip corners in contact there',
+            "pair", f"contact ratio {pair.contact_ratio:.4f}", "is below 1: Mark's K_T is zero where no tooth pair "
+                                                               "is on the path of contact",
+            'set transmission_error.method = "quadrature" (includes corner contact)',
         )  # fmt: skip
     points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
     grid = engagement.grid(points.x)

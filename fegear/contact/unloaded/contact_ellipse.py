@@ -130,7 +130,7 @@ def bearing_contact(pair: HelicalPair, contact: PairContact, load: float, modulu
     index = np.flatnonzero((contact.kind == "surface") & ~contact.ill_defined)
     if index.size == 0:
         raise RangeError(
-            "contact", "edges or lines only", "have no contact ellipse", "give the pinion's cutter a parabola"
+            "contact", "edge or line contact only", "has no contact ellipse", "specify a parabola for the pinion cutter"
         )
     p = Placement.of(pair)
     gap = parting(p, pair.flank, contact.phi_1[index], contact.s[index], contact.z1[index])

@@ -24,13 +24,17 @@ class LineContact(ReadOnlyArrays):
 
     phi_1: Array = shown("deg", "pinion angle of this tooth pair: the first parameter", name="phi1")
     phi_2: Array = shown("deg", "gear angle", name="phi2")
-    z: Array = shown("mm", "height, on both gears")
-    theta_1: Array = shown("deg", "where around the pinion's base cylinder the line touches it", name="theta1")
-    theta_2: Array = shown("deg", "where around the gear's base cylinder the line touches it", name="theta2")
+    z: Array = shown("mm", "axial position, on both gears")
+    theta_1: Array = shown(
+        "deg", "angular position on the pinion base cylinder where the line is tangent to it", name="theta1"
+    )
+    theta_2: Array = shown(
+        "deg", "angular position on the gear base cylinder where the line is tangent to it", name="theta2"
+    )
     t_1: Array = shown("mm", "base tangent length of the pinion")
     t_2: Array = shown("mm", "base tangent length of the gear")
-    u_1: Array = shown("mm", "length along the line from the pinion's base helix: the second parameter", name="u1")
-    u_2: Array = shown("mm", "length along the line from the gear's base helix", name="u2")
+    u_1: Array = shown("mm", "distance along the line from the pinion base helix (second parameter)", name="u1")
+    u_2: Array = shown("mm", "distance along the line from the gear base helix", name="u2")
     r_1: Array = shown("mm", "radius on the pinion", name="r1")
     r_2: Array = shown("mm", "radius on the gear", name="r2")
 
@@ -42,9 +46,9 @@ class LineLength(ReadOnlyArrays):
     phi_1: Array = shown("deg", "pinion angle", name="phi1", table="cycle")
     total: Array = shown("mm", "total length of all lines of contact", name="length", table="cycle")
     lines: NDArray[np.int_] = shown("", "tooth pairs in contact", name="pairs", table="cycle")
-    least: float = shown("mm", "least over a cycle", name="contact_line_least")
+    least: float = shown("mm", "minimum over a mesh cycle", name="contact_line_least")
     mean: float = shown("mm", "mean total length of the contact lines", name="contact_line_mean")
-    largest: float = shown("mm", "largest over a cycle", name="contact_line_largest")
+    largest: float = shown("mm", "maximum over a mesh cycle", name="contact_line_largest")
 
 
 def aligned(pair: HelicalPair) -> HelicalPair:
@@ -71,8 +75,8 @@ def line_contact(pair: HelicalPair, phi_1: ArrayLike, z: ArrayLike) -> LineConta
     """
     if not pair.errors.aligned or pair.parabola != 0.0 or pair.crown != 0.0:
         raise InputError(
-            "pair", "(misaligned or modified)", "has no lines of contact: its flanks touch in points or on edges",
-            "take the aligned pair without modification",
+            "pair", "(misaligned or modified)", "has no lines of contact (point or edge contact)",
+            "use the aligned pair without modification",
         )  # fmt: skip
     phi, z = np.broadcast_arrays(np.asarray(phi_1, dtype=float), np.asarray(z, dtype=float))
     a, b, alpha = pair.pinion, pair.gear, pair.working_pressure_angle

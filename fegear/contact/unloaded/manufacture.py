@@ -215,7 +215,7 @@ def lead_angle_error_of_cut(pinion: Gear, lead_error: float) -> float:
     sine = math.sin(pinion.helix_angle)
     wrong = sine / (1.0 + lead_error / pinion.lead)
     if wrong >= 1.0:
-        raise RangeError("lead", f"{lead_error * 1e3:.6g} mm", "leaves no lead angle", "give a smaller error")
+        raise RangeError("lead", f"{lead_error * 1e3:.6g} mm", "gives no lead angle", "specify a smaller error")
     # sin(beta) - sin(beta') over cos(beta) + cos(beta') is the tangent of half the difference of the angles.
     change = sine * lead_error / (pinion.lead + lead_error)
     return 2.0 * math.atan(change / (math.cos(pinion.helix_angle) + math.sqrt((1.0 - wrong) * (1.0 + wrong))))
@@ -224,9 +224,9 @@ def lead_angle_error_of_cut(pinion: Gear, lead_error: float) -> float:
 def _refuse(pinion: Gear, lead_error: float) -> None:
     shown = f"{lead_error * 1e3:.6g} mm"
     if pinion.helix_angle == 0.0:
-        raise InputError("lead", shown, "has no meaning for a spur gear, whose lead is infinite", "give lead_angle")
+        raise InputError("lead", shown, "is not used for a spur gear, whose lead is infinite", "specify lead_angle")
     if not abs(lead_error) <= _LARGEST_SHARE * pinion.lead:
         raise RangeError(
-            "lead", shown, f"is no small error of a lead of {pinion.lead * 1e3:.6g} mm",
-            f"keep it within {_LARGEST_SHARE:.0%} of it",
+            "lead", shown, f"is not small relative to the lead of {pinion.lead * 1e3:.6g} mm",
+            f"keep it within {100.0 * _LARGEST_SHARE:g} % of it",
         )  # fmt: skip

@@ -44,7 +44,7 @@ class Misalignment:
             value = getattr(self, key)
             if not abs(value) <= LARGEST_ERROR:
                 angle = f"{math.degrees(value):.6g} deg"
-                raise RangeError(key, angle, "is no small error", "keep it within 3 deg")
+                raise RangeError(key, angle, "is not small", "keep it within 3 deg")
         if not math.isfinite(self.centre_distance):
             raise InputError("centre_distance", self.centre_distance, "must be finite")
 
@@ -97,14 +97,14 @@ class HelicalPair:
         reach = 0.5 * (a.face_width + b.face_width) - abs(self.axial_offset)
         if not (math.isfinite(self.axial_offset) and reach > 1e-3 * min(a.face_width, b.face_width)):
             raise GeometryError(
-                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces next to each other",
-                f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
+                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "leaves no common face width",
+                f"reduce it below {0.5e3 * (a.face_width + b.face_width):.6g} mm",
             )  # fmt: skip
         _ = self.flank  # refuses a modification that leaves no flank
         if not self.centre_distance > 0.0 or self.path_end <= self.path_start:
             raise GeometryError(
                 "centre_distance", f"{self.centre_distance * 1e3:.6g} mm",
-                "leaves no path of contact between the tip circles", "lower it or raise the tip radii",
+                "gives no path of contact between the tip circles", "reduce it or increase the tip radii",
             )  # fmt: skip
 
     @cached_property
@@ -145,7 +145,7 @@ class HelicalPair:
         if cosine > 1.0:
             raise GeometryError(
                 "centre_distance", f"{self.centre_distance * 1e3:.6g} mm",
-                "is smaller than the sum of the base radii, so that the flanks have no line of action", "raise it",
+                "is smaller than the sum of the base radii: no line of action", "increase it",
             )  # fmt: skip
         return math.acos(cosine)
 

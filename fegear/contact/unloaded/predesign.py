@@ -55,8 +55,8 @@ def linear_error(pair: HelicalPair) -> float:
     inside = contact.kind == "surface"
     if not inside.any():
         raise RangeError(
-            "parabola", f"{pair.parabola:.6g} 1/m", "leaves the contact on the edges of the flanks",
-            "raise it until the misaligned flanks touch inside",
+            "parabola", f"{pair.parabola:.6g} 1/m", "gives edge contact",
+            "increase it until contact is inside the flanks",
         )  # fmt: skip
     return float(np.median(contact.slope[inside]))
 
@@ -98,7 +98,9 @@ def absorb_linear_error(pair: HelicalPair, slope: float | None = None, face_shar
         raise RangeError("face_share", face_share, "must lie within (0, 1]")
     g, twist = pair.cut_pinion, abs(pair.cut_pinion.twist)
     if twist == 0.0:
-        raise RangeError("helix_angle", "0 deg", "lets no contact point run along the tooth", "use a helical drive")
+        raise RangeError(
+            "helix_angle", "0 deg", "gives no motion of the contact point along the tooth", "use helical gears"
+        )
     if pair.parabola <= 0.0:
         raise RangeError("parabola", pair.parabola, "must be positive to localise the contact")
     b = linear_error(pair) if slope is None else float(slope)
@@ -108,7 +110,7 @@ def absorb_linear_error(pair: HelicalPair, slope: float | None = None, face_shar
     lo, hi = pair.overlap
     room = face_share * min(-lo, hi)
     if room <= 0.0:
-        raise RangeError("axial_offset", f"{pair.axial_offset:.6g} m", "leaves the pinion's middle without a mate")
+        raise RangeError("axial_offset", f"{pair.axial_offset:.6g} m", "gives no contact at pinion mid-face")
     p = room * T - 0.5 * e - half_pitch * T
     # The positive root of room C^2 + p C - e T/2, without cancellation for either sign of p.
     root = math.sqrt(p * p + 2.0 * room * e * T)
@@ -116,8 +118,9 @@ def absorb_linear_error(pair: HelicalPair, slope: float | None = None, face_shar
     height = k * half_pitch * C / (T + C)
     if height > min(-pair.flank.s_form, pair.flank.s_tip):
         raise RangeError(
-            "parabola", f"{pair.parabola:.6g} 1/m", "would send the path of contact over tip and root",
-            "raise it, widen the face or accept a larger face share",
+            "parabola", f"{pair.parabola:.6g} 1/m", "gives a contact path that leaves the active profile at tip and "
+                                                    "root",
+            "increase it, increase the face width or accept a larger share of the face",
         )  # fmt: skip
     a = T * C / (T + C) / twist**2
     crown = C / pair.ratio

@@ -170,9 +170,8 @@ def _solve(
         steps += 1
         if steps > most_steps:
             raise ConvergenceError(
-                f"Contact over the flank found no consistent set of loaded stations for {index.size} of {place.size} "
-                "problems: their panels are too short for how wide the contacts are. Lower load_distribution.panels, "
-                "and check load and face_width."
+                f"No consistent load distribution found for {index.size} of {place.size} problems: panels are too "
+                "short relative to the contact width. Reduce load_distribution.panels and check load and face_width."
             )
         here, w = place[index], total[index]
         matrix, constant = _tangent(known, here, v)

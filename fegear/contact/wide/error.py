@@ -60,9 +60,11 @@ class FlankError:
     share: Array
     coarse: LoadedFlanks
     mean: Array = shown("um", "mean transmission error", name="te_mean")
-    peak_to_peak: Array = shown("um", "over the whole base pitch", name="te_peak_to_peak")
-    face_load_factor: Array = shown("", "largest over mean load per face width", name="K_Hbeta")
-    largest_line_load: Array = shown("N/mm", "on one contact line of a module or more, clear of tips and form circles")
+    peak_to_peak: Array = shown("um", "over the base pitch", name="te_peak_to_peak")
+    face_load_factor: Array = shown("", "maximum / mean load per face width", name="K_Hbeta")
+    largest_line_load: Array = shown(
+        "N/mm", "on one contact line longer than one module, away from tip and form circles"
+    )
     largest_pressure: Array = shown("MPa", "smooth flanks", name="largest_hertz_pressure")
 
 

@@ -49,14 +49,16 @@ class ContactLines(ReadOnlyArrays):
         What the stations touch where lines go on along the tip edges; None where they end there.
     """
 
-    roll: Array = shown("mm", "roll position: x of pair 0 in the middle of the face")
-    pair: NDArray[np.int64] = shown("", "number of the tooth pair; higher ones are ahead")
-    present: Mask = shown("", "whether there is a station")
-    x: Array = shown("mm", "along the line of action, from the pitch point", label="position on the line of action")
-    z: Array = shown("mm", "along the face, from its middle", label="face position z")
-    low: float = shown("mm", "one end of the common face")
-    high: float = shown("mm", "the other end of the common face")
-    at_edge: Mask = shown("", "1 where the contact line ends at a tip or form circle", name="edge")
+    roll: Array = shown("mm", "mesh position: x of tooth pair 0 at mid-face")
+    pair: NDArray[np.int64] = shown("", "number of the tooth pair, increasing in the direction of rotation")
+    present: Mask = shown("", "1: point exists (0: padding)")
+    x: Array = shown(
+        "mm", "position along the line of action, from the pitch point", label="position on the line of action"
+    )
+    z: Array = shown("mm", "face position from mid-face", label="face position z")
+    low: float = shown("mm", "face position of end I of the common face width")
+    high: float = shown("mm", "face position of end II of the common face width")
+    at_edge: Mask = shown("", "1: contact line ends at a tip or form circle", name="edge")
     weight: Array = field(default_factory=lambda: np.empty(0))
 
     edges: TipEdges | None = None
@@ -207,8 +209,8 @@ def contact_lines(
             lines.append((j, np.clip(at - slope * z, start, end), z, edges))
         if not lines:
             raise InputError(
-                "pair", f"roll position {x0 * 1e3:.6g} mm", "has no tooth pair in reach of the line of action",
-                "raise the contact ratio above 1",
+                "pair", f"roll position {x0 * 1e3:.6g} mm", "has no tooth pair in contact",
+                "increase the contact ratio above 1",
             )  # fmt: skip
         found.append(lines)
     most = max(sum(z.size for _, _, z, _ in lines) for lines in found)

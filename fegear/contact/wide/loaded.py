@@ -73,7 +73,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return self.lines.mean(self.transmission_error)
 
     @cached_property
-    @shows("N/mm", "transverse force per face width", label="line load")
+    @shows("N/mm", "total line load (transverse force per face width)", label="line load")
     def line_load(self) -> Array:
         """f at the stations [N/m], transverse force per length along the face, shape (P, M, L).
 
@@ -86,7 +86,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return averaged_along(self.lines, load, None if self.known.spot is not None else self.known.window)
 
     @cached_property
-    @shows("MPa", "largest pressure of smooth flanks, as of a long contact", name="hertz_pressure", label="pressure")
+    @shows("MPa", "maximum pressure of smooth flanks (line contact)", name="hertz_pressure", label="pressure")
     def pressure(self) -> Array:
         """Largest Hertzian pressure at the stations [Pa], shape (P, M, L)."""
         return self.known.pressure(self.line_load)
@@ -169,13 +169,13 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.stack([(self.contact.force * here[:, :, None]).sum(axis=1) for here in on])
 
     @property
-    @shows("", "of one tooth pair", name="largest_share")
+    @shows("", "load of one tooth pair", name="largest_share")
     def share(self) -> Array:
         """W_j / W, shape (pairs, P, L)."""
         return self.pair_load / self.load
 
     @property
-    @shows("", "sum of all forces less load, over load")
+    @shows("", "equilibrium residual: (sum of forces - load) / load")
     def equilibrium(self) -> Array:
         """|sum of all forces - load| / load, shape (P, L)."""
         return np.abs(self.contact.force.sum(axis=1) - self.load) / self.load
@@ -191,7 +191,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.linspace(lines.low, lines.high, count + 1)
 
     @cached_property
-    @shows("N/mm", "of all roll positions", label="load per face width")
+    @shows("N/mm", "over all mesh positions", label="line load")
     def over_face(self) -> Array:
         """Load of all lines together per face width, averaged over each of `cells`, shape (P, cells, L) [N/m]."""
         return self.load_between(self.cells)
@@ -211,7 +211,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.asarray(swept / np.diff(ends)[:, None])
 
     @cached_property
-    @shows("N/mm", "of all pairs, averaged over a base pitch", name="mean_line_load")
+    @shows("N/mm", "total over all tooth pairs, mean over a base pitch", name="mean_line_load")
     def mean_over_face(self) -> Array:
         """Load over each of `cells` averaged over a base pitch, shape (cells, L) [N/m]."""
         return self.mean_between(self.cells)
@@ -325,7 +325,7 @@ class FlankPair:
         """
         for member in MEMBERS:
             if self.gears[member].reach == 0 and self.coupling:
-                raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
+                raise InputError("reach", 0, "includes no neighbouring teeth", "solve the gears with reach >= 1")
         if roll is not None:  # places between these, which the next gaps move
             return _compliance(self, load, cycle, roll)
         every = math.lcm(*(self.gears[member].period for member in MEMBERS))

@@ -124,7 +124,7 @@ class LoadedWidePair:
     @property
     def about(self) -> str:
         """What the gears are solved as."""
-        return f"Gears with their width, {'coupled slices' if self.missed else 'solid'}."
+        return f"3D gears, {'coupled slices' if self.missed else 'solid'}."
 
     @cached_property
     def stated(self) -> Stated:
@@ -142,8 +142,8 @@ class LoadedWidePair:
         inner = self.over.found.smooth_pressure[:, :, i]
         p, s = np.unravel_index(int(first_of_largest(inner)), inner.shape)
         place = (
-            "on contact lines of a module or more, clear of tips and form circles, "
-            f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
+            "on contact lines longer than one module, away from tip and form circles, at x = "
+            f"{lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
         )
         return Largest(
             float(self.found.share[:, :, i].max()), float(self.error.share[:, :, i].max()), float(inner.max()),
@@ -166,7 +166,7 @@ class LoadedWidePair:
         again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines, coarse.load))
         error = history_error(found, again) + missed * found.load * (1.0 - found.share)
         where = (
-            " in the middle of the face, before and after which the contact line crosses a part of it"
+            " at mid-face; outside it the contact line covers only part of the face width"
             if self.pair.driver.helix_angle
             else ""
         )
@@ -197,7 +197,7 @@ class LoadedWidePair:
             self.loads,
             i,
             each[i].values.size,
-            f"from {each[i].values.size} roll positions over the base pitch",
+            f"from {each[i].values.size} mesh positions over the base pitch",
             tuple(te.series for te in each),
             shift,
             x=found.lines.roll,

@@ -168,13 +168,15 @@ def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
         tilt, shift, length = float(moved[3:5].max()), float(moved[:3].max()), one.loaded.shaft.length
         if tilt > LARGEST_TILT:
             raise InputError(
-                f"shaft.{name}", f"tilted by {math.degrees(tilt):.4g} deg under its gears", "is no small error",
-                f"keep it within {math.degrees(LARGEST_TILT):g} deg: less clearance, stiffer bearings or sections",
+                f"shaft.{name}", f"tilt of {math.degrees(tilt):.4g} deg at its gears", "is not small",
+                f"must stay within {math.degrees(LARGEST_TILT):g} deg: reduce clearance, use stiffer bearings or "
+                "sections",
             )  # fmt: skip
         if shift > _LARGEST_SHIFT * length:
             raise InputError(
-                f"shaft.{name}", f"moved by {shift * 1e3:.4g} mm", "is no small displacement",
-                f"keep it within {_LARGEST_SHIFT:.0%} of the shaft's length: less clearance, stiffer bearings",
+                f"shaft.{name}", f"displacement of {shift * 1e3:.4g} mm", "is not small",
+                f"must stay within {100.0 * _LARGEST_SHIFT:g} % of the shaft length: reduce clearance, use stiffer "
+                "bearings",
             )  # fmt: skip
 
 
@@ -218,7 +220,7 @@ def _state(gearbox: Gearbox, meshes: Sequence[MeshForces], scale: float, start: 
             share *= 0.5
         v, left = new, found
     names = ", ".join(mesh.pair for mesh in gearbox.meshes)
-    raise ConvergenceError(f"Shafts and flanks of {names} find no common state: check bearings with clearance.")
+    raise ConvergenceError(f"No equilibrium of shafts and flanks of {names} found; check bearing clearance.")
 
 
 @dataclass(frozen=True)

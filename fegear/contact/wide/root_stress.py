@@ -49,10 +49,10 @@ class StressOverFace(ReadOnlyArrays):
         Where it sits [m].
     """
 
-    x: Array = shown("mm", "position of the tooth's contact in the middle of the face")
-    z: Array = shown("mm", "from the middle of the face", name="face_position", label="face position z")
-    value: Array = shown("MPa", "largest tension up the fillet below the loaded flank", name="stress")
-    radius: Array = shown("mm", "where it sits, from the axis")
+    x: Array = shown("mm", "contact position of the tooth at mid-face")
+    z: Array = shown("mm", "face position from mid-face", name="face_position", label="face position z")
+    value: Array = shown("MPa", "root stress, tension side: maximum over the fillet of the loaded flank", name="stress")
+    radius: Array = shown("mm", "radius of the maximum")
 
     def largest(self, sign: float) -> tuple[Array, Array, Array]:
         """Largest (sign 1) or most negative (-1) stress over the face, its place along it, its radius; shape (T,)."""

@@ -152,8 +152,8 @@ def best_of_family(
     if not seen:
         raise RangeError(
             "flank_design.largest_face_load_factor", f"{most_factor:.4g}",
-            f"is kept by none of the {len(numbers)} combinations of {family}: the least is about {factor.min():.4g}",
-            "allow more, or give the grid more crowning, end relief or slope",
+            f"is not met by any of the {len(numbers)} combinations of {family}; minimum about {factor.min():.4g}",
+            "increase the limit, or extend the grid to more crowning, end relief or slope",
         )  # fmt: skip
     on_grid = seen[0]
     proven = exact == len(order) or float(rough[order[exact]]) - error > on_grid[0]

@@ -23,14 +23,14 @@ class GroundRelief:
     """
 
     driver_tip: float = shown("um", "tip relief of the driver", default=0.0)
-    driver_tip_length: float = shown("mm", "of that relief, along the line of action", default=0.0)
+    driver_tip_length: float = shown("mm", "length of this relief along the line of action", default=0.0)
     driven_tip: float = shown("um", "tip relief of the driven gear", default=0.0)
-    driven_tip_length: float = shown("mm", "of that relief, along the line of action", default=0.0)
-    crowning: float = shown("um", "of the lead, at both ends", default=0.0)
-    end_relief: float = shown("um", "at both ends of the face", default=0.0)
-    end_relief_length: float = shown("mm", "along the face", default=0.0)
-    slope: float = shown("um", "of the helix, at +b/2 less at -b/2", default=0.0)
-    bias: float = shown("um", "profile slope at +b/2 less at -b/2, of the driver", default=0.0)
+    driven_tip_length: float = shown("mm", "length of this relief along the line of action", default=0.0)
+    crowning: float = shown("um", "lead crowning, at both face ends", default=0.0)
+    end_relief: float = shown("um", "end relief, at both face ends", default=0.0)
+    end_relief_length: float = shown("mm", "length of the end relief along the face width", default=0.0)
+    slope: float = shown("um", "helix slope modification, value at +b/2 minus value at -b/2", default=0.0)
+    bias: float = shown("um", "flank twist of the driver: profile slope at +b/2 minus that at -b/2", default=0.0)
 
     @property
     def numbers(self) -> Array:

@@ -53,17 +53,17 @@ class Number(NamedTuple):
 class Judged:
     """What a relief leaves at the design load; what holds "over the scatter" is `PERCENTILE` of the misalignments."""
 
-    peak_to_peak: Number = shown("um", "left at the design load", name="te_peak_to_peak")
+    peak_to_peak: Number = shown("um", "peak-to-peak transmission error at the design load", name="te_peak_to_peak")
     face_load_factor: Number = shown("", "at the design load", name="K_Hbeta")
-    pressure: Number = shown("MPa", "largest, without tips and form circles", name="hertz_pressure")
+    pressure: Number = shown("MPa", "maximum, excluding tip and form circles", name="hertz_pressure")
     mean_over_scatter: Number = shown(
-        "um", "peak to peak, mean over the misalignments of the scatter", name="te_mean_over_scatter"
+        "um", "peak to peak, mean over the scatter of misalignment", name="te_mean_over_scatter"
     )
     most_over_scatter: Number = shown(
-        "um", "peak to peak that 95 % of the misalignments do not exceed", name="te_p95_over_scatter"
+        "um", "peak to peak, 95th percentile over the misalignments", name="te_p95_over_scatter"
     )
     factor_over_scatter: Number = shown(
-        "", "K_Hbeta that 95 % of the misalignments do not exceed", name="K_Hbeta_p95_over_scatter"
+        "", "K_Hbeta, 95th percentile over the misalignments", name="K_Hbeta_p95_over_scatter"
     )
 
 

@@ -128,9 +128,7 @@ class QuickFlanks(ReadOnlyArrays):
                 changes &= only
             active[place] = on ^ changes
             place = place[~done]
-        raise ConvergenceError(
-            f"Contact over the flank with few stations found no loaded set for {place.size} problems."
-        )
+        raise ConvergenceError(f"No load distribution found with the coarse contact model for {place.size} problems.")
 
 
 def quick_flanks(known: FlankCompliance, force: Array, panels: int, cells: int) -> QuickFlanks:

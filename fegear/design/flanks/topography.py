@@ -226,7 +226,7 @@ class FlankLoading:
         if not 0.0 <= self.end_length <= 0.5 * self.face_width * (1.0 + 1e-12):
             raise RangeError(
                 "flank_design.end_length", f"{self.end_length * 1e3:.6g} mm",
-                f"must lie between zero and half the face, {0.5e3 * self.face_width:.6g} mm",
+                f"must be between 0 and half the face width, {0.5e3 * self.face_width:.6g} mm",
             )  # fmt: skip
 
     @property

@@ -46,7 +46,7 @@ class Tried(ReadOnlyArrays):
         return np.stack([one.transmission_error for one in self.found])
 
     @property
-    @shows("um", "left", name="te_peak_to_peak", label="peak to peak")
+    @shows("um", "left", name="te_peak_to_peak", label="peak-to-peak value")
     def peak_to_peak(self) -> Array:
         """Shape (S, L) [m]."""
         return np.asarray(np.ptp(self.te, axis=1))
@@ -74,13 +74,13 @@ class Tried(ReadOnlyArrays):
         return np.asarray(swept / np.tile(mean, line_load.shape[2] // mean.size))
 
     @property
-    @shows("", "largest over mean load per face width", name="K_Hbeta", label="K_{Hβ}")
+    @shows("", "maximum / mean load per face width", name="K_Hbeta", label="K_{Hβ}")
     def face_load_factor(self) -> Array:
         """K_Hbeta, shape (S, L); all misalignments are swept over the face in one go."""
         return np.asarray(self.over_face.max(axis=1))
 
     @cached_property
-    @shows("MPa", "largest, without tips and form circles", name="hertz_pressure")
+    @shows("MPa", "maximum, excluding tip and form circles", name="hertz_pressure")
     def pressure(self) -> Array:
         """Largest Hertzian pressure, see `LoadedFlanks.smooth`, shape (S, L) [Pa]."""
         inner = self.found[0].smooth

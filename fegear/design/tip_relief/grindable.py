@@ -120,7 +120,7 @@ def optimise_tip_relief(
     """
     w = np.atleast_1d(np.asarray(loads, dtype=float))
     if w.size == 0:
-        raise InputError("design.loads", "[]", "must name at least one load")
+        raise InputError("design.loads", "[]", "must contain at least one load")
     if not (np.isfinite(w).all() and (w > 0.0).all()):
         raise InputError("design.loads", f"{w.min()} N", "must be positive and finite")
     power = 1.0 if shape == "linear" else 2.0

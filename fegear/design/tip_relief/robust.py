@@ -166,7 +166,7 @@ def _trials(bench: Bench, deviations: Deviations, power: float, percent: float) 
         except FegearError:
             continue
     if not states:
-        raise InputError("robustness.reliefs", "no draw", "has a result that reliefs could be compared over")
+        raise InputError("robustness.reliefs", "no sample", "gives a result for comparing reliefs")
     numbers = sorted({int(j) for _, grid in states for j in grid.contacts.number})
     sets = [(i, k) for i in range(len(numbers)) for k in range(i + 1, len(numbers) + 1)]
     shape = len(states), states[0][1].x.size

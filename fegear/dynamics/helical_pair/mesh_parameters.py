@@ -41,11 +41,11 @@ class MeshParameters:
         if not (math.isfinite(self.mu) and self.mu >= self.kappa**2 * (1.0 - 1e-12)):
             raise RangeError(
                 "mesh.mu", self.mu, f"must be finite and at least kappa^2 = {self.kappa**2:.6g}",
-                "a smaller rotary stiffness would be unstable",
+                "a lower rotational stiffness would be unstable",
             )  # fmt: skip
         if not abs(self.base_helix_angle) < 0.5 * math.pi:
             angle = f"{math.degrees(self.base_helix_angle):.6g} deg"
-            raise RangeError("mesh.base_helix_angle", angle, "must lie inside (-90, 90) deg")
+            raise RangeError("mesh.base_helix_angle", angle, "must be between -90 and 90 deg")
 
     def matrix(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
         """Mesh stiffness over q = (y, z, b theta_x, a theta_y, a theta_z), shape (5, 5) [N/m] (Eq. 6)."""
@@ -65,7 +65,7 @@ _ROUNDED = 1e-9
 def partial_face_mu(kappa: float) -> float:
     """Rotary parameter mu = kappa^2 + (1 - abs(kappa))^2/3 of a uniform contact that reaches one end of the face."""
     if not abs(kappa) <= 1.0 + _ROUNDED:
-        raise RangeError("kappa", kappa, "must lie within [-1, 1] for a contact on the face")
+        raise RangeError("kappa", kappa, "must be between -1 and 1 (contact within the face width)")
     return kappa**2 + max(0.0, 1.0 - abs(kappa)) ** 2 / 3.0
 
 
@@ -105,11 +105,11 @@ def mesh_parameters(
     z, load = np.asarray(z, dtype=float), np.asarray(load, dtype=float)
     give = np.broadcast_to(np.asarray(deflection, dtype=float), z.shape)
     if z.ndim != 1 or z.size < 2 or load.shape != z.shape or not np.all(np.diff(z) > 0.0):
-        raise InputError("z", f"shape {z.shape}", "must be at least two rising heights, with one load each")
+        raise InputError("z", f"shape {z.shape}", "must be at least two increasing values, one load each")
     if not (np.all(np.isfinite(load)) and np.all(load >= 0.0) and load.max() > 0.0):
-        raise InputError("load", "distribution", "must be finite, nowhere negative and somewhere positive")
+        raise InputError("load", "distribution", "must be finite and non-negative, with at least one positive value")
     if not (np.all(np.isfinite(give)) and np.all(give[load > 0.0] > 0.0)):
-        raise InputError("deflection", "distribution", "must be positive where the load is")
+        raise InputError("deflection", "distribution", "must be positive where the load is positive")
     if not face_width > 0.0:
         raise InputError("face_width", face_width, "must be positive")
     k = np.divide(load, give, out=np.zeros_like(load), where=load > 0.0)

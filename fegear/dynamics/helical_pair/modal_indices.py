@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.printed import percent
 from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel
 from fegear.dynamics.train.modes import same_way_up, undamped_modes
 
@@ -65,13 +66,13 @@ class ModeTable:
         near = np.flatnonzero((self.frequency > 0.0) & (self.shape_doubt > HALF_THE_DIGITS)) + 1
         if soft.size:
             remarks.append(
-                f"modes {_listed(soft)} are so soft compared with the stiffest that round-off leaves their frequencies "
-                f"{float(self.frequency_doubt[soft - 1].max()):.0e} of doubt"
+                f"modes {_listed(soft)}: round-off error of the frequencies "
+                f"{percent(float(self.frequency_doubt[soft - 1].max()))} (very soft compared with the stiffest mode)"
             )
         if near.size:
             remarks.append(
-                f"modes {_listed(near)} share a frequency with another to within round-off: their shapes and indices "
-                "are one choice of many, and only sums over such modes mean something"
+                f"modes {_listed(near)}: repeated natural frequencies (within round-off); mode shapes and indices "
+                "are not unique, only sums over these modes are meaningful"
             )
         return tuple(remarks)
 

@@ -120,7 +120,7 @@ def follow_modes(
     """
     grid = np.asarray(values, dtype=float)
     if grid.ndim != 1 or grid.size < 1 or not np.all(np.isfinite(grid)) or np.any(np.diff(grid) <= 0.0):
-        raise InputError("values", f"{grid.size} values", "must be finite and rise")
+        raise InputError("values", f"{grid.size} values", "must be finite and increasing")
     origin = float(grid[0] if start is None else start)
     first = _first(build, origin, grid)
     up = _Path(build, first, grid[grid >= origin], least, depth)
@@ -186,8 +186,8 @@ class _Path:
         middle = 0.5 * (old.value + stop)
         if left == 0 or middle in (old.value, stop):
             raise ConvergenceError(
-                f"Modes change abruptly between {old.value:.9g} and {stop:.9g} (likeness {likeness:.2g} after "
-                f"{self.depth} halvings). The branches meet there: choose values that avoid the point."
+                f"Mode shapes change abruptly between {old.value:.9g} and {stop:.9g} (MAC {likeness:.2g} after "
+                f"{self.depth} bisections): the branches meet. Choose values that avoid this point."
             )
         self._follow(middle, left - 1)
         self._follow(stop, left - 1)

@@ -73,7 +73,12 @@ class RigidGear:
             if np.abs(scaled - scaled.T).max() > 1e-9 * max(np.abs(scaled).max(), 1e-300):
                 raise InputError(f"gear.{key}", "matrix", "must be symmetric")
             if np.linalg.eigvalsh(scaled).min() < -1e-9 * np.abs(scaled).max():
-                raise RangeError(f"gear.{key}", "matrix", "has a negative eigenvalue", "a bearing feeds in no energy")
+                raise RangeError(
+                    f"gear.{key}",
+                    "matrix",
+                    "has a negative eigenvalue",
+                    "bearing stiffness must be positive semi-definite",
+                )
             matrix.setflags(write=False)
             object.__setattr__(self, key, matrix)
 
@@ -125,7 +130,9 @@ class HelicalPairModel:
         if np.abs(matrix - matrix.T).max() > 1e-9 * max(np.abs(matrix).max(), 1e-300):
             raise InputError("mesh_damping", "matrix", "must be symmetric")
         if np.linalg.eigvalsh(matrix).min() < -1e-9 * np.abs(matrix).max():
-            raise RangeError("mesh_damping", "matrix", "has a negative eigenvalue", "a mesh feeds in no energy")
+            raise RangeError(
+                "mesh_damping", "matrix", "has a negative eigenvalue", "mesh damping must be positive semi-definite"
+            )
 
     @cached_property
     def mesh_stiffness_matrix(self) -> Array:
@@ -191,7 +198,8 @@ class HelicalPairModel:
         """
         if not self.symmetric:
             raise GeometryError(
-                "pair", "unequal gears or bearings", "couple both gears' motions, so that five coordinates do not do",
+                "pair", "unequal gears or bearings", "couple the motions of both gears; five coordinates are not "
+                                                     "sufficient",
                 "use the general model",
             )  # fmt: skip
         i = self.driver

@@ -125,7 +125,7 @@ def compliance(model: Model, frequency: ArrayLike, method: Method = "direct") ->
     """
     w = np.atleast_1d(np.asarray(frequency, dtype=float))
     if w.ndim != 1 or not np.all(np.isfinite(w)) or np.any(w < 0.0):
-        raise InputError("frequency", frequency, "must be finite frequencies, not negative")
+        raise InputError("frequency", frequency, "must be finite, non-negative frequencies")
     natural, shapes, damping = _flexible(model)
     if method == "modal":
         denominator = natural**2 - w[:, None] ** 2 + 1j * w[:, None] * np.diag(damping)
@@ -151,8 +151,8 @@ def _refuse_resonance(least: Array, natural: Array, w: Array) -> None:
     hit = least <= 1e-12 * natural.max() ** 2
     if hit.any():
         raise RangeError(
-            "frequency", float(w[np.argmax(hit)]), "is a resonance without damping: the response is unbounded",
-            "give damping or move the frequency",
+            "frequency", float(w[np.argmax(hit)]), "is an undamped resonance: unbounded response",
+            "specify damping or change the frequency",
         )  # fmt: skip
 
 
@@ -203,10 +203,7 @@ def complex_modes(model: Model) -> tuple[Complex, Complex]:
     low = vectors[n:]
     norm = 2.0 * poles * (low * low).sum(0) + np.einsum("ir,ij,jr->r", low, damping / scale, low)
     if np.any(np.abs(norm) < 1e-7 * (np.abs(low) ** 2).sum(0) * np.maximum(np.abs(poles), 1e-3)):
-        raise ConvergenceError(
-            "Damping is critical for a mode: its two complex modes coincide and have no modal sum. "
-            "Use the direct method."
-        )
+        raise ConvergenceError("Critical damping of a mode: no modal superposition possible. Use the direct method.")
     return poles * scale, (shapes @ low) / np.sqrt(norm * scale)
 
 

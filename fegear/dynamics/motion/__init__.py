@@ -1,1 +1,1 @@
-"""Motion of a train in time: contact loss, backlash, friction, and steady motions over speed."""
+"""Motion of a train in time: loss of contact, backlash, friction, and steady motions over speed."""

@@ -109,8 +109,8 @@ def propagate(
         what = "time steps" if found.code == kernel.TOO_MANY_STEPS else "changes of contact"
         raise ConvergenceError(
             f"Motion at {packed.model.speed:.6g} rad/s stopped after {found.steps} steps: too many {what} in "
-            f"{duration:.6g} units of time. Give the gear pair damping, a lower stiffness of the back flanks, or a "
-            "looser tolerance."
+            f"{duration:.6g} units of time. Specify damping of the gear pair, reduce the stiffness of the "
+            "non-working flanks, or increase the tolerance."
         )
     note("changes of contact", int(found.changes))
     note("ripple lines", packed.swing_rate.size)

@@ -142,12 +142,13 @@ class MotionModel:
                 "excitations", len(self.excitations), f"must be {len(self.train.meshes)}, one per gear pair"
             )
         if not (math.isfinite(self.speed) and self.speed > 0.0):
-            raise RangeError("speed", self.speed, "must be positive", "at standstill the static answer holds")
+            raise RangeError("speed", self.speed, "must be positive", "use the static result for zero speed")
         for index, mesh in enumerate(self.train.meshes):
             if self.static[index] < -1e-9 * float(np.max(np.abs(self.static))):
                 raise InputError(
-                    f"mesh.{mesh.name}", f"{self.static[index]:.6g} N", "is a mean force that parts the teeth",
-                    "turn the torques round, or the signs of both base radii",
+                    f"mesh.{mesh.name}", f"{self.static[index]:.6g} N",
+                        "is a negative mean force (working flanks separated)",
+                    "change the sign of the torques, or of both base radii",
                 )  # fmt: skip
 
     def at_speed(self, speed: float) -> MotionModel:
@@ -256,14 +257,15 @@ def friction_loss_torque(model: MotionModel) -> Array:
             own += float(np.mean(force * (ratio_a * on_a(s) + ratio_b * on_b(s))))
         if own > 0.0:
             raise InputError(
-                f"mesh.{mesh.name}.friction", f"{own:.6g} W per rad/s", "feeds power into the train: the torques make "
-                "the other body drive", "give with_friction the side that train_mesh.a_drives returns",
+                f"mesh.{mesh.name}.friction", f"{own:.6g} W per rad/s",
+                    "adds power to the train: with these torques the other "
+                    "body drives", "use the side returned by train_mesh.a_drives in with_friction",
             )  # fmt: skip
         loss += own
     if loss != 0.0:
         body = model.loss_taken_by or train.torques[-1].body
         if body not in train.dof:
-            raise InputError("loss_taken_by", body, "is no body of this train")
+            raise InputError("loss_taken_by", body, "is not a body of this train")
         extra[train.dof[body]] = -loss / train.ratios[train.dof[body]]
     return extra
 

@@ -132,8 +132,8 @@ def close(packed: Packed, x: Array, v: Array, periods: int, step: float) -> Orbi
                 raise RangeError(
                     "speed",
                     f"{packed.model.speed:.9g} rad/s",
-                    "meets a resonance without damping: there is no bounded steady motion",
-                    "give the train damping or leave this speed out",
+                    "is an undamped resonance: no steady-state solution",
+                    "specify damping or remove this speed",
                 )
             return None
         change = np.linalg.solve(matrix, miss)

@@ -150,7 +150,7 @@ class SteadyState:
         if not np.all(self.model.static > 0.0):
             raise RangeError(
                 "dynamic factor", f"{float(np.min(self.model.static)):.6g} N", "is the mean force: must be positive",
-                "look at `largest` and `tooth_force` of an idling gear pair",
+                "use `largest` and `tooth_force` for an idling gear pair",
             )  # fmt: skip
         return self.model.static
 
@@ -241,7 +241,7 @@ def step_for(tolerance: float) -> float:
         If the tolerance is out of range.
     """
     if not 1e-13 < tolerance <= 1e-2:
-        raise RangeError("tolerance", tolerance, "must lie between 1e-13 and 1e-2")
+        raise RangeError("tolerance", tolerance, "must be between 1e-13 and 1e-2")
     return max(1e-3 * tolerance, 1e-14)
 
 
@@ -372,7 +372,7 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int, effo
         if chaotic and drifting(window, sample, chaotic=True):
             window, sample = sample, None
             run += measured
-    kind = "not settled" if sample is None else _kind(rate)
+    kind = "not converged" if sample is None else _kind(rate)
     if sample is None:
         # what is still on its way is shown, not measured: not longer than it was followed
         sample = follow(packed, window.x, window.v, min(measured, run), step, peaks=True)

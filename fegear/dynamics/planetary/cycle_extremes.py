@@ -161,8 +161,8 @@ def _parts(modes: SteadyModes, natural: Array, loud: Array, silent: float) -> tu
                 if count > _MOST:
                     raise RangeError(
                         "speed", f"a mesh frequency of {1.0 / (2.0 * modes.halves.sum()):.3g} Hz",
-                        "is so low that the set rings through more waves between two meshes than can be looked at",
-                        "increase damping_ratio or the lowest speed",
+                        "is too low: too many oscillation cycles between two tooth engagements",
+                        "increase damping_ratio or the minimum speed",
                     )  # fmt: skip
                 ends.append(np.linspace(now, until, count + 1)[1:])
                 now = until

@@ -50,7 +50,7 @@ class FlankSprings:
     def __post_init__(self) -> None:
         """Refuse teeth that differ from one another."""
         if self.teeth.gaps.driver_spacing.size or self.teeth.gaps.driven_spacing.size:
-            raise InputError("spacing_errors", "(given)", "are not known to a planetary set", "give it teeth alike")
+            raise InputError("spacing_errors", "(given)", "are not supported in a planetary set", "use identical teeth")
 
     @cached_property
     def solved(self) -> LoadedFlanks:

@@ -49,13 +49,13 @@ class Running:
     output: Central
     speed: dict[Central, float]
     torque: dict[Central, float]
-    planet_speed: float = shown("rpm", "of the planets against the housing, counter-clockwise")
-    mesh_frequency: float = shown("Hz", "teeth that come into mesh per second, in every mesh")
-    efficiency: float = shown("", "power out over power in, with the friction of both meshes")
-    mesh_efficiency: float = shown("", "of both meshes one after the other, the carrier at rest")
+    planet_speed: float = shown("rpm", "speed of the planets relative to the housing, counter-clockwise")
+    mesh_frequency: float = shown("Hz", "mesh frequency")
+    efficiency: float = shown("", "efficiency (output / input power) with friction of both meshes")
+    mesh_efficiency: float = shown("", "efficiency of both meshes in series, carrier fixed")
 
     @property
-    @shows("", "speed of the input over that of the output")
+    @shows("", "ratio of input to output speed")
     def ratio(self) -> float:
         """i."""
         return self.speed[self.input] / self.speed[self.output]
@@ -100,13 +100,13 @@ def running(
         If speed, torque or efficiency is out of range.
     """
     if fixed == driving:
-        raise InputError("input", f'"{driving}"', "is fixed as well", "fix another member, or drive another one")
+        raise InputError("input", f'"{driving}"', "is fixed as well", "choose a different fixed or driving member")
     if not (math.isfinite(speed) and speed != 0.0):
         raise RangeError("speed", speed, "must be finite and not zero")
     if not (math.isfinite(torque) and torque > 0.0):
-        raise RangeError("torque", torque, "must be positive: it acts in the sense of the rotation")
+        raise RangeError("torque", torque, "must be positive (acts in the direction of rotation)")
     if not 0.0 < mesh_efficiency <= 1.0:
-        raise RangeError("mesh_efficiency", mesh_efficiency, "must lie in (0, 1]")
+        raise RangeError("mesh_efficiency", mesh_efficiency, "must be above 0 and at most 1")
     (driven,) = (name for name in CENTRALS if name not in (fixed, driving))
     ratio = found.ring_teeth / found.sun_teeth
     # z_s w_s + z_r w_r = (z_s + z_r) w_c, one of the speeds zero
@@ -142,10 +142,8 @@ class AxialForces:
         On each planet by its two meshes, about the tangent of its path counter-clockwise [N m].
     """
 
-    sun: float = shown("N", "of all planets on the sun along the axis, toward the observer", name="axial_force")
-    tilting: float = shown(
-        "N.m", "tilts each planet about the tangent of its path, where all carry alike", name="tilting_moment"
-    )
+    sun: float = shown("N", "axial force of all planets on the sun, towards the observer", name="axial_force")
+    tilting: float = shown("N.m", "tilting moment of each planet (equal load sharing)", name="tilting_moment")
 
 
 def axial_forces(found: PlanetarySet, run: Running, base_twist: float) -> AxialForces:
@@ -176,7 +174,7 @@ class Passing:
     """
 
     what: tuple[str, ...]
-    frequency: Array = shown("Hz", "how often it happens")
+    frequency: Array = shown("Hz", "frequency of the event")
 
 
 def passing(found: PlanetarySet, run: Running) -> Passing:
@@ -191,10 +189,10 @@ def passing(found: PlanetarySet, run: Running) -> Passing:
         "rotation of the carrier": abs(run.speed["carrier"]) / turn,
         "rotation of a planet": abs(run.planet_speed) / turn,
         "rotation of a planet in the carrier": planet,
-        "a tooth of the sun meets a planet": found.count * sun,
-        "a tooth of the ring meets a planet": found.count * ring,
-        "a flank of a planet meets the sun": planet,
-        "a flank of a planet meets the ring": planet,
+        "passing frequency of a sun tooth (planets)": found.count * sun,
+        "passing frequency of a ring tooth (planets)": found.count * ring,
+        "contact frequency of a planet flank with the sun": planet,
+        "contact frequency of a planet flank with the ring": planet,
     }
     return Passing(tuple(rows), np.array(list(rows.values())))
 
@@ -209,10 +207,12 @@ class Sidebands:
     frequency, share : ndarray, shape (lines,)
     """
 
-    harmonic: NDArray[np.intp] = shown("", "harmonic of the set's mesh frequency")
-    order: NDArray[np.intp] = shown("", "oscillations per turn of the carrier against the ring")
-    frequency: Array = shown("Hz", "frequency of the line, seen from the ring")
-    share: Array = shown("", "what the sum of the planets leaves of it: 1 where all add up, 0 where they cancel")
+    harmonic: NDArray[np.intp] = shown("", "mesh harmonic")
+    order: NDArray[np.intp] = shown("", "order, per revolution of the carrier relative to the ring")
+    frequency: Array = shown("Hz", "frequency of the spectral line, observed at the ring")
+    share: Array = shown(
+        "", "resultant of all planets relative to the sum of their amplitudes: 1 in phase, 0 cancelled"
+    )
 
 
 def sidebands(found: PlanetarySet, run: Running, harmonics: int = 2, beside: int = 6) -> Sidebands:

@@ -93,7 +93,7 @@ class LawSprings:
     def __post_init__(self) -> None:
         """Refuse teeth that differ from one another."""
         if self.engagement.cycles != 1:
-            raise InputError("spacing_errors", "(given)", "are not known to a planetary set", "give it teeth alike")
+            raise InputError("spacing_errors", "(given)", "are not supported in a planetary set", "use identical teeth")
 
     @property
     def breaks(self) -> Array:

@@ -84,8 +84,8 @@ def equilibrium(linear: Array, rows: Array, stiffness: Array, separation: Array,
     if np.all(miss <= _NEARLY):
         return z
     raise ConvergenceError(
-        f"The planets find no equilibrium: {float(np.max(miss)):.3g} of the load is left. Support the members that "
-        "float, or check torque and pin errors."
+        f"No equilibrium of the planets found: unbalanced load {float(np.max(miss)):.3g}. Support the floating "
+        "members, or check torque and pin position errors."
     )
 
 

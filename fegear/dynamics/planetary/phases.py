@@ -39,11 +39,15 @@ class Phases:
         gamma_rs: of a planet's mesh with the ring behind its mesh with the sun.
     """
 
-    angle: Array = shown("deg", "of the planet, counter-clockwise")
-    sun: Array = shown("", "mesh of sun and planet behind that of the first planet, in base pitches", name="gamma_sn")
-    ring: Array = shown("", "mesh of planet and ring behind that of the first planet, in base pitches", name="gamma_rn")
+    angle: Array = shown("deg", "angular position of the planet, counter-clockwise")
+    sun: Array = shown(
+        "", "phase lag of the sun-planet mesh relative to the first planet, in base pitches", name="gamma_sn"
+    )
+    ring: Array = shown(
+        "", "phase lag of the planet-ring mesh relative to the first planet, in base pitches", name="gamma_rn"
+    )
     ring_behind_sun: float = shown(
-        "", "a planet's mesh with the ring behind its mesh with the sun, in base pitches", name="gamma_rs"
+        "", "phase lag of the ring mesh of a planet relative to its sun mesh, in base pitches", name="gamma_rs"
     )
 
     @property
@@ -105,10 +109,10 @@ class Phasing:
         "rotation", "translation", both, or "planets" alone.
     """
 
-    harmonic: NDArray[np.intp] = shown("", "harmonic of the set's mesh frequency")
-    torque: Array = shown("", "share of the planets' sum that is left as a torque about the axis")
-    force: Array = shown("", "share of the planets' sum that is left as a force across the axis")
-    excites: tuple[str, ...] = shown("", "kind of modes that it excites")
+    harmonic: NDArray[np.intp] = shown("", "mesh harmonic")
+    torque: Array = shown("", "resultant torque about the axis, relative to planets in phase")
+    force: Array = shown("", "resultant radial force, relative to planets in phase")
+    excites: tuple[str, ...] = shown("", "type of modes excited")
 
 
 def phasing(found: PlanetarySet, harmonics: int) -> Phasing:

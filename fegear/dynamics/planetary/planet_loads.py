@@ -54,8 +54,10 @@ class PlanetLoads:
     pin_force: Array
     member_force: Array
     displacement: Array
-    s: Array = shown("", "place in the mesh cycle, in base pitches of the first planet's mesh with the sun")
-    te: Array = shown("um", "transmission error of the set: of the driving member, at its base circle or the pins")
+    s: Array = shown("", "mesh position, in base pitches of the sun mesh of the first planet")
+    te: Array = shown(
+        "um", "transmission error of the planetary set, at the base circle of the driving member or at the pins"
+    )
     shifted: tuple[PlanetLoads, ...] = ()
 
     @property
@@ -69,37 +71,37 @@ class PlanetLoads:
         return self.cycle.mean_force
 
     @cached_property
-    @shows("", "load of each planet over that of an equal share, mean of the cycle")
+    @shows("", "planet load / equal share, mean over the mesh cycle")
     def shares(self) -> Array:
         """Shape (planets,)."""
         return np.asarray(self.mesh_force[0] @ self.weights / self.mean_force)
 
     @property
-    @shows("", "largest load of a planet over an equal share, mean of the cycle: K_gamma of the rating", name="K_gamma")
+    @shows("", "mesh load factor K_gamma: maximum planet load / equal share (mean over the mesh cycle)", name="K_gamma")
     def mesh_load_factor(self) -> float:
         """K_gamma."""
         return float(self.shares.max())
 
     @property
-    @shows("", "largest load of a planet over an equal share, at any place in the cycle")
+    @shows("", "maximum planet load / equal share, at any mesh position")
     def largest_share(self) -> float:
         """Its largest value over the cycle."""
         return float(self.mesh_force.max()) / self.mean_force
 
     @cached_property
-    @shows("N", "largest mesh force over the cycle")
+    @shows("N", "maximum mesh force over the mesh cycle")
     def largest_load(self) -> Array:
         """Shape (planets,)."""
         return np.asarray(self.mesh_force[0].max(axis=1))
 
     @property
-    @shows("um", "transmission error of the set, peak to peak")
+    @shows("um", "peak-to-peak transmission error of the planetary set")
     def te_peak_to_peak(self) -> float:
         """Largest less smallest over the cycle [m]."""
         return float(np.ptp(self.te))
 
     @property
-    @shows("um", "transmission error of the set, mean of the cycle")
+    @shows("um", "mean transmission error of the planetary set")
     def te_mean(self) -> float:
         """Mean of the cycle [m]."""
         return float(self.te @ self.weights)

@@ -77,7 +77,7 @@ class PlanetarySet:
         if np.any(np.diff(angles) <= 0.0) or span >= 2.0 * math.pi:
             raise InputError(
                 "angles", ", ".join(f"{one:.6g} deg" for one in np.degrees(angles)),
-                "must increase within one turn", "name the planets counter-clockwise, from 0 deg",
+                "must be increasing within one revolution", "specify the planets counter-clockwise, from 0 deg",
             )  # fmt: skip
         self._check_distance()
         check_assembly(self)
@@ -91,8 +91,8 @@ class PlanetarySet:
         if self.centre_distance <= least:
             raise GeometryError(
                 "centre_distance", f"{self.centre_distance * 1e3:.6g} mm",
-                f"must exceed {least * 1e3:.6g} mm, so that both lines of action touch their base circles",
-                "raise it, or check the tooth numbers",
+                f"must exceed {least * 1e3:.6g} mm, for both lines of action to exist",
+                "increase it, or check the numbers of teeth",
             )  # fmt: skip
 
     @property
@@ -110,13 +110,13 @@ class PlanetarySet:
         return self.centre_distance if member == "carrier" else self.base_radius(member)
 
     @cached_property
-    @shows("deg", "working pressure angle of sun and planet")
+    @shows("deg", "working pressure angle, sun-planet")
     def sun_angle(self) -> float:
         """alpha_w of the sun's mesh [rad]."""
         return math.acos((self.base_radius("sun") + self.base_radius("planet")) / self.centre_distance)
 
     @cached_property
-    @shows("deg", "working pressure angle of planet and ring")
+    @shows("deg", "working pressure angle, planet-ring")
     def ring_angle(self) -> float:
         """alpha_w of the ring's mesh [rad]."""
         return math.acos((self.base_radius("ring") - self.base_radius("planet")) / self.centre_distance)
@@ -136,7 +136,7 @@ class PlanetarySet:
         return bool(np.max(np.abs(self.neighbours - 2.0 * math.pi / self.count)) < 1e-9)
 
     @property
-    @shows("mm", "room between the tip circles of the planets that stand closest")
+    @shows("mm", "minimum distance between tip circles of adjacent planets")
     def neighbour_clearance(self) -> float:
         """2 a sin(psi/2) - d_a of the planets [m]; infinite for one planet."""
         if self.count == 1:
@@ -179,16 +179,17 @@ def check_assembly(found: PlanetarySet) -> None:
     if found.evenly_spaced:
         raise GeometryError(
             "planets", found.count,
-            f"cannot stand evenly between {found.sun_teeth} and {found.ring_teeth} teeth: {teeth} / {found.count} = "
-            f"{teeth / found.count:.6g} is not whole, and planet {worst + 1} would be {abs(off):.4g} deg off",
+            f"cannot be equally spaced with {found.sun_teeth} and {found.ring_teeth} teeth (assembly condition): "
+            f"{teeth} / {found.count} = {teeth / found.count:.6g} is not an integer; planet {worst + 1} would be "
+            f"{abs(off):.4g} deg off",
             f"{_counts_that_fit(found)}change a number of teeth by "
-            f"{min(teeth % found.count, found.count - teeth % found.count)}, or give angles = [...] in whole multiples "
-            f"of 360/{teeth} deg",
+            f"{min(teeth % found.count, found.count - teeth % found.count)}, or set angles = [...] in integer "
+            f"multiples of 360/{teeth} deg",
         )  # fmt: skip
     raise GeometryError(
         f"angles[{worst}]", f"{angle:.8g} deg",
-        f"does not fit the teeth of sun and ring: it is {abs(off):.4g} deg off a whole multiple of 360/{teeth} deg",
-        f"write {angle - off:.8g} deg",
+        f"violates the assembly condition: {abs(off):.4g} deg off an integer multiple of 360/{teeth} deg",
+        f"use {angle - off:.8g} deg",
     )  # fmt: skip
 
 
@@ -200,7 +201,7 @@ def _counts_that_fit(found: PlanetarySet) -> str:
     near = [max((one for one in fit if one < found.count), default=0), min((one for one in fit if one > found.count),
                                                                         default=0)]  # fmt: skip
     said = " or ".join(str(one) for one in near if one)
-    return f"take {said} planets, " if said else ""
+    return f"use {said} planets, " if said else ""
 
 
 def check_neighbours(found: PlanetarySet) -> None:
@@ -217,7 +218,7 @@ def check_neighbours(found: PlanetarySet) -> None:
     most = int(math.pi / math.asin(min(found.planet_tip_radius / found.centre_distance, 1.0)))
     raise GeometryError(
         "planets", found.count,
-        f"neighbours meet: their tip circles overlap by {-room * 1e3:.4g} mm "
-        f"(2 a sin(psi/2) - d_a, psi = {math.degrees(float(np.min(found.neighbours))):.4g} deg)",
-        f"at most {most} planets of this tip diameter stand evenly on this centre distance",
+        f"adjacent planets interfere: tip circles overlap by {-room * 1e3:.4g} mm (2 a sin(psi/2) - d_a, psi = "
+        f"{math.degrees(float(np.min(found.neighbours))):.4g} deg)",
+        f"at most {most} equally spaced planets of this tip diameter fit at this centre distance",
     )  # fmt: skip

@@ -196,7 +196,9 @@ class MeshedSet:
             raise RangeError("torque", self.sun_torque, "must be positive and finite")
         for name, one in (("sun", self.sun), ("ring", self.ring)):
             if any(part.pitches != 1 for part in (*one.stiffness, *one.separation)):
-                raise InputError(name, "spacing errors", "are not known to a planetary set: teeth must be alike")
+                raise InputError(
+                    name, "spacing errors", "are not supported in a planetary set (identical teeth required)"
+                )
 
     @property
     def teeth(self) -> tuple[MeshExcitation, MeshExcitation]:

@@ -79,7 +79,7 @@ class PlanetBody:
     def __post_init__(self) -> None:
         """Refuse what is no spring and no body."""
         if not self.pin > 0.0:
-            raise InputError("pin", self.pin, "must be positive: without a pin a planet falls out")
+            raise InputError("pin", self.pin, "must be greater than zero")
         for key in ("mass", "inertia"):
             if not (math.isnan(getattr(self, key)) or 0.0 < getattr(self, key) < math.inf):
                 raise InputError(key, getattr(self, key), "must be positive and finite")
@@ -191,7 +191,7 @@ class SetModel:
         found = np.concatenate([[one.mass, one.mass, one.inertia / radius**2] for _, one, radius in bodies])
         moved = np.any(self.free != 0.0, axis=1)
         for index in np.flatnonzero(np.isnan(found) & moved):
-            raise InputError(bodies[index // AXES][0], "(not given)", "needs mass and inertia, as it can move")
+            raise InputError(bodies[index // AXES][0], "(not given)", "requires mass and inertia (free to move)")
         return np.where(np.isnan(found), 1.0, found)
 
     def held(self, turning: Iterable[Central] = ()) -> NDArray[np.bool_]:

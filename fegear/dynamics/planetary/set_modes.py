@@ -45,11 +45,11 @@ class SetModes:
 
     shapes: Array
     frequency: Array = shown("Hz", "undamped natural frequency with mean mesh stiffnesses")
-    kind: tuple[str, ...] = shown("", "kind of the mode: what sun, ring and carrier do in it")
-    turning: Array = shown("", "share of the kinetic energy in rotations of sun, ring and carrier")
-    moving: Array = shown("", "share of the kinetic energy in translations of sun, ring and carrier")
-    sun_mesh: Array = shown("", "share of the mode's strain energy in the meshes with the sun")
-    ring_mesh: Array = shown("", "share of the mode's strain energy in the meshes with the ring")
+    kind: tuple[str, ...] = shown("", "mode type (motion of sun, ring and carrier)")
+    turning: Array = shown("", "kinetic energy share, rotation of sun, ring and carrier")
+    moving: Array = shown("", "kinetic energy share, translation of sun, ring and carrier")
+    sun_mesh: Array = shown("", "strain energy share of the sun meshes")
+    ring_mesh: Array = shown("", "strain energy share of the ring meshes")
 
 
 def set_modes(model: SetModel, sun_mesh: float, ring_mesh: float) -> SetModes:

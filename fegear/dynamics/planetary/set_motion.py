@@ -49,7 +49,7 @@ class SetMotion:
     def __post_init__(self) -> None:
         """Refuse standstill."""
         if not (math.isfinite(self.mesh_frequency) and self.mesh_frequency > 0.0):
-            raise RangeError("speed", self.mesh_frequency, "must be positive", "at standstill the static answer holds")
+            raise RangeError("speed", self.mesh_frequency, "must be positive", "use the static result for zero speed")
 
     @property
     def speed(self) -> float:
@@ -146,56 +146,56 @@ class SetSweep:
         return np.asarray(found.reshape(len(self.states), 2, -1)[:, mesh])
 
     @property
-    @shows("Hz", "mesh frequency at which the set runs")
+    @shows("Hz", "mesh frequency")
     def mesh_frequency(self) -> Array:
         """Shape (speeds,)."""
         return np.array([state.model.speed for state in self.states]) / (2.0 * math.pi)
 
     @property
-    @shows("", "largest force in a mesh with the sun over that of an equal share", label="mesh with the sun")
+    @shows("", "maximum sun mesh force / equal share", label="sun mesh")
     def sun_factor(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._of("largest", 0).max(axis=1) / self.mean_force)
 
     @property
-    @shows("", "largest force in a mesh with the ring over that of an equal share", label="mesh with the ring")
+    @shows("", "maximum ring mesh force / equal share", label="ring mesh")
     def ring_factor(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._of("largest", 1).max(axis=1) / self.mean_force)
 
     @property
-    @shows("", "largest force on one tooth pair, at sun or ring, over that of an equal share")
+    @shows("", "maximum tooth pair force (sun or ring) / equal share")
     def tooth_factor(self) -> Array:
         """Shape (speeds,)."""
         both = [self._of("tooth_force", mesh).max(axis=1) for mesh in (0, 1)]
         return np.asarray(np.maximum(*both) / self.mean_force)
 
     @property
-    @shows("", "longest share of the time in which a mesh with the sun is apart")
+    @shows("", "maximum fraction of time without contact, sun mesh")
     def apart_sun(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._of("apart", 0).max(axis=1))
 
     @property
-    @shows("", "longest share of the time in which a mesh with the ring is apart")
+    @shows("", "maximum fraction of time without contact, ring mesh")
     def apart_ring(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._of("apart", 1).max(axis=1))
 
     @property
-    @shows("", "longest share of the time in which a mesh touches on its back flanks")
+    @shows("", "maximum fraction of time with back-side contact")
     def behind(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(np.maximum(*(self._of("behind", mesh).max(axis=1) for mesh in (0, 1))))
 
     @property
-    @shows("", "periods of the mesh after which the motion repeats; 0 if it does not")
+    @shows("", "period of the motion in mesh periods; 0: not periodic")
     def periods(self) -> NDArray[np.intp]:
         """Shape (speeds,)."""
         return np.array([state.periods for state in self.states], dtype=np.intp)
 
     @property
-    @shows("", "estimated error of the factors of motions that repeat; blank of others, of which they are a sample")
+    @shows("", "estimated error of the factors of periodic motions; blank for non-periodic motions (sampled)")
     def error(self) -> Array:
         """That of the integration, and what errors of the teeth do to linear vibration, shape (speeds,)."""
         repeats = np.array([state.repeats for state in self.states])

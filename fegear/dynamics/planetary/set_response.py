@@ -78,7 +78,7 @@ class LinearSet:
         ])  # fmt: skip
 
     @cached_property
-    @shows("Hz", "estimated error of the natural frequency, by that of the mesh stiffnesses", name="frequency_error")
+    @shows("Hz", "estimated error of the natural frequency, from that of the mesh stiffnesses", name="frequency_error")
     def frequency_error(self) -> Array:
         """By Rayleigh's quotient: half of each mesh's share of the strain energy, shape (modes,) [Hz]."""
         of_sun, of_ring = self.stiffness_error
@@ -117,7 +117,7 @@ def linear_set(
         If the damping ratio is negative or one and more.
     """
     if not 0.0 <= damping_ratio < 1.0:
-        raise RangeError("damping_ratio", damping_ratio, "must lie in [0, 1)")
+        raise RangeError("damping_ratio", damping_ratio, "must be at least 0 and below 1")
     stiffness, fluctuation = [], []
     for one in meshed.teeth:
         compliance, over = one.linearised(meshed.mean_force)
@@ -159,7 +159,7 @@ class ForcedResponse:
     extremes: Array
     sizes: Array
     mean_force: float
-    mesh_frequency: Array = shown("Hz", "mesh frequency at which the set runs")
+    mesh_frequency: Array = shown("Hz", "mesh frequency")
     others: tuple[ForcedResponse, ...] = ()
 
     def shift(self, answer: Callable[[ForcedResponse], Array]) -> Array:
@@ -173,27 +173,25 @@ class ForcedResponse:
         return np.asarray(np.maximum(self.extremes[:, 0], -self.extremes[:, 1]))
 
     @property
-    @shows("N", "largest dynamic force in a mesh with the sun, above the mean force", label="dynamic force at the sun")
+    @shows("N", "maximum dynamic force of a sun mesh (above the mean)", label="dynamic force, sun mesh")
     def sun_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force[:, 0].max(axis=1))
 
     @property
-    @shows(
-        "N", "largest dynamic force in a mesh with the ring, above the mean force", label="dynamic force at the ring"
-    )
+    @shows("N", "maximum dynamic force of a ring mesh (above the mean)", label="dynamic force, ring mesh")
     def ring_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force[:, 1].max(axis=1))
 
     @property
-    @shows("N", "largest dynamic force in a mesh, above the mean force")
+    @shows("N", "maximum dynamic mesh force (above the mean)")
     def largest_force(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(self._force.max(axis=(1, 2)))
 
     @property
-    @shows("", "smallest force in any mesh over the mean force; below zero teeth part, which is neglected")
+    @shows("", "minimum / mean mesh force; negative: loss of contact (not modelled)")
     def least_share(self) -> Array:
         """Shape (speeds,)."""
         return np.asarray(1.0 + self.extremes[:, 1].min(axis=(1, 2)) / self.mean_force)
@@ -223,7 +221,7 @@ def forced_response(linear: LinearSet, mesh_frequency: ArrayLike) -> ForcedRespo
     """
     frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if not np.all(frequency > 0.0):
-        raise RangeError("speed", float(frequency.min()), "must be positive", "at standstill the static answer holds")
+        raise RangeError("speed", float(frequency.min()), "must be positive", "use the static result for zero speed")
     own, place = _response(linear, frequency)
     others = [_response(one, frequency)[0] for one in linear.shifted]
     if linear.amplitude_error.any():

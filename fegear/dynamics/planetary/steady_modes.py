@@ -139,8 +139,8 @@ def steady_modes(
     turns = natural * periods[:, None] / (2.0 * math.pi)
     if damping_ratio == 0.0 and np.any((np.abs(turns - np.rint(turns)) <= _RESONANT * turns) & (turns > 0.5)):
         raise RangeError(
-            "speed", "a resonance", "meets a natural frequency of a set without damping",
-            "give damping_ratio or leave this speed out",
+            "speed", "a resonance", "is a natural frequency of the undamped planetary set",
+            "specify damping_ratio or remove this speed",
         )  # fmt: skip
     rate: Complex = np.asarray(natural * complex(-damping_ratio, math.sqrt(1.0 - damping_ratio**2)), dtype=complex)
     halves = 0.5 * periods[:, None] * widths  # (W, S)

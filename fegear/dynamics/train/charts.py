@@ -33,31 +33,27 @@ class SpeedChart:
     """
 
     speeds: Array = shown("rpm", "speed of the first body", name="speed")
-    dynamic_factor: Array = shown("", "largest force on one tooth pair over the mean mesh force")
-    mesh_force_factor: Array = shown("", "largest mesh force over the mean mesh force")
-    apart: Array = shown("", "share of the time without contact", name="contact_loss_fraction")
-    behind: Array = shown("", "share of the time on the back flanks", name="backside_fraction")
-    periods: NDArray[np.int64] = shown("", "periods of excitation after which the motion repeats; 0 if it does not")
+    dynamic_factor: Array = shown("", "maximum tooth pair force / mean mesh force")
+    mesh_force_factor: Array = shown("", "maximum mesh force / mean mesh force")
+    apart: Array = shown("", "fraction of time without contact", name="contact_loss_fraction")
+    behind: Array = shown("", "fraction of time with back-side contact", name="backside_fraction")
+    periods: NDArray[np.int64] = shown("", "period of the motion in excitation periods; 0: not periodic")
     kinds: tuple[str, ...] = shown(
-        "", "periodic (and stable), quasi-periodic, chaotic, long-period, not settled, or growing without bound",
+        "", "periodic (stable), quasi-periodic, chaotic, long-period, not converged, or unbounded",
         name="motion",
     )  # fmt: skip
-    median: Array = shown("", "dynamic factor that half of the periods do not exceed", name="median_factor")
-    upper: Array = shown("", "dynamic factor that 99 % of the periods do not exceed", name="factor_99_percent")
-    measured: NDArray[np.int64] = shown(
-        "", "periods of excitation that the largest forces come from", name="periods_measured"
-    )
-    multiplier: Array = shown(
-        "", "growth of a small disturbance over one period of excitation; above 1 in a motion that grows"
-    )
-    lower: Array = shown(
-        "", "dynamic factor that every measured period reaches: the smallest of theirs", name="smallest_factor"
-    )
-    repetitions: NDArray[np.int64] = shown("", "periods of the averaging iteration until it settled or was given up")
+    median: Array = shown("", "dynamic factor, median over the periods", name="median_factor")
+    upper: Array = shown("", "dynamic factor, 99th percentile over the periods", name="factor_99_percent")
+    measured: NDArray[np.int64] = shown("", "number of excitation periods evaluated", name="periods_measured")
+    multiplier: Array = shown("", "largest Floquet multiplier over one excitation period; above 1: unstable")
+    lower: Array = shown("", "minimum over the periods of the dynamic factor", name="smallest_factor")
+    repetitions: NDArray[np.int64] = shown("", "number of periods of the averaging iteration")
     difference: Array = shown(
-        "", "difference of start and end of the last period, relative to the static deflection", name="left_difference"
+        "",
+        "difference between start and end of the last period, relative to the static deflection",
+        name="left_difference",
     )
-    off: Array = shown("", "what the averaging iteration leaves in the dynamic factor")
+    off: Array = shown("", "residual of the averaging iteration in the dynamic factor")
 
     @classmethod
     def of(cls, speeds: Array, states: Sequence[SteadyState], mesh: int, mean: float) -> SpeedChart:
@@ -137,7 +133,7 @@ def speed_chart(
     if not model.static[mesh] > 0.0:
         raise RangeError(
             "dynamic factor", f"{float(model.static[mesh]):.6g} N", "is the mean force: must be positive",
-            "look at the forces of `speed_sweep` for an idling gear pair",
+            "use the forces of `speed_sweep` for an idling gear pair",
         )  # fmt: skip
     order = speed[::-1] if direction == "down" else speed
     start = "follow" if direction in ("up", "down") else direction

@@ -61,9 +61,9 @@ class FactorLine:
     """A straight line of the dynamic factor over the effective error, by least squares."""
 
     constant: float = shown("", "dynamic factor at no effective error", name="line_constant")
-    slope: float = shown("1/mm", "of the dynamic factor over A_e", name="line_slope")
-    scatter: float = shown("", "root mean square of what it misses", name="line_scatter")
-    correlation: float = shown("", "of dynamic factor and A_e", name="line_correlation")
+    slope: float = shown("1/mm", "slope of the dynamic factor over A_e", name="line_slope")
+    scatter: float = shown("", "root mean square residual", name="line_scatter")
+    correlation: float = shown("", "correlation coefficient of dynamic factor and A_e", name="line_correlation")
 
     def __call__(self, effective_error: ArrayLike) -> Array:
         """Dynamic factor at effective errors [m]."""

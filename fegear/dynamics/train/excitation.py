@@ -214,7 +214,7 @@ class MeshExcitation:
         stiff = np.cumsum(np.where(finite, k, 0.0), axis=0)
         held = np.cumsum(np.where(finite, k * np.where(finite, m, 0.0), 0.0), axis=0)
         if np.any(stiff[0] <= 0.0):
-            raise RangeError("excitation", 0.0, "is the mesh stiffness somewhere on the base pitch: no tooth can carry")
+            raise RangeError("excitation", 0.0, "is the mesh stiffness at some mesh position: no tooth carries load")
         level = (w + held) / stiff
         following = np.concatenate([m[1:], np.full((1, *s.shape), np.inf)])
         enough = np.argmax(level <= following, axis=0)

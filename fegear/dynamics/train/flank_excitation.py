@@ -147,8 +147,8 @@ def flank_excitation(flanks: FlankPair, found: LoadedFlanks, *, forward: bool = 
     force = found.pair_load[:, :, 0]
     if np.any(stiffness[force > 0.0] <= 0.0):
         raise RangeError(
-            "effects.neighbour_coupling", "true", "makes a tooth pair carry less as the gears approach",
-            "switch it off, or give the gears thicker rims",
+            "effects.neighbour_coupling", "true", "gives a tooth pair a negative tangent stiffness",
+            "switch it off, or increase the rim thickness",
         )  # fmt: skip
     life = _Life(
         flanks.points, first, stiffness, force, found.transmission_error[:, 0], 1.0 if forward else -1.0

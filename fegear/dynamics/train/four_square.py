@@ -176,8 +176,8 @@ def _sign(mesh: Mesh, radius: float) -> int:
 def _refuse(what: str) -> NoReturn:
     raise InputError(
         "dynamics.determinants", "true",
-        f"requires Mark's rig: three bodies, two meshes of ratio 1 and equal base radii that share a body, no shafts, "
-        f"no mesh damping; this train has {what}",
+        "requires Mark's test rig (three bodies, two meshes of ratio 1 and equal base radii sharing a body, no "
+        f"shafts, no mesh damping); this train has {what}",
         "remove dynamics.determinants",
     )  # fmt: skip
 

@@ -169,7 +169,7 @@ def with_friction(
     """
     if not excitation.slotted:
         raise InputError(
-            "friction", "one spring per gear pair", "needs tooth pairs, each at its place on the line of action"
+            "friction", "one spring per gear pair", "requires tooth pairs with positions on the line of action"
         )
     speed = mesh_frequency * base_pitch  # of the contact along the line of action
     radii = (mesh.radius_a, mesh.radius_b) if a_drives else (mesh.radius_b, mesh.radius_a)
@@ -227,22 +227,26 @@ class FrictionOverPath:
         Toward the tip of the gear that drives; two beside each jump.
     """
 
-    x: Array = shown("mm", "place of the tooth pair on the line of action")
+    x: Array = shown("mm", "position of the tooth pair on the line of action")
     load: Array = shown("N", "static load on the tooth pair")
-    sliding: Array = shown("m/s", "of the driver's flank on the driven one", name="sliding_velocity")
-    rolling: Array = shown("m/s", "sum of both flanks' speeds", name="rolling_velocity")
+    sliding: Array = shown("m/s", "sliding velocity", name="sliding_velocity")
+    rolling: Array = shown("m/s", "sum velocity", name="rolling_velocity")
     coefficient: Array = shown(name="friction_coefficient", label="friction coefficient")
-    torque_driver: Array = shown("N.m", "of this pair; positive turns the gear on", label="torque on the driver")
-    torque_driven: Array = shown("N.m", "of this pair; positive turns the gear on", label="torque on the driven")
-    total_driver: Array = shown("N.m", "of all pairs in contact then (T_f1)", name="total_torque_driver")
-    total_driven: Array = shown("N.m", "of all pairs in contact then (T_f2)", name="total_torque_driven")
-    loss: float = shown("W", "mean power that tooth friction takes", name="friction_loss")
-    loss_error: float = shown("W", "of the integration and the fitted teeth")
-    mean_coefficient: float = shown("", "friction coefficient that would take as much everywhere")
-    power: float = shown("W", "that the mesh transmits")
+    torque_driver: Array = shown(
+        "N.m", "friction torque of this pair; positive in the direction of rotation", label="torque on the driver"
+    )
+    torque_driven: Array = shown(
+        "N.m", "friction torque of this pair; positive in the direction of rotation", label="torque on the driven"
+    )
+    total_driver: Array = shown("N.m", "friction torque of all pairs in contact (T_f1)", name="total_torque_driver")
+    total_driven: Array = shown("N.m", "friction torque of all pairs in contact (T_f2)", name="total_torque_driven")
+    loss: float = shown("W", "mean gear mesh power loss", name="friction_loss")
+    loss_error: float = shown("W", "error of integration and tooth fit")
+    mean_coefficient: float = shown("", "equivalent constant friction coefficient (same loss)")
+    power: float = shown("W", "power transmitted by the mesh")
 
     @property
-    @shows("", "of the mesh, by tooth friction alone")
+    @shows("", "efficiency of the mesh (tooth friction only)")
     def efficiency(self) -> float:
         """Share of the power that tooth friction leaves."""
         return 1.0 - self.loss / self.power
@@ -270,7 +274,9 @@ def friction_over_path(
         If the excitation is one spring for the whole gear pair.
     """
     if not mesh.excitation.slotted:
-        raise InputError("friction", "one spring per gear pair", "needs tooth pairs, each at its place on the path")
+        raise InputError(
+            "friction", "one spring per gear pair", "requires tooth pairs with positions on the path of contact"
+        )
     pair, pitch = mesh.pair, mesh.pair.base_pitch
     speed = frequency * pitch
     pitches, kinks = _kinks(mesh)

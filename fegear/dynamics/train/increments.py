@@ -174,8 +174,8 @@ class _Solver:
             raise RangeError(
                 "frequency",
                 f"{where:.9g} Hz",
-                "is a natural frequency of the train without damping: the response has no bound",
-                "give the train damping or leave this frequency out",
+                "is a natural frequency of the undamped train: unbounded response",
+                "specify damping or remove this frequency",
             )
         return found.q
 
@@ -310,8 +310,8 @@ def low_frequency_terms(train: Train) -> tuple[Array, Array]:
             return c, power.astype(int)
         w *= _DOWN
     raise RangeError(
-        "frequency", f"{w / _DOWN / (2.0 * math.pi):.3g} Hz", "is not low enough for a low-frequency asymptote",
-        "leave damping out that is next to nothing",
+        "frequency", f"{w / _DOWN / (2.0 * math.pi):.3g} Hz", "is too high for a low-frequency asymptote",
+        "remove negligible damping",
     )  # fmt: skip
 
 

@@ -170,8 +170,8 @@ def _by_slot(state: Loaded, s: Array, slots: range, pitch: float) -> tuple[Array
     tangent, loads, error = state.pair_tangent[:, :, 0], state.loads[:, :, 0], state.transmission_error[:, 0]
     if np.any(tangent[loads > 0.0] <= 0.0):
         raise RangeError(
-            "compliance", "a coupled tooth pair", "carries less load as the gears approach: it is no spring",
-            "switch neighbour_coupling off, or give the gears thicker rims",
+            "compliance", "a coupled tooth pair", "has a negative tangent stiffness",
+            "switch neighbour_coupling off, or increase the rim thickness",
         )  # fmt: skip
     apart = error - np.divide(loads, tangent, out=np.zeros_like(loads), where=loads > 0.0)
     own = np.arange(s.size)

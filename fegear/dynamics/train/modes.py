@@ -38,7 +38,7 @@ class Modes:
         Zero for the rigid-body motion.
     """
 
-    frequencies: Array = shown("Hz", "undamped, with mean mesh stiffnesses", name="frequency")
+    frequencies: Array = shown("Hz", "undamped natural frequency with mean mesh stiffness", name="frequency")
     shapes: Array = shown("", "rotation angle for unit modal mass [rad/(kg^0.5 m)]", name="shape")
     mesh_energy: Array = shown("", "share of the mode's strain energy in this mesh", name="energy")
 

@@ -48,13 +48,13 @@ class MeshForce:
     The mean stiffness is that of Mark's equations 3.2 to 3.10; time is zero at phase zero.
     """
 
-    phase: Array = shown("", "of the mesh, in base pitches")
-    time: Array = shown("s", "from the mesh's phase zero", name="t")
+    phase: Array = shown("", "mesh position, in base pitches")
+    time: Array = shown("s", "time from phase zero of the mesh", name="t")
     of_teeth: Array = shown(
-        "N", "sum of the forces on the tooth pairs in contact, with all meshes", name="force", label="mesh force"
+        "N", "sum of the tooth pair forces, excited by all meshes", name="force", label="mesh force"
     )
     by_mean_stiffness: Array = shown(
-        "N", "mean force and mean stiffness times the increments of the transmission error",
+        "N", "mean force plus mean stiffness times the dynamic increments of the transmission error",
         name="force_by_mean_stiffness",
     )  # fmt: skip
     pairs: NDArray[np.integer] = shown("", "tooth pairs in contact")
@@ -168,11 +168,16 @@ class ToothRootStress:
     `error` is NaN where the source does not know.
     """
 
-    total: Array = shown("MPa", "largest root tension, all meshes' shares", name="stress", label="largest root tension")
-    any_phase: Array = shown("MPa", "at most, whatever the phases of the other meshes", name="stress_any_phase")
-    own: Array = shown("MPa", "without the other meshes' share", name="stress_own_mesh")
+    total: Array = shown(
+        "MPa",
+        "maximum root stress (tension side), excited by all meshes",
+        name="stress",
+        label="maximum root stress (tension side)",
+    )
+    any_phase: Array = shown("MPa", "upper bound over all phases of the other meshes", name="stress_any_phase")
+    own: Array = shown("MPa", "without the contribution of the other meshes", name="stress_own_mesh")
     static: Array = shown("MPa", "quasi-static", name="static_stress")
-    error: Array = shown("MPa", "what the source leaves in stress_own_mesh", name="stress_error")
+    error: Array = shown("MPa", "estimated error of stress_own_mesh", name="stress_error")
 
 
 def tooth_root_stress(

@@ -40,19 +40,19 @@ class MeshForceSpectrum:
 
     speeds: Array = shown("rpm", "speed of the first body", name="speed")
     orders: Array = shown("", "harmonic of the mesh frequency of from_pair", name="n")
-    present: NDArray[np.bool_] = shown("", "whether the transmission error of the exciting mesh has that harmonic")
+    present: NDArray[np.bool_] = shown("", "1: the transmission error of the exciting mesh contains this harmonic")
     frequencies: Array = shown("Hz", "n times the mesh frequency", name="frequency", label="frequency")
     coefficients: Complex = shown("N", "complex Fourier coefficient; its amplitude is twice the modulus")
     static: Array = shown("N", "mean mesh force")
 
     @property
-    @shows("N", "0-peak", name="force", label="mesh force, 0-peak")
+    @shows("N", "0-peak", name="force", label="mesh force amplitude")
     def amplitudes(self) -> Array:
         """Amplitudes (0-peak) [N], shape (meshes, meshes, harmonics, speeds)."""
         return 2.0 * np.abs(self.coefficients)
 
     @property
-    @shows("N^2", "one-sided power of the line", name="power", label="power of the line")
+    @shows("N^2", "one-sided power of the spectral line", name="power", label="power of the spectral line")
     def power_lines(self) -> Array:
         """One-sided power of each line [N^2], 2 |alpha|^2 (3.11)."""
         return 2.0 * np.abs(self.coefficients) ** 2

@@ -41,23 +41,25 @@ class ToothForce:
     are those of Mark.
     """
 
-    x: Array = shown("mm", "place of the tooth pair on the line of action")
-    time: Array = shown("s", "from the mesh's phase zero", name="t")
+    x: Array = shown("mm", "position of the tooth pair on the line of action")
+    time: Array = shown("s", "time from phase zero of the mesh", name="t")
     static: Array = shown("N", "static part")  # (3.30)
     own: Array = shown("N", "from this mesh's transmission error", name="own_increment", label="increment")  # (5.14)
     #: At the phases given (5.15); zero for this mesh itself.
-    cross: Array = shown("N", "from the other mesh, at the case's phases", name="increment")
-    cross_reach: Array = shown("N", "largest increment from the other mesh over all relative phases")
-    cross_least: Array = shown("N", "least increment from the other mesh over all relative phases")
+    cross: Array = shown("N", "from the other mesh, at the phases of the case", name="increment")
+    cross_reach: Array = shown("N", "maximum increment from the other mesh over all relative phases")
+    cross_least: Array = shown("N", "minimum increment from the other mesh over all relative phases")
 
     @property
-    @shows("N", "on one tooth pair, without the other meshes' share", name="force", label="tooth force")
+    @shows(
+        "N", "force on one tooth pair, without the contribution of the other meshes", name="force", label="tooth force"
+    )
     def total(self) -> Array:
         """Static force and own increment [N]: what Figs. 22 and 23 of the paper show."""
         return self.static + self.own
 
     @property
-    @shows("N", "with the other meshes' share, at the case's phases", name="force_with_others")
+    @shows("N", "including the other meshes, at the phases of the case", name="force_with_others")
     def with_others(self) -> Array:
         """Static force and the increments from all meshes at the phases given [N]."""
         return self.total + np.asarray(self.cross.sum(axis=0))
@@ -149,7 +151,7 @@ def tooth_force(
     phase = place / base_pitch + number
     frequency = train.mesh_frequencies(speed)
     if not frequency[mesh] > 0.0:
-        raise InputError("speed", speed, "must not be zero: time stands still")
+        raise InputError("speed", speed, "must not be zero")
     time = phase / float(frequency[mesh])
     exact = errors[mesh](phase)
     static = k * (exact - m)

@@ -72,9 +72,9 @@ def torque_response(train: Train, omega: ArrayLike, body: str) -> TorqueResponse
     """
     w = np.asarray(omega, dtype=float)
     if body not in train.dof:
-        raise InputError("body", body, "is no body of this train", f"known: {', '.join(sorted(train.dof))}")
+        raise InputError("body", body, "is not a body of this train", f"known: {', '.join(sorted(train.dof))}")
     if not np.all(np.isfinite(w) & (w > 0.0)):
-        raise RangeError("frequency", float(np.min(w)), "must be positive and finite", "a constant torque is static")
+        raise RangeError("frequency", float(np.min(w)), "must be positive and finite", "constant torques are static")
     note("ripple lines", int(w.size))
     _refuse_resonance(train, w.ravel())
     forces, shafts = _solved(train, w.ravel(), train.dof[body])
@@ -95,8 +95,8 @@ def _refuse_resonance(train: Train, w: Array) -> None:
         if damping <= _NO_DAMPING * omega and np.any(met):
             raise RangeError(
                 "frequency", f"{float(w[met][0]) / (2.0 * math.pi):.9g} Hz",
-                "is a natural frequency of the train without damping: the response has no bound",
-                "give the train damping or leave this frequency out",
+                "is a natural frequency of the undamped train: unbounded response",
+                "specify damping or remove this frequency",
             )  # fmt: skip
 
 
@@ -189,12 +189,12 @@ class RippleSpectrum:
     of: tuple[int, ...]
     harmonics: NDArray[np.int64] = shown("", "harmonic of the torque ripple", name="n")
     torques: Complex = shown("N.m", "complex amplitude of the torque")
-    frequencies: Array = shown("Hz", "of the line", name="frequency")
+    frequencies: Array = shown("Hz", "frequency of the spectral line", name="frequency")
     forces: Complex = shown("N", "complex amplitude of the mesh force")
     shafts: Complex = shown("N.m", "complex amplitude of the torque in a shaft")
 
     @property
-    @shows("N^2", "one-sided power of the line of torque ripple", name="power")
+    @shows("N^2", "one-sided power of the torque ripple line", name="power")
     def power_lines(self) -> Array:
         """Half the square of each amplitude of the mesh forces [N^2]."""
         return np.asarray(0.5 * np.abs(self.forces) ** 2)

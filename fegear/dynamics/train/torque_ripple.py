@@ -75,7 +75,7 @@ class TorqueRipple:
             raise InputError(f"{key}.phases", list(self.phases), "must be finite")
         base = self.frequency if self.order is None else self.order[0] / self.order[1]
         if not (math.isfinite(base) and base > 0.0):
-            raise InputError(f"{key}.frequency", base, "must be positive", "a constant torque is one of the torques")
+            raise InputError(f"{key}.frequency", base, "must be positive", "specify constant torques in torque")
 
     @property
     def harmonics(self) -> NDArray[np.int64]:
@@ -213,8 +213,8 @@ def common_period(
         base = float(ripple[slow].base_frequency(speed))
         raise RangeError(
             f"torque_ripple.{ripple[slow].name}", f"{base:.6g} Hz",
-            f"repeats so slowly that no {LONGEST:,} mesh periods close a motion",
-            "so slow a torque acts like a constant one: compare runs with other train.torque",
+            f"is too low: the motion does not repeat within {LONGEST:,} mesh periods",
+            "treat so slow a torque as constant: compare runs with different train.torque",
         )  # fmt: skip
     return CommonPeriod(int(counts[at]), tuple((1.0 + shift[at]).tolist()))
 

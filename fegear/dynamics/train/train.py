@@ -48,11 +48,11 @@ class Train:
 
     def __post_init__(self) -> None:
         if not self.bodies:
-            raise InputError("train.bodies", 0, "must name at least one body")
+            raise InputError("train.bodies", 0, "must contain at least one body")
         for kind, parts in (("body", self.bodies), ("shaft", self.shafts), ("mesh", self.meshes)):
             for name, count in Counter(part.name for part in parts).items():
                 if count > 1:
-                    raise InputError(f"train.{kind}", name, "is used twice", "give each its own name")
+                    raise InputError(f"train.{kind}", name, "is used twice", "use unique names")
         self._check_references()
         if not self.meshes and not self.shafts and len(self.bodies) > 1:
             raise InputError("train", len(self.bodies), "bodies need shafts or gear pairs that connect them")
@@ -71,7 +71,7 @@ class Train:
         ends += [("torque", torque.body) for torque in self.torques]
         for part_name, body in ends:
             if body not in known:
-                raise InputError(part_name, body, "is no body of this train", f"known: {', '.join(sorted(known))}")
+                raise InputError(part_name, body, "is not a body of this train", f"known: {', '.join(sorted(known))}")
 
     def _check_torques(self) -> None:
         total = np.abs(self.ratios * self.torque).sum()
@@ -80,8 +80,8 @@ class Train:
             raise InputError(
                 "train.torques",
                 f"{unbalanced:.6g} N m",
-                f"is left unbalanced, referred to the speed of {self.bodies[0].name}",
-                "make the load torque match the drive torque times the speed ratio",
+                f"is not balanced, referred to the speed of {self.bodies[0].name}",
+                "the load torque must equal the drive torque times the speed ratio",
             )
 
     @cached_property
@@ -136,8 +136,8 @@ class Train:
                 elif ratios[b] != ratios[a] * ratio:
                     raise InputError(
                         name, f"{float(ratios[a] * ratio / ratios[b]):.6g}",
-                        "is the speed ratio around the loop that it closes: the loop locks",
-                        "make the ratios around the loop multiply to 1 (mind the signs of the base radii)",
+                        "is the speed ratio around a closed loop, which locks",
+                        "the ratios around the loop must multiply to 1 (mind the signs of the base radii)",
                     )  # fmt: skip
         if len(ratios) < self.size:
             lost = [body.name for body in self.bodies if self.dof[body.name] not in ratios]
@@ -145,7 +145,7 @@ class Train:
                 "train",
                 ", ".join(lost),
                 f"is not connected with {self.bodies[0].name} by shafts or gear pairs",
-                "model it as a train of its own, or add the shaft",
+                "model it as a separate train, or add the shaft",
             )
         return tuple(ratios[index] for index in range(self.size))
 
@@ -184,7 +184,7 @@ class Train:
         for index, mesh in enumerate(self.meshes):
             if mesh.name == name:
                 return index
-        raise InputError("mesh", name, "is no gear pair of this train")
+        raise InputError("mesh", name, "is not a gear pair of this train")
 
 
 def common_multiple(parts: Iterable[Fraction]) -> Fraction:
@@ -286,8 +286,8 @@ class Shaft:
             raise InputError(
                 f"{key}.stiffness",
                 0.0,
-                "couples nothing",
-                "leave the shaft out, or make it a damper between the bodies",
+                "has neither stiffness nor damping",
+                "remove the shaft, or replace it by a damper between the bodies",
             )
         require_positive(f"{key}.stiffness", self.stiffness, infinite=True)
         require_positive(f"{key}.damping", self.damping, zero=True)

@@ -1,1 +1,1 @@
-"""What a result shows, as data: its tables, values, figures and remarks, filled from what the mechanics declares."""
+"""What a result shows, as data: its tables, values, figures and notes, filled from what the mechanics declares."""

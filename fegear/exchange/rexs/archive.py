@@ -41,12 +41,12 @@ def archived_text(path: Path, refusal: Callable[[str, str], InputError]) -> str:
         with zipfile.ZipFile(path) as archive:
             entries = archive.infolist()
             if len(entries) > _MOST_ENTRIES:
-                raise refusal(f"is an archive of more than {_MOST_ENTRIES} files", "pack the model alone")
+                raise refusal(f"is an archive of more than {_MOST_ENTRIES} files", "pack only the model")
             models = [one for one in entries if _is_model(one.filename)]
             if len(models) != 1:
                 names = ", ".join(one.filename for one in models[:3])
                 what = f"{len(models)} models ({names})" if models else "no model (.rexs or .rexsj)"
-                raise refusal(f"is an archive with {what}", "import the one that is meant")
+                raise refusal(f"is an archive with {what}", "specify one of them")
             (model,) = models
             if model.flag_bits & 1:
                 raise refusal("is an encrypted archive", "pack the model without a password")
@@ -55,11 +55,11 @@ def archived_text(path: Path, refusal: Callable[[str, str], InputError]) -> str:
     except _DAMAGED as error:
         raise refusal(f"is a damaged archive ({error})", "pack it again") from None
     if len(data) > _LARGEST:
-        raise refusal(f"holds a model of more than {_LARGEST // 1_000_000} MB", "export the gearbox alone")
+        raise refusal(f"contains a model of more than {_LARGEST // 1_000_000} MB", "export the gearbox only")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise refusal("holds a model that is not in UTF-8", "export it again") from None
+        raise refusal("contains a model that is not in UTF-8", "export it again") from None
 
 
 def _is_model(name: str) -> bool:

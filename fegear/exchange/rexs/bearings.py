@@ -130,10 +130,12 @@ def bearings_of(
             joins = next((mate for mate in mates if _coaxial(places or {}, shaft, mate)), None)
             alone = bool(mates) and joins is None
             if alone and at == "outer" and len({held.at for held in found}) > 1:
-                said.notes.append(f"{one.said}: what it presses on {shaft.said}, which holds it, is neglected.")
+                said.notes.append(f"{one.said}: reaction on {shaft.said} neglected.")
                 continue
             if alone:
-                said.notes.append(f"{one.said} holds {shaft.said} in another shaft: it is taken as held by the casing.")
+                said.notes.append(
+                    f"{one.said} supports {shaft.said} in another shaft; treated as supported by the housing."
+                )
             place = said.needed(one, "length", f"u_coordinate_on_shaft_{at}_side", "u_coordinate_on_shaft_inner_side")
             found.append(Held(one, names[one.id], place, outside=at == "outer", rows=_rows(said, one), joins=joins))
     return sorted(found, key=lambda one: one.at)
@@ -166,12 +168,13 @@ def fixed_bearing(said: Said, shaft: Component, bearings: Sequence[Held], push: 
         found = bearings[ways.index(kind)]
         if kind != _BOTH and not (found.rows and found.rows.angle and {_PLUS, _MINUS} <= set(ways)):
             said.notes.append(
-                f"{shaft.said}: no bearing holds it both ways along its axis; {found.component.said} is taken to."
+                f"{shaft.said}: no axial support in both directions; {found.component.said} assumed as locating "
+                "bearing."
             )
         return found
     if any(ways):
         said.notes.append(
-            f"{shaft.said}: no bearing holds it along its axis; {bearings[0].component.said} is taken to."
+            f"{shaft.said}: no axial support specified; {bearings[0].component.said} assumed as locating bearing."
         )
     return bearings[0]
 
@@ -190,7 +193,10 @@ def stopped_along(said: Said, shaft: Component, bearings: Sequence[Held], along:
     held = {way for one in bearings if one.rows for way in _thrust(said, one, one.rows)}
     if along.rows is None or held == {False, True}:
         return list(bearings)
-    said.notes.append(f"{along.component.said}: what rolls does not hold {shaft.said} both ways: its ring is stopped.")
+    said.notes.append(
+        f"{along.component.said}: rolling elements do not support {shaft.said} in both axial "
+        "directions; ring assumed axially fixed."
+    )
     return [replace(one, stopped=one is along) for one in bearings]
 
 
@@ -224,7 +230,7 @@ def bearing_tables(said: Said, held: Held, *, fixed: bool) -> list[Table]:
     tables = [Table(f"bearing.{held.name}", (*keys, *life), about)]
     if held.stopped:
         stop = (
-            Key("radial", quantity(0.0, "N/um"), "nothing across the axis"),
+            Key("radial", quantity(0.0, "N/um"), "no radial stiffness"),
             Key("fixed", "true", "axial_force_absorption"),
         )
         tables.append(Table(f"bearing.{held.name}_along", stop, f"flanges of {one.said}"))
@@ -243,20 +249,22 @@ def _stiffness(said: Said, one: Component, *, fixed: bool) -> list[Key]:
     elif soft:
         keys.append(Key("radial", quantity(radial or 0.0, "N/um"), "radial_stiffness"))
     elif radial is not None and radial < 0.0:
-        raise InputError("radial_stiffness", f"{radial:g} N/m", f"of {one.said} must not be negative", "correct it")
+        raise InputError(
+            "radial_stiffness", f"{radial:g} N/m", f"of {one.said} must not be negative", "correct the value"
+        )
     else:
-        said.notes.append(f"{one.said}: neither what rolls in it nor a stiffness is said; it is rigid across the axis.")
+        said.notes.append(f"{one.said}: neither rolling elements nor stiffness specified; radially rigid.")
     if fixed and axial is not None and 0.0 < axial < RIGID:
         keys.append(Key("axial", quantity(axial, "N/um"), "axial_stiffness"))
     elif fixed:
-        keys.append(Key("fixed", "true", "axial_force_absorption; rigid along the axis"))
+        keys.append(Key("fixed", "true", "axial_force_absorption; axially rigid"))
     if tilting:
         keys.append(Key("tilting", quantity(min(tilting, RIGID), "N*m/rad"), "bending_stiffness"))
     if clearance and soft and not fixed:
         keys.append(Key("radial_clearance", quantity(0.5 * clearance, "um"), "half the radial bearing clearance"))
     elif clearance:
-        said.notes.append(f"{one.said}: its clearance of {clearance * 1e6:g} um is not used, for it is rigid or fixed.")
-    return keys or [Key("tilting", quantity(0.0, "N*m/rad"), "rigid across the axis, free to tilt and to slide")]
+        said.notes.append(f"{one.said}: clearance of {clearance * 1e6:g} um ignored (rigid or fixed bearing).")
+    return keys or [Key("tilting", quantity(0.0, "N*m/rad"), "radially rigid, free to tilt and to move axially")]
 
 
 def _clearance(said: Said, one: Component) -> float | None:
@@ -282,13 +290,14 @@ def _rows(said: Said, one: Component) -> Rows | None:
         return None
     if count < 3.0 or count != round(count) or diameter > pitch * math.sin(math.pi / count):
         said.notes.append(
-            f"{one.said}: {count:g} elements of {diameter * 1e3:g} mm do not fit on {pitch * 1e3:g} mm; not used."
+            f"{one.said}: {count:g} elements of {diameter * 1e3:g} mm do not fit on a pitch diameter of "
+            f"{pitch * 1e3:g} mm; ignored."
         )
         return None
     angle = abs(said.number(row, "angle", "pressure_angle") or 0.0)
     if angle and _holds(said, one) == _NONE:
         said.notes.append(
-            f"{one.said} slides in its seat: its contact angle of {math.degrees(angle):g} deg is not used."
+            f"{one.said} is a non-locating bearing: contact angle of {math.degrees(angle):g} deg ignored."
         )
         angle = 0.0
     races = [
@@ -304,14 +313,12 @@ def _rows(said: Said, one: Component) -> Rows | None:
 def _ways(said: Said, one: Component, rows: Sequence[Component], angle: float) -> tuple[bool, ...]:
     """Of each row whether it holds to -u: as it says, else as the bearing says, else every second one."""
     if len(rows) > 1:
-        said.notes.append(
-            f"{one.said} has {len(rows)} rows: each is a bearing of the case like the first, in one place."
-        )
+        said.notes.append(f"{one.said}: {len(rows)} rows modelled as identical bearings at the same position.")
     own = [(said.word(row, "axial_force_absorption_of_row") or "").lower() for row in rows]
     if angle and len(rows) == 1:
         own = [own[0] if own[0] in (_PLUS, _MINUS) else _holds(said, one)]
         if own[0] not in (_PLUS, _MINUS):
-            said.notes.append(f"{one.said}: which way its contact angle holds is not said; to +u is assumed.")
+            said.notes.append(f"{one.said}: direction of the contact angle not specified; +u assumed.")
     return tuple(way == _MINUS if way in (_PLUS, _MINUS) else bool(n % 2) for n, way in enumerate(own))
 
 
@@ -330,7 +337,7 @@ def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
     )  # fmt: skip
     keys = [Key("elements", value, rows.about)]
     if rows.length is None and not fixed and _holds(said, one) == _NONE:
-        keys.append(Key("housing_axial", quantity(_SLIDES, "N/um"), "axial_force_absorption: it slides in its seat"))
+        keys.append(Key("housing_axial", quantity(_SLIDES, "N/um"), "axial_force_absorption: non-locating bearing"))
     return keys
 
 
@@ -348,5 +355,5 @@ def _life(said: Said, one: Component, rows: int) -> list[Key]:
         radial_factor=number(x) if x and y and limit else None, axial_factor=number(y) if x and y and limit else None,
         limit=number(limit) if x and y and limit else None,
     )  # fmt: skip
-    also = f", that of one of {rows} rows by ISO 281" if rows > 1 else ""
-    return [Key("life", value, f"dynamic load rating and factors of the catalogue{also}")]
+    also = f", one of {rows} rows to ISO 281" if rows > 1 else ""
+    return [Key("life", value, f"dynamic load rating and catalogue factors{also}")]

@@ -125,7 +125,7 @@ def driven(
         balance[body, column] += 1.0
     for torque in torques:
         given[torque.body] -= torque.value or 0.0
-    solved, free = _solved(balance, given, "torque_around_u_axis", "torques that do not balance through the teeth")
+    solved, free = _solved(balance, given, "torque_around_u_axis", "torques not in equilibrium")
     outside = [one.value for one in torques]
     for column, n in enumerate(unknown, first_unknown):
         outside[n] = solved[column]
@@ -151,7 +151,7 @@ def _speeds(
             row[body] += share / (sun + ring)
     for n, (body, speed) in enumerate(known.items(), len(meshes) + len(sets)):
         rolling[n, body], values[n] = 1.0, speed
-    solved, free = _solved(rolling, values, "rotational_speed", "speeds that the teeth do not allow")
+    solved, free = _solved(rolling, values, "rotational_speed", "speeds inconsistent with the gear ratios")
     return tuple(np.where(free, math.nan, solved))
 
 

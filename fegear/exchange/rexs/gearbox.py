@@ -94,15 +94,15 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     said = Said(model, chosen.attributes if chosen else {})
     if chosen is not None and len(model.load_cases) > 1:
         others = ", ".join(str(one.id) for one in model.load_cases if one is not chosen)
-        said.notes.append(f"Torques and speeds are those of load case {chosen.id}; the model also has {others}.")
+        said.notes.append(f"Torques and speeds from load case {chosen.id}; other load cases in the model: {others}.")
     stages = stages_of(said)
     refuse_equal_hands(said, stages)
     turn_to_axes(said, stages)
     bevels = bevels_of(said)
     through = {stage.component.id for stage in bevels}
     for one in model.of(*_OTHER_STAGES):
-        also = ": torque and speed pass it, its forces on the shafts do not enter" if one.id in through else ""
-        said.notes.append(f"{one.said} is not read{also}.")
+        also = ": torque and speed are transmitted, its forces on the shafts are neglected" if one.id in through else ""
+        said.notes.append(f"{one.said} ignored{also}.")
     sets = planetary_of(said, stages)
     inside = {number for one in sets for number in one.stages}
     everything, stages = stages, [stage for stage in stages if stage.component.id not in inside]
@@ -112,7 +112,9 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     on = {n: shaft_of(said, gear) for n, gear in (gears | of_sets).items()}
     planets = {gear.id: gear for one in sets for gear in one.planets}
     if lost := next((one for one in (gears | of_sets | planets).values() if shaft_of(said, one) is None), None):
-        raise InputError(lost.said, "(on no shaft)", "is part of no shaft", "complete its relation of type assembly")
+        raise InputError(
+            lost.said, "(on no shaft)", "does not belong to a shaft", "complete its relation of type assembly"
+        )
     middles = _middles(said, gears, on)
     every = [*stages, *bevels]
     on |= {gear.id: shaft_of(said, gear) for stage in bevels for gear in stage.gears}
@@ -146,7 +148,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     head = (
         f"{about}: REXS {model.version}, written by {model.program or 'an unnamed program'}"
         + (f", load case {chosen.id}" if chosen else "") + ".",
-        "Behind each key stands the attribute that it comes from, or what was assumed.",
+        "Comments show the REXS attribute of each value, or the assumption made.",
     )  # fmt: skip
     return case_text(head, tables, (*(f"Note: {note}" for note in dict.fromkeys(said.notes)), *_unread(said)))
 
@@ -165,10 +167,12 @@ def _bins(
     except InputError as error:
         if spectrum:
             raise
-        said.notes.append(f"The {len(cases)} load cases are not taken as a load spectrum: {error.value} {error.rule}.")
+        said.notes.append(f"The {len(cases)} load cases are not used as a load spectrum: {error.value} {error.rule}.")
         return none
     if spectrum is None:
-        said.notes.append(f"The {len(cases)} load cases are the load spectrum of the ratings, by how long they last.")
+        said.notes.append(
+            f"The {len(cases)} load cases with their durations are used as load spectrum for the ratings."
+        )
     return found
 
 
@@ -182,7 +186,7 @@ def _loaded(said: Said, stages: list[Stage], flow: Flow, spectrum: Spectrum) -> 
     loaded = [n for n, one in enumerate(size) if not one <= _IDLE * most]
     idle = [stages[n].component.said for n in range(len(stages)) if n not in loaded]
     if idle:
-        said.notes.append(f"No torque passes {', '.join(idle)} under this load: {_are(idle)} not in the case.")
+        said.notes.append(f"No torque in {', '.join(idle)} in this load case: {_are(idle)} not in the case.")
     return loaded
 
 
@@ -222,7 +226,7 @@ def _middles(said: Said, gears: dict[int, Component], on: dict[int, Component | 
         if at is None and shaft is not None:
             sections = sections_of(said, shaft)
             at = 0.5 * (sections[0].begin + sections[-1].end) if sections else 0.0
-            said.notes.append(f"{gear.said} has no place on {shaft.said}: its middle is assumed.")
+            said.notes.append(f"{gear.said}: position on {shaft.said} not specified; mid-shaft assumed.")
         found[n] = at or 0.0
     return found
 
@@ -237,7 +241,7 @@ def _rated(said: Said, stages: list[Stage], rest: dict[int, float | None]) -> bo
     if both and not any(_LEAST_SHIFT <= one <= _MOST_SHIFT for one in both):
         listed_ones = ", ".join(f"{one:.4g}" for one in both)
         said.notes.append(
-            f"rating is not asked for: x_1 + x_2 = {listed_ones} lies outside {_LEAST_SHIFT:g} to {_MOST_SHIFT:g}, the "
+            f"rating not requested: x_1 + x_2 = {listed_ones} is outside {_LEAST_SHIFT:g} to {_MOST_SHIFT:g}, the "
             "range of ISO 6336-1."
         )
         return False
@@ -274,7 +278,7 @@ def _rest_of_shift(said: Said, gear: Component, stages: list[Stage]) -> float | 
     if not 0.0 < cosine <= 1.0:
         raise InputError(
             "center_distance", f"{distance * 1e3:.6g} mm", f"is too small for the teeth of {stage.component.said}",
-            "correct it",
+            "correct the value",
         )  # fmt: skip
     both = float(inv(math.acos(cosine)) - inv(alpha)) * (-teeth if stage.internal else teeth) / (2.0 * math.tan(normal))
     other = profile_shift(said, mate)
@@ -292,7 +296,7 @@ def _bore(said: Said, gear: Component, shaft: Component | None, middles: dict[in
     teeth = abs(teeth_of(said, gear))
     root = module * (0.5 * teeth / math.cos(helix) - 1.25 + (profile_shift(said, gear) or 0.0))
     if root - 0.5 * below < _LEAST_RIM * module:
-        said.notes.append(f"{gear.said} is taken as cut into its shaft, whose radius is {0.5e3 * below:.4g} mm.")
+        said.notes.append(f"{gear.said} treated as integral with its shaft (radius {0.5e3 * below:.4g} mm).")
         return None
     return 0.5 * below
 
@@ -329,20 +333,20 @@ def _pair(
     keys = [Key("driver", text(names[driver.id])), Key("driven", text(names[wheel.id]))]
     if distance is not None:
         given = "center_distance" in said.attributes_of(stage.component)
-        where = "center_distance" if given else "from the support vectors of both shafts"
+        where = "center_distance" if given else "from support_vector of both shafts"
         keys.append(Key("centre_distance", quantity(distance, "mm"), where))
     # End I is that from which the driver turns counter-clockwise: the end of +u where it turns about +u.
     higher = heights.get(wheel.id, 0.0) - heights.get(driver.id, 0.0)
     higher *= -1.0 if speed < 0.0 else 1.0
     if abs(higher) > _APART:
-        keys.append(Key("axial_offset", quantity(higher, "mm"), "from the places of both shafts"))
-    assumed = "assumed, and carried through the gearbox"
-    where = assumed if n in flow.assumed_torque else "through the gearbox from the torque of external_load"
+        keys.append(Key("axial_offset", quantity(higher, "mm"), "from the positions of both shafts"))
+    assumed = "assumed, and calculated through the gearbox"
+    where = assumed if n in flow.assumed_torque else "calculated through the gearbox from the torque of external_load"
     keys.append(Key("torque", quantity(on_driver, "N*m", _SOLVED), where))
-    where = assumed if n in flow.assumed_speed else "through the gearbox from rotational_speed"
+    where = assumed if n in flow.assumed_speed else "calculated through the gearbox from rotational_speed"
     keys.append(Key("speed", quantity(abs(speed), "rpm", _SOLVED), where))
     if not stage.internal:  # slices are for external gears
-        keys.append(Key("width", text("slices"), "cheaper than solid gears"))
+        keys.append(Key("width", text("slices"), "faster than 3D gears"))
     keys += _surface_keys(said, stage, bins=spectrum.bins[n], life=spectrum.life)
     return Table(f"pair.{_roman(n + 1)}", tuple(keys), f"{stage.component.said} {stage.component.name}".strip())
 
@@ -391,7 +395,7 @@ def _shafts(
         coupling, twisting = coupling_of(said, shaft)
         if coupling is None and flow.left_by(stages, gears):
             coupling = sections_of(said, shaft)[-1].end
-            said.notes.append(f"{shaft.said}: nothing says where its torque enters or leaves: its end is assumed.")
+            said.notes.append(f"{shaft.said}: position of the coupling not specified; shaft end assumed.")
         bearings = [
             replace(one, stopped=one.component.id in stopped)
             for one in on_bearings[n] if one.joins is None or not one.outside
@@ -416,7 +420,7 @@ def _held(said: Said, shafts: dict[int, Component], places: dict[int, Place]) ->
         bearings = bearings_of(said, shaft, _Any(), places)
         why = "no sections" if not sections_of(said, shaft) else "no bearings" if not bearings else None
         if len({one.at for one in bearings}) == 1 and not any(one.tilts(said) for one in bearings):
-            why = "one bearing alone, which lets it tilt: what joins it to other shafts is not in a case"
+            why = "only one bearing (free to tilt); connections to other shafts are not imported"
         if why:
             said.notes.append(f"{shaft.said} has {why}; shafts and bearings are not imported.")
             return False
@@ -433,7 +437,7 @@ class _Any(dict[int, str]):
 def _effects(*, bent: bool, relieved: bool) -> Table:
     keys = [Key("neighbour_coupling", "true"), Key("hertz", text("load-dependent"))]
     keys += [Key("relief", "true", "relief and lead of the gears")] if relieved else []
-    keys += [Key("misalignment", "true", "the shafts tilt the flanks")] if bent else []
+    keys += [Key("misalignment", "true", "misalignment from the shafts")] if bent else []
     return Table("effects", tuple(keys))
 
 
@@ -444,4 +448,4 @@ def _unread(said: Said) -> list[str]:
         for name in component.attributes:
             if (component.id, name) not in said.used:
                 left[component.type].add(name)
-    return [f"Not used of {kind}: {', '.join(sorted(names))}." for kind, names in sorted(left.items())]
+    return [f"Ignored attributes of {kind}: {', '.join(sorted(names))}." for kind, names in sorted(left.items())]

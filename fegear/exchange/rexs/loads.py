@@ -62,7 +62,7 @@ def chosen_load_case(model: Model, asked: int | None) -> LoadCase | None:
     known = {one.id: one for one in model.load_cases}
     if asked is not None and asked not in known:
         listed_ones = ", ".join(map(str, known)) or "none"
-        raise InputError("--load-case", asked, "is none of the model", f"it has {listed_ones}")
+        raise InputError("--load-case", asked, "is not in the model", f"it has {listed_ones}")
     return known[asked] if asked is not None else next(iter(known.values()), None)
 
 
@@ -96,8 +96,8 @@ def spectrum_of(
     whole = sum(time or 0.0 for time in times)
     if not times or None in times or min(time or 0.0 for time in times) < 0.0 or not whole or len(set(in_hours)) > 1:
         raise InputError(
-            "--spectrum", f"{len(times)} load cases", "do not all say alike how long they last",
-            "give load_duration_fraction or operating_time of gear_unit in each",
+            "--spectrum", f"{len(times)} load cases", "do not all have a duration",
+            "specify load_duration_fraction or operating_time of gear_unit in each",
         )  # fmt: skip
     found = []
     for n, stage in enumerate(stages):
@@ -114,7 +114,7 @@ def spectrum_of(
                 ratio = abs(flow.meshes[n].teeth[0] / flow.meshes[n].teeth[1])
                 torque, speed = (torque * ratio, speed / ratio) if not drives else (torque / ratio, speed * ratio)
                 said.notes.append(
-                    f"{stage.component.said}: power turns round in its spectrum; its flanks are not distinguished."
+                    f"{stage.component.said}: power flow reverses in the load spectrum; flanks are not distinguished."
                 )
             bins.append((torque, abs(speed), (time or 0.0) / whole))
         found.append(tuple(bins))
@@ -133,7 +133,7 @@ def _of_set(
         factor = abs(flow.driven.set_torque[n] / (nominal.driven.set_torque[n] or math.nan))
         speed = abs(flow.driven.speed[whole.sun] - flow.driven.speed[whole.carrier]) * whole.teeth[0]
         if not (math.isfinite(factor) and math.isfinite(speed) and speed > 0.0):
-            said.notes.append(f"{one.component.said} has no load spectrum: a load case gives it no torque or speed.")
+            said.notes.append(f"{one.component.said}: no load spectrum (a load case has no torque or speed for it).")
             return ()
         bins.append((factor, speed, share))
     return tuple(bins)
@@ -215,8 +215,8 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
             raise _contradiction(said, "torque_around_u_axis", "N*m", "external_load", "torque") from None
     for n in sorted(found.shared):
         said.notes.append(
-            f"{stages[n].component.said}: the model does not determine its torque; paths share it as evenly as balance "
-            "allows."
+            f"{stages[n].component.said}: torque not determined by the model; distributed as evenly as equilibrium "
+            "permits."
         )
     return Flow(found, bodies, held, whole, meshes, frozenset(assumed), assumed_speed)
 
@@ -231,7 +231,9 @@ def _teeth(said: Said, stage: Stage) -> tuple[int, int]:
         return one, two
     ways = [said.word(gear, "bevel_cone_orientation") for gear in stage.gears]
     if None in ways:
-        said.notes.append(f"{stage.component.said}: which way its cones point is not said; its gears turn oppositely.")
+        said.notes.append(
+            f"{stage.component.said}: orientation of the bevel gears not specified; opposite rotation assumed."
+        )
     return one, two if ways[0] == ways[1] or None in ways else -two
 
 
@@ -244,12 +246,12 @@ def _contradiction(said: Said, name: str, unit: str, kind: str, quantity: str) -
         if (value := said.number(one, quantity, name))
     ]
     rule, remedy = (
-        "contradict each other through the teeth",
-        "correct them, or give one and leave the others to the teeth",
+        "contradict each other (gear ratios)",
+        "correct them, or specify only one",
     )
     if len(given) == 1 and quantity == "torque":
-        rule = "finds nothing that takes it behind the teeth"
-        remedy = "give a load that does, or hold a member of the set: a coupling that is not engaged holds nothing"
+        rule = "has no output in the gear train"
+        remedy = "specify an output load, or fix a member of the planetary set (a disengaged coupling does not)"
     return InputError(name, ", ".join(given) or "(powers)", rule, remedy)
 
 
@@ -273,7 +275,7 @@ def _completed(
             outlets = outlets[-1:] or [max(among - {one.body})]
             torques += [Torque(body, None) for body in outlets]
             last = next(gear for n in train for gear in stages[n].gears if bodies[on[gear.id].id] == outlets[0])  # type: ignore[union-attr]
-            said.notes.append(f"The torque is assumed to leave at {last.said}: nothing else takes it.")
+            said.notes.append(f"Output torque assumed at {last.said} (only possible output).")
     return torques, assumed
 
 
@@ -312,17 +314,17 @@ def _torques(
                 power = said.number(load, "power", "power")
                 if power:
                     value = sign * power / speeds[body]
-                    said.notes.append(f"{load.said}: its torque is that of its power, positive where it drives.")
+                    said.notes.append(f"{load.said}: torque calculated from power, positive if driving.")
             if body not in turning:
                 if value:
-                    said.notes.append(f"{load.said}: its torque reaches no gear and is not used.")
+                    said.notes.append(f"{load.said}: torque does not act on any gear; ignored.")
                 continue
             defines = said.yes(load, "defines_torque")
             left = defined_alone and through and not defines
             if left and value:
                 said.notes.append(
-                    f"{load.said}: its torque of {value:g} N m does not balance and is left to the loads that define "
-                    "theirs: losses are not in the case."
+                    f"{load.said}: torque of {value:g} N m is not in equilibrium (losses); calculated from the loads "
+                    "with defines_torque instead."
                 )
             if left or defines is False or (value is None and through):
                 found.append(Torque(body, None))
@@ -370,7 +372,7 @@ def _assumed_train(
             sizes.append(abs(usual / flow.mesh_torque[n]))
     size = float(f"{min(sizes, default=1.0):.3g}")
     said.notes.append(
-        f"No torque is given for {', '.join(stages[n].component.said for n in train)}: {size:g} N m are assumed where "
-        "the train begins, and carried through it."
+        f"No torque specified for {', '.join(stages[n].component.said for n in train)}: {size:g} N m assumed at the "
+        "input of the train."
     )
     return [replace(unit[0], value=math.copysign(size, speeds[first])), *unit[1:]]

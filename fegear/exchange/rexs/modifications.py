@@ -33,7 +33,7 @@ def modification_keys(said: Said, gear: Component, flank: Component | None, far:
     found = said.linked(flank, "origin", "reference", "referenced")
     for one in found:
         if one.type in _OTHERS:
-            said.notes.append(f"{gear.said}: its {one.said} is not read; add it to relief, lead or topography.")
+            said.notes.append(f"{gear.said}: {one.said} not imported; add it to relief, lead or topography.")
     ends = {
         end: [made for one in found if one.type == f"{end}_relief" and (made := _end_relief(said, gear, one, end))]
         for end in ("tip", "root")
@@ -69,9 +69,9 @@ def modification_keys(said: Said, gear: Component, flank: Component | None, far:
     lead["end_relief"] = listed(reliefs) if reliefs else None
     if any(lead.values()):
         sided = lead.get("slope") or reliefs
-        where = f"; the datum face is end {datum}, where slopes begin" if sided and far else ""
+        where = f"; datum face is end {datum} (zero of slopes)" if sided and far else ""
         if sided and not far:
-            said.notes.append(f"{gear.said}: which end of its face is the datum face is not known; end I is assumed.")
+            said.notes.append(f"{gear.said}: datum face not specified; end I assumed.")
         keys.append(Key("lead", inline(**lead), f"helix_crowning, helix_slope, end_relief of its flank{where}"))
     return keys
 
@@ -82,7 +82,7 @@ def _face_relief(said: Said, gear: Component, one: Component, face: str, end: En
     length = said.number(one, "length", f"end_relief_length_{face}")
     if not depth or not length:
         if depth:
-            said.notes.append(f"{gear.said}: its {one.said} has no length and is not used.")
+            said.notes.append(f"{gear.said}: {one.said} without length ignored.")
         return None
     shape = _shape(said, gear, one)
     return inline(amount=quantity(depth, "um"), length=quantity(length, "mm"), end=text(end), shape=shape)
@@ -91,7 +91,7 @@ def _face_relief(said: Said, gear: Component, one: Component, face: str, end: En
 def _shape(said: Said, gear: Component, one: Component) -> str | None:
     shape = said.word(one, "shape_of_relief") or "linear"
     if shape not in _SHAPES:
-        said.notes.append(f"{gear.said}: shape {shape} of its {one.said} is taken as parabolic.")
+        said.notes.append(f"{gear.said}: shape {shape} of {one.said} approximated as parabolic.")
         shape = "parabolic"
     return text(shape) if shape != "linear" else None
 
@@ -104,7 +104,7 @@ def _end_relief(said: Said, gear: Component, one: Component, end: str) -> str | 
     if not depth:
         return None
     if not start and not length:
-        said.notes.append(f"{gear.said}: its {one.said} says not where it starts and is not used.")
+        said.notes.append(f"{gear.said}: {one.said} without start ignored.")
         return None
     return inline(
         amount=quantity(depth, "um"),

@@ -44,7 +44,7 @@ def lubricant_key(said: Said, stage: Component) -> Key:
         kind = OILS.get(said.word(oil, "lubricant_type_iso_6336_2019", "lubricant_type_iso_6336_2006") or "")
         density = said.number(oil, "density", "density_at_15_degree_celsius")
         where = f"{oil.said} {named}".strip()
-        where += "" if thick else f"; ISO VG {grade:g} by its name" if grade else f"; ISO VG {_GRADE:g} assumed"
+        where += "" if thick else f"; ISO VG {grade:g} from its name" if grade else f"; ISO VG {_GRADE:g} assumed"
         keys["viscosity_40"] = quantity(thick or (grade or _GRADE) * 1e-6, "mm^2/s")
         keys["viscosity_100"] = quantity(thin, "mm^2/s") if thin and thick else None
         keys["density_15"] = quantity(density, "kg/m^3") if density else None

@@ -74,7 +74,7 @@ def stages_of(said: Said) -> list[Stage]:
     every = said.model.of("cylindrical_stage")
     if len(every) > _MOST_STAGES:
         raise InputError(
-            "cylindrical_stage", f"{len(every)} of them", f"are more than the {_MOST_STAGES} that are read",
+            "cylindrical_stage", f"{len(every)} of them", f"exceed the maximum of {_MOST_STAGES}",
             "export a part of the gearbox",
         )  # fmt: skip
     for stage in every:
@@ -90,8 +90,8 @@ def stages_of(said: Said) -> list[Stage]:
         found.append(Stage(stage, (gears[0], gears[1])))
     if not found:
         others = sorted({one.type for one in said.model.components.values() if one.type.endswith("_stage")})
-        what = f"has {', '.join(others)} alone" if others else "has no stage"
-        raise InputError("cylindrical_stage", "(none)", what, "give a model with cylindrical gears in mesh")
+        what = f"has only {', '.join(others)}" if others else "has no stage"
+        raise InputError("cylindrical_stage", "(none)", what, "specify a model with cylindrical gears in mesh")
     return found
 
 
@@ -120,7 +120,7 @@ def turn_to_axes(said: Said, stages: Iterable[Stage]) -> None:
     axes = [axis for shaft in shafts if (axis := said.vector(shaft, "u_axis_vector")) is not None and any(axis)]
     if axes and _off_u(axes[0]) > _PARALLEL:
         said.turn = _frame(axes[0], None)
-        said.notes.append(f"The model is turned so that the axis of {shafts[0].said} runs along u.")
+        said.notes.append(f"Model rotated: the axis of {shafts[0].said} is along u.")
     carrying = {shaft.id for shaft in shafts}
     for shaft in said.model.of("shaft"):
         axis = said.vector(shaft, "u_axis_vector")
@@ -208,7 +208,7 @@ def direction(said: Said, shaft: Component) -> bool:
         raise InputError(
             "u_axis_vector", " ".join(f"{one * 1e3:.6g}" for one in axis),
             f"of {shaft.said} is not parallel to the other shafts with cylindrical gears",
-            "fegear knows parallel shafts alone",
+            "only parallel shafts are supported",
         )  # fmt: skip
     return axis[0] < 0.0
 
@@ -293,7 +293,7 @@ def _own_distance(said: Said, stage: Stage) -> float | None:
     if given is None or given > 0.0 or (given < 0.0 and stage.internal):
         return None if given is None else abs(given)
     rule = f"of {stage.component.said} must be positive"
-    raise InputError("center_distance", f"{given * 1e3:.6g} mm", rule, "correct it")
+    raise InputError("center_distance", f"{given * 1e3:.6g} mm", rule, "correct the value")
 
 
 def _placed(said: Said, stage: Stage, found: dict[int, Place]) -> bool:
@@ -318,7 +318,7 @@ def _place_stage(said: Said, stage: Stage, found: dict[int, Place], middles: dic
         if abs(apart - distance) > _APART * distance:
             raise InputError(
                 "center_distance", f"{distance * 1e3:.6g} mm",
-                f"of {stage.component.said} contradicts its shafts, whose axes stand {apart * 1e3:.6g} mm apart",
+                f"of {stage.component.said} contradicts the distance of its shafts, {apart * 1e3:.6g} mm",
                 "correct the support vectors or the distance",
             )  # fmt: skip
         grown = distance / apart
@@ -328,8 +328,8 @@ def _place_stage(said: Said, stage: Stage, found: dict[int, Place], middles: dic
         return
     if distance is None:
         raise InputError(
-            "center_distance", "(not given)", f"is missing in {stage.component.said}, whose shafts have no places",
-            "complete the model where it was made",
+            "center_distance", "(not given)", f"is missing in {stage.component.said}, whose shafts have no position",
+            "complete the model in its source program",
         )  # fmt: skip
     back = first.id not in found
     known, new = (second, first) if back else (first, second)
@@ -339,5 +339,5 @@ def _place_stage(said: Said, stage: Stage, found: dict[int, Place], middles: dic
     turned = direction(said, new)
     face = at.u + middles.get(gears[0].id, 0.0) * (-1.0 if at.reversed else 1.0)
     start = face - middles.get(gears[1].id, 0.0) * (-1.0 if turned else 1.0)
-    said.notes.append(f"{new.said} has no support_vector: it is placed by {stage.component.said}.")
+    said.notes.append(f"{new.said}: no support_vector; positioned by {stage.component.said}.")
     found[new.id] = Place(start, at.v + distance * math.sin(angle), at.w + distance * math.cos(angle), turned)

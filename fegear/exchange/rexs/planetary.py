@@ -58,7 +58,7 @@ def planetary_of(said: Said, stages: list[Stage]) -> list[Planetary]:
         if len(suns) != 1 or len(rings) != 1 or not planets or not {planet.id for planet in planets} <= in_sun:
             raise InputError(
                 one.said, f"{len(suns)} suns, {len(planets)} planets, {len(rings)} rings",
-                "is no set of one sun, planets and one ring", "import its meshes as single stages",
+                "is not a planetary set of one sun, planets and one ring", "import its meshes as single stages",
             )  # fmt: skip
         (sun,) = suns.values()
         carriers = [

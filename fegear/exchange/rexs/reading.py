@@ -98,7 +98,7 @@ def _xml(text: str, path: Path) -> dict[str, Any]:
         nonlocal count
         count += tag == "component"
         if len(open_ones) > _DEEPEST:
-            raise _refusal(path, f"nests elements more than {_DEEPEST} deep", "no REXS model does: check the file")
+            raise _refusal(path, f"nests elements more than {_DEEPEST} deep", "check the file")
         open_ones.append(_Element(tag, given))
         open_ones[-2].parts.append(open_ones[-1])
 
@@ -109,7 +109,7 @@ def _xml(text: str, path: Path) -> dict[str, Any]:
         open_ones[-1].text.append(part)
 
     def doctype(*_: object) -> None:
-        raise _refusal(path, "declares a document type, which may hold entities", "remove the line <!DOCTYPE ...>")
+        raise _refusal(path, "contains a document type declaration", "remove the line <!DOCTYPE ...>")
 
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = characters, doctype
@@ -122,7 +122,7 @@ def _xml(text: str, path: Path) -> dict[str, Any]:
         raise _refusal(path, rule, "export it again") from None
     (top,) = root.parts
     if top.tag != "model":
-        raise _refusal(path, f"begins with the element {shown(top.tag)}, not with model", "give a REXS model")
+        raise _refusal(path, f"begins with the element {shown(top.tag)}, not with model", "specify a REXS model")
     return {
         **top.given,
         "relations": [
@@ -162,7 +162,7 @@ def _json(text: str, path: Path) -> dict[str, Any]:
     """The tree of a JSON file."""
 
     def refuse_constant(name: str) -> float:
-        raise _refusal(path, f"holds {name}, which is no number", "export it again")
+        raise _refusal(path, f"contains {name}, not a number", "export it again")
 
     try:
         tree = json.loads(text, parse_constant=refuse_constant)
@@ -175,10 +175,10 @@ def _json(text: str, path: Path) -> dict[str, Any]:
         try:
             json.dumps(tree, ensure_ascii=False).encode()
         except UnicodeEncodeError:
-            raise _refusal(path, "holds half of a character, a surrogate alone", "export it again") from None
+            raise _refusal(path, "contains an invalid character (surrogate)", "export it again") from None
     model = tree.get("model") if isinstance(tree, dict) else None
     if not isinstance(model, dict):
-        raise _refusal(path, "has no object model at its top", "give a REXS model")
+        raise _refusal(path, "has no object model at its top", "specify a REXS model")
     return model
 
 
@@ -190,8 +190,8 @@ def _model(tree: Mapping[str, Any], path: Path) -> Model:
         raise _refusal(path, f"has the version {shown(version)} of REXS", remedy)
     listed = _list(tree, "components", path)
     if len(listed) > MOST_COMPONENTS:
-        rule = f"has {len(listed)} components, more than the {MOST_COMPONENTS} that are read"
-        raise _refusal(path, rule, "export the gearbox alone")
+        rule = f"has {len(listed)} components, more than the maximum of {MOST_COMPONENTS}"
+        raise _refusal(path, rule, "export the gearbox only")
     components: dict[int, Component] = {}
     for one in listed:
         made = _component(one, path)
@@ -235,14 +235,14 @@ def _number(given: Mapping[str, Any], key: str, path: Path) -> int:
 def _component(given: Mapping[str, Any], path: Path, known: Mapping[int, Component] | None = None) -> Component:
     number = _number(given, "id", path)
     if known is not None and number not in known:
-        rule = f"has a load on component {number}, which is not there"
+        rule = f"has a load on component {number}, which does not exist"
         raise _refusal(path, rule, "export it again")
     attributes: dict[str, Attribute] = {}
     for one in _list(given, "attributes", path):
         made = _attribute(one, number, path)
         if made.name in attributes and attributes[made.name] != made:
-            rule = f"gives {made.name} of component {number} twice with other values"
-            raise _refusal(path, rule, "keep the one that holds")
+            rule = f"defines {made.name} of component {number} twice with different values"
+            raise _refusal(path, rule, "keep the correct one")
         attributes[made.name] = made
     name = given.get("name")
     return Component(number, str(given.get("type", "")), name if isinstance(name, str) else "", attributes)
@@ -273,7 +273,7 @@ def _decoded(value: Mapping[str, Any], name: str, number: int, path: Path) -> li
         size = struct.calcsize(layout.format(1))
         return [float(one) for one in struct.unpack(layout.format(len(data) // size), data)]
     except (binascii.Error, struct.error):
-        raise _refusal(path, f"packs {name} of component {number} in a damaged way", "export it again") from None
+        raise _refusal(path, f"has damaged data for {name} of component {number}", "export it again") from None
 
 
 def _relation(given: Mapping[str, Any], components: Mapping[int, Component], path: Path) -> Relation:
@@ -282,7 +282,7 @@ def _relation(given: Mapping[str, Any], components: Mapping[int, Component], pat
     for ref in _list(given, "refs", path):
         there = _number(ref, "id", path)
         if there not in components:
-            rule = f"has a relation {number} to component {there}, which is not there"
+            rule = f"has a relation {number} to component {there}, which does not exist"
             raise _refusal(path, rule, "export it again")
         refs.append((str(ref.get("role", "")), there))
     order = _number(given, "order", path) if given.get("order") not in (None, "") else 0

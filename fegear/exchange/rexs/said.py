@@ -86,14 +86,14 @@ class Said:
         value = self.number(component, quantity, *names)
         if value is None:
             rule = f"is missing in {component.said} {shown(component.name)}"
-            raise InputError(names[0], "(not given)", rule, "complete the model where it was made")
+            raise InputError(names[0], "(not given)", rule, "complete the model in its source program")
         return value
 
     def whole(self, component: Component, *names: str) -> int:
         """A whole number, as numbers of teeth; a missing one is refused."""
         value = self.needed(component, "number", *names)
         if value != round(value):
-            raise InputError(names[0], f"{value:g}", f"is no whole number in {component.said}", "correct the model")
+            raise InputError(names[0], f"{value:g}", f"is not an integer in {component.said}", "correct the model")
         return round(value)
 
     def vector(self, component: Component, name: str) -> Vector | None:
@@ -102,7 +102,9 @@ class Said:
         if one is None or self._is_truth(one, component):
             return None
         if not isinstance(one.value, tuple) or len(one.value) != 3:
-            raise InputError(name, shown(one.value), f"has not three entries in {component.said}", "correct the model")
+            raise InputError(
+                name, shown(one.value), f"must have three entries in {component.said}", "correct the model"
+            )
         u, v, w = (_in_si(one, part, component, "length") for part in one.value)
         if self.turn is not None:
             u, v, w = (axis[0] * u + axis[1] * v + axis[2] * w for axis in self.turn)
@@ -117,7 +119,7 @@ class Said:
         """Whether a truth value stands where none is meant, as some programs write what they could not; a note then."""
         if isinstance(one.value, bool):
             self.used.discard((component.id, one.name))
-            self.notes.append(f"{component.said}: {one.name} is a truth value and not read.")
+            self.notes.append(f"{component.said}: boolean {one.name} ignored.")
         return isinstance(one.value, bool)
 
     def yes(self, component: Component, name: str) -> bool | None:
@@ -125,9 +127,7 @@ class Said:
         one = self.found(component, name)
         if one is not None and one.value is False and self.arrays_lost:
             self.used.discard((component.id, name))
-            self.notes.append(
-                f"{component.said}: {name} is false as every array of this model, the vectors too: not read."
-            )
+            self.notes.append(f"{component.said}: {name} is false, as are all arrays of this model; ignored.")
             return None
         # Of what differs between gears of a gearbox that shifts, the first counts.
         value = one.value[0] if one is not None and isinstance(one.value, tuple) and one.value else one and one.value
@@ -141,11 +141,11 @@ class Said:
 def _in_si(one: Attribute, value: object, component: Component, quantity: str) -> float:
     size = size_of(one.unit, quantity)
     if size is None:
-        rule = f"has no unit of a {quantity} in {component.said}"
+        rule = f"has an invalid unit for {quantity} in {component.said}"
         raise InputError(one.name, f"{value} {one.unit}".rstrip(), rule, f"those of REXS are {units_of(quantity)}")
     number = _plain(value)
     if number is None or not math.isfinite(number * size):
-        raise InputError(one.name, shown(value), f"is no finite number in {component.said}", "correct the model")
+        raise InputError(one.name, shown(value), f"is not a finite number in {component.said}", "correct the model")
     return number * size
 
 

@@ -66,7 +66,7 @@ def _angle(said: Said, one: Planetary, stage: Stage, distance: float | None) -> 
             if distance is not None and abs(apart - distance) > _APART * distance:
                 raise InputError(
                     "center_distance", f"{distance * 1e3:.6g} mm",
-                    f"of {stage.component.said} contradicts its shafts, whose axes stand {apart * 1e3:.6g} mm apart",
+                    f"of {stage.component.said} contradicts the distance of its shafts, {apart * 1e3:.6g} mm",
                     "correct the support vectors or the distance",
                 )  # fmt: skip
             return math.atan2(w, v)
@@ -79,27 +79,31 @@ def _angle(said: Said, one: Planetary, stage: Stage, distance: float | None) -> 
 
 def _spacing(said: Said, one: Planetary, placed: list[float | None]) -> list[Key]:
     count = len(one.planets)
-    even = Key("planets", str(count), "taken as evenly spaced: their places are not said")
+    even = Key("planets", str(count), "equal spacing assumed (positions not specified)")
     angles = [angle for angle in placed if angle is not None]
     if len(angles) < count:
         return [even]
     first = angles[0]
     found = sorted((angle - first + 1e-9) % math.tau - 1e-9 for angle in angles)
     if count > 1 and found[-1] < 1e-6:
-        said.notes.append(f"{one.component.said}: all planets are drawn in one place; they are taken as evenly spaced.")
+        said.notes.append(f"{one.component.said}: all planets at the same position; equal spacing assumed.")
         return [even]
     step = math.tau / (teeth_of(said, one.sun) + abs(teeth_of(said, one.ring)))
     off = max(abs(angle - math.tau * n / count) for n, angle in enumerate(found))
     if off <= _ROUNDED * step:
-        return [Key("planets", str(count), "evenly spaced, by the places of their shafts")]
+        return [Key("planets", str(count), "equally spaced, from the positions of their shafts")]
     if any(b - a < 1e-6 for a, b in pairwise(found)):
-        raise InputError(one.component.said, "two planets", "stand in one place", "correct their support vectors")
+        raise InputError(one.component.said, "two planets", "are at the same position", "correct their support vectors")
     whole = [step * round(angle / step) for angle in found]
     missed = max(abs(a - b) for a, b in zip(found, whole, strict=True))
-    about = "by the places of their shafts, from the first planet on"
+    about = "from the positions of their shafts, relative to the first planet"
     if missed <= _ROUNDED * step:
         found = whole
-        about += f", moved to where the teeth fit by at most {math.degrees(missed):.2g} deg" if missed > 1e-9 else ""
+        about += (
+            (f", corrected by at most {math.degrees(missed):.2g} deg to the assembly condition")
+            if missed > 1e-9
+            else ""
+        )
     return [Key("angles", listed(quantity(abs(angle), "deg", 12) for angle in found), about)]
 
 
@@ -133,7 +137,7 @@ def support_keys(said: Said, one: Planetary, flow: Flow, n: int, fixed: str) -> 
     keys["turning"] = None if turning is None else quantity(turning, "N*m/rad")
     found = []
     if told and len(loose) < len(_MEMBERS):
-        found.append(Key("floating", listed(map(text, loose)), "members whose shafts no bearing holds radially"))
+        found.append(Key("floating", listed(map(text, loose)), "members whose shafts have no radial bearing"))
     if not told or len(loose) == len(_MEMBERS):
         keys = {key: value for key, value in keys.items() if key not in _MEMBERS}
     if any(keys.values()):
@@ -153,7 +157,7 @@ def _pin(said: Said, one: Planetary) -> float | None:
         rolling = [bearing for bearing in bearings if said.linked(bearing, "assembly", "assembly", "part")]
         if rolling and len(soft) < len(given):
             said.notes.append(
-                f"{one.component.said}: what rolls in its planets' bearings is not used; pins count as rigid."
+                f"{one.component.said}: rolling elements of the planet bearings ignored; rigid pins assumed."
             )
         sums.append(sum(soft) if soft and len(soft) == len(given) else None)
     known = [size for size in sums if size]
@@ -162,7 +166,7 @@ def _pin(said: Said, one: Planetary) -> float | None:
     mean = sum(known) / len(known)
     if max(known) - min(known) > _APART * mean:
         said.notes.append(
-            f"{one.component.said}: pins differ in stiffness; all have the mean of {mean * 1e-6:.4g} N/um."
+            f"{one.component.said}: unequal pin stiffness; mean value {mean * 1e-6:.4g} N/um used for all."
         )
     return mean
 
@@ -173,7 +177,9 @@ def _radial(said: Said, one: Component) -> float | None:
         return 0.0
     radial = said.number(one, "stiffness", "radial_stiffness")
     if radial is not None and radial < 0.0:
-        raise InputError("radial_stiffness", f"{radial:g} N/m", f"of {one.said} must not be negative", "correct it")
+        raise InputError(
+            "radial_stiffness", f"{radial:g} N/m", f"of {one.said} must not be negative", "correct the value"
+        )
     if radial is None or radial >= RIGID:
         return None
     return radial if radial or one.type in COUPLINGS else None

@@ -55,8 +55,9 @@ def set_tables(
     fixed = [name for name, body in members.items() if body in held]
     if len(fixed) != 1:
         raise InputError(
-            one.component.said, f"{len(fixed)} members held", "needs one of sun, ring and carrier held by the casing",
-            "join it to the casing by a coupling",
+            one.component.said, f"{len(fixed)} members fixed", "requires exactly one of sun, ring and carrier fixed "
+                                                              "to the housing",
+            "connect it to the housing by a coupling",
         )  # fmt: skip
     sun, ring = whole.teeth
     on_sun = flow.driven.set_torque[n]
@@ -68,15 +69,17 @@ def set_tables(
     keys = [
         *(Key(role, text(names[gear.id])) for role, gear in zip(("sun", "planet", "ring"), one.gears, strict=True)),
         *planet_keys(said, one, stages),
-        Key("fixed", text(fixed[0]), "its coupling to the casing"),
+        Key("fixed", text(fixed[0]), "its coupling to the housing"),
         Key("input", text(driving)),
     ]
     for key, value, unit in (("torque", torques[driving], "N*m"), ("speed", speeds[driving], "rpm")):
         if math.isfinite(value) and value:
-            keys.append(Key(key, quantity(abs(value), unit, 12), "of external_load, or through the gearbox"))
+            keys.append(
+                Key(key, quantity(abs(value), unit, 12), "from external_load, or calculated through the gearbox")
+            )
         else:
             assumed = {"N*m": 1.0, "rpm": 1500.0 * math.tau / 60.0}[unit]
-            keys.append(Key(key, quantity(assumed, unit), "assumed: none reaches it"))
+            keys.append(Key(key, quantity(assumed, unit), "assumed (no torque)"))
     backward = speeds[driving] if math.isfinite(speeds[driving]) and speeds[driving] else torques[driving]
     if backward < 0.0:
         keys.append(Key("clockwise", "true", "rotational_speed below zero"))
@@ -89,7 +92,7 @@ def set_tables(
         planet_drives = sun_drives == (mesh == "ring")
         driver, wheel = (one.planet, central) if planet_drives else (central, one.planet)
         stage = next(stage for stage in mine if {central.id, one.planet.id} == {gear.id for gear in stage.gears})
-        roles = (Key("driver", text(names[driver.id]), "as power rolls"), Key("driven", text(names[wheel.id])))
-        about = f"{stage.component.said}, for all its like"
+        roles = (Key("driver", text(names[driver.id]), "from the power flow"), Key("driven", text(names[wheel.id])))
+        about = f"{stage.component.said}, for all identical stages"
         made.append(Table(f"pair.{set_name(n)}_{mesh}", (*roles, *mesh_keys(stage, driver)), about))
     return made

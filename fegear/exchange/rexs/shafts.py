@@ -88,15 +88,13 @@ def sections_of(said: Said, shaft: Component) -> tuple[Section, ...]:
     found.sort(key=lambda one: one.begin)
     for n, (one, two) in enumerate(pairwise(found)):
         if _GAP < two.begin - one.end <= _CLOSED:
-            said.notes.append(
-                f"{shaft.said}: a gap of {1e3 * (two.begin - one.end):.4g} mm between sections is closed."
-            )
+            said.notes.append(f"{shaft.said}: gap of {1e3 * (two.begin - one.end):.4g} mm between sections closed.")
             found[n] = replace(one, length=two.begin - one.begin)
         elif abs(two.begin - one.end) > _GAP:
             what = "overlap" if two.begin < one.end else "leave a gap"
             raise InputError(
                 "u_coordinate_on_shaft", f"{two.begin * 1e3:.6g} mm",
-                f"makes sections of {shaft.said} {what} at {one.end * 1e3:.6g} mm", "correct lengths or places",
+                f"makes sections of {shaft.said} {what} at {one.end * 1e3:.6g} mm", "correct lengths or positions",
             )  # fmt: skip
     return tuple(found)
 
@@ -114,7 +112,7 @@ def _refuse_sizes(shaft: Component, sections: Sequence[Section]) -> None:
             if not 0.0 <= inner < outer:
                 raise InputError(
                     "inner_diameter_begin", f"{inner * 1e3:.6g} mm",
-                    f"of a section of {shaft.said} must lie below its outer diameter of {outer * 1e3:.6g} mm",
+                    f"of a section of {shaft.said} must be below its outer diameter of {outer * 1e3:.6g} mm",
                     "correct the model",
                 )  # fmt: skip
     try:
@@ -181,12 +179,12 @@ def shaft_table(
     found = said.linked(shaft, "origin", "reference", "referenced", "material")
     elastic = elasticity(said, found[0]) if found else {}
     if "young_modulus" in elastic and found and _stiff(said, found[0]):
-        keys.append(Key("rigid", "true", f"elastic_modulus of {found[0].said} is that of a rigid body"))
+        keys.append(Key("rigid", "true", f"elastic_modulus of {found[0].said} (rigid body)"))
     elif elastic:
         keys.append(Key("material", inline(**elastic), found[0].said))
     if on.gears:
         places = listed(inline(gear=text(gear), at=along(at)) for gear, at in on.gears)
-        keys.append(Key("gears", places, "middle of the face"))
+        keys.append(Key("gears", places, "mid-face"))
     seats = listed(
         inline(
             bearing=text(name),
@@ -219,8 +217,8 @@ def _on(shaft: Component, what: str, at: float, begin: float, end: float) -> Non
     if not begin - _GAP <= at <= end + _GAP:
         raise InputError(
             "u_coordinate_on_shaft", f"{at * 1e3:.6g} mm",
-            f"puts {what} off {shaft.said}, which reaches from {begin * 1e3:.6g} to {end * 1e3:.6g} mm",
-            "correct its place or the sections",
+            f"places {what} outside {shaft.said}, {begin * 1e3:.6g} to {end * 1e3:.6g} mm",
+            "correct its position or the sections",
         )  # fmt: skip
 
 
@@ -257,7 +255,7 @@ def coupling_of(said: Said, shaft: Component) -> tuple[float | None, frozenset[i
     for _, at, other in places:
         if at != coupling and (other is None or other.id not in given):
             said.notes.append(
-                f"{shaft.said}: of its torque nothing says what enters at {at * 1e3:.4g} mm; all of it is taken to at "
+                f"{shaft.said}: torque input at {at * 1e3:.4g} mm not specified; total torque assumed at "
                 f"{coupling * 1e3:.4g} mm."
             )
     return coupling, twisting

@@ -99,7 +99,7 @@ def gear_keys(
     if given is not None:
         keys.append(Key("profile_shift", number(given), "addendum_modification_coefficient"))
     elif shift is not None:
-        keys.append(Key("profile_shift", number(shift), "assumed: that of the centre distance without backlash"))
+        keys.append(Key("profile_shift", number(shift), "assumed: zero backlash at the centre distance"))
     keys += _cut(said, gear, flank, module, teeth, given if given is not None else shift or 0.0, helix)
     keys += _sizes(said, gear, flank, bore, ring)
     keys += modification_keys(said, gear, flank, far)
@@ -119,8 +119,8 @@ def teeth_of(said: Said, gear: Component) -> int:
         return -abs(teeth)
     if teeth <= 0:
         raise InputError(
-            "number_of_teeth", teeth, f"is no number of teeth of {gear.said}",
-            "correct it: ring gears alone may have it below zero",
+            "number_of_teeth", teeth, f"is not a valid number of teeth of {gear.said}",
+            "correct it (negative for ring gears only)",
         )  # fmt: skip
     return teeth
 
@@ -135,7 +135,9 @@ def module_of(said: Said, gear: Component) -> float:
     if normal is None:
         normal = said.needed(gear, "length", "normal_module")
     if not normal > 0.0:
-        raise InputError("normal_module", f"{normal * 1e3:g} mm", f"of {gear.said} must be positive", "correct it")
+        raise InputError(
+            "normal_module", f"{normal * 1e3:g} mm", f"of {gear.said} must be positive", "correct the value"
+        )
     return normal
 
 
@@ -146,7 +148,7 @@ def refuse_equal_hands(said: Said, stages: list[Stage]) -> None:
         if not stage.internal and abs(one + two) > _ONE_ANGLE:
             raise InputError(
                 "helix_angle_reference_diameter", " and ".join(f"{math.degrees(b):.9g} deg" for b in (one, two)),
-                f"cannot mesh in {stage.component.said}: one helix must be right-handed, the other as much left-handed",
+                f"cannot mesh in {stage.component.said}: helix angles must be equal and of opposite hand",
                 "correct a sign or an angle",
             )  # fmt: skip
 
@@ -159,7 +161,7 @@ def flank_of(said: Said, gear: Component) -> Component | None:
         if None not in values and max(values, default=0.0) - min(values, default=0.0) > 1e-9:  # type: ignore[operator,type-var]
             raise InputError(
                 name, " and ".join(f"{one:.6g}" for one in values), f"differs between the flanks of {gear.said}",
-                "fegear's teeth are symmetric: give both flanks the same",
+                "only symmetric teeth are supported: use the same value for both flanks",
             )  # fmt: skip
     return (*left, *right, None)[0]
 
@@ -188,7 +190,7 @@ def _tool(said: Said, gear: Component, flank: Component | None) -> Component | N
     if flank is not None:
         found += said.linked(flank, "workpiece", "manufacturing_step", "tool", *_TOOLS)
     if len({one.id for one in found}) > 1:
-        said.notes.append(f"{gear.said}: of {len(found)} tools the first makes the fillet; the others are not used.")
+        said.notes.append(f"{gear.said}: first of {len(found)} tools used for the fillet; others ignored.")
     return found[0] if found else None
 
 
@@ -215,8 +217,8 @@ def _cut(
             return [
                 Key("rack", inline(profile='"A"', tip_radius=number(edge / module)), "tool_edge_radius; else ISO 53 A")
             ]
-        said.notes.append(f"{gear.said} has no tool: the basic rack of ISO 53, profile A is assumed.")
-        return [Key("rack", text("ISO 53 A"), "assumed: no tool and no root_diameter given")]
+        said.notes.append(f"{gear.said}: tool not specified; basic rack ISO 53 A assumed.")
+        return [Key("rack", text("ISO 53 A"), "assumed: no tool and no root_diameter specified")]
     root = _in_modules(said, tool, module, "addendum_coefficient_reference_profile", "addendum_reference_profile")
     radius = _in_modules(said, tool, module, "tip_radius_factor", "tip_radius")
     extra = _in_modules(said, tool, module, "protuberance_amount_factor", "protuberance_amount")
@@ -231,7 +233,7 @@ def _cut(
     }
     missing = [key for key in ("dedendum", "tip_radius") if keys[key] is None]
     also = f"; {', '.join(missing)} of ISO 53 C assumed" if missing else ""
-    return [Key("rack", inline(**keys), f"{tool.said}: its addendum and tip_radius cut root and fillet{also}")]
+    return [Key("rack", inline(**keys), f"{tool.said}: addendum and tip_radius of the tool{also}")]
 
 
 def _cutter(said: Said, tool: Component | None, module: float, teeth: int) -> Key:
@@ -239,7 +241,9 @@ def _cutter(said: Said, tool: Component | None, module: float, teeth: int) -> Ke
     if tool is None or tool.type != "cutter_wheel_tool":
         count = max(min(25, teeth - 12), 8)
         return Key(
-            "cutter", inline(teeth=str(count), addendum="1.25", tip_radius="0.2"), "assumed: no cutter_wheel_tool given"
+            "cutter",
+            inline(teeth=str(count), addendum="1.25", tip_radius="0.2"),
+            "assumed: no cutter_wheel_tool specified",
         )
     height = _in_modules(said, tool, module, "addendum_coefficient_reference_profile", "addendum_reference_profile")
     radius = _in_modules(said, tool, module, "tip_radius_factor", "tip_radius")
@@ -262,7 +266,7 @@ def _sizes(said: Said, gear: Component, flank: Component | None, bore: float | N
         keys.append(Key("tip_diameter", quantity(abs(tip), "mm"), "tip_diameter"))
     elif tip is not None:
         said.used.discard((gear.id, "tip_diameter"))
-        said.notes.append(f"{gear.said}: tip_diameter of {tip * 1e3:g} mm is that of no gear of its size and not used.")
+        said.notes.append(f"{gear.said}: tip_diameter {tip * 1e3:g} mm is not plausible and is ignored.")
     chamfer = said.number(flank, "length", "tooth_tip_chamfer") if flank else None
     if chamfer:
         keys.append(Key("tip_chamfer", quantity(chamfer, "mm"), "tooth_tip_chamfer"))
@@ -270,9 +274,7 @@ def _sizes(said: Said, gear: Component, flank: Component | None, bore: float | N
     if not ring and inner:
         keys.append(Key("bore_radius", quantity(0.5 * inner, "mm"), "half inner_diameter"))
     elif not ring and bore:
-        keys.append(
-            Key("bore_radius", quantity(bore, "mm"), "assumed: radius of its shaft there, or of the hole of a planet's")
-        )
+        keys.append(Key("bore_radius", quantity(bore, "mm"), "assumed: radius of its shaft, or planet bore"))
     if ring and tip is None:
         # Teeth as high as the rack's would often reach into the planet's fillet.
         helix = said.number(gear, "angle", "helix_angle_reference_diameter") or 0.0
@@ -295,8 +297,8 @@ def _outside(said: Said, gear: Component, around: float | None) -> Key:
     if radius is not None and radius > root + _LEAST_RING_RIM * module:
         return Key("outer_radius", quantity(radius, "mm"), where)
     if radius is not None:
-        said.notes.append(f"{gear.said}: an outer radius of {radius * 1e3:.4g} mm leaves no rim and is not used.")
-    return Key("rim_thickness", quantity(_RIM * module, "mm"), f"assumed: {_RIM:g} modules, held outside")
+        said.notes.append(f"{gear.said}: an outer radius of {radius * 1e3:.4g} mm leaves no rim; ignored.")
+    return Key("rim_thickness", quantity(_RIM * module, "mm"), f"assumed: {_RIM:g} modules, fixed at the outside")
 
 
 def _quality(said: Said, gear: Component) -> list[Key]:
@@ -306,7 +308,7 @@ def _quality(said: Said, gear: Component) -> list[Key]:
     if accuracy is not None:
         keys.append(Key("tolerance_class", number(accuracy), "tolerance_class_according_to_iso_1328_2013"))
     else:
-        keys.append(Key("tolerance_class", "6", "assumed: no class of ISO 1328 given"))
+        keys.append(Key("tolerance_class", "6", "assumed: no ISO 1328 class specified"))
     sizes = {
         "flank": ("arithmetic_average_roughness_flank",),
         "root": ("arithmetic_average_roughness_root",),
@@ -328,10 +330,10 @@ def material_keys(said: Said, gear: Component) -> list[Key]:
     """``material`` and ``strength`` of a gear."""
     found = said.linked(gear, "origin", "reference", "referenced", "material")
     if not found:
-        said.notes.append(f"{gear.said} has no material: case-hardened steel of quality MQ is assumed.")
+        said.notes.append(f"{gear.said}: material not specified; case-hardened steel, quality MQ, assumed.")
         return [
-            Key("material", inline(young_modulus='"206 GPa"'), "assumed: no material given"),
-            Key("strength", inline(material='"case-hardened-steel"', quality='"MQ"'), "assumed: no material given"),
+            Key("material", inline(young_modulus='"206 GPa"'), "assumed: no material specified"),
+            Key("strength", inline(material='"case-hardened-steel"', quality='"MQ"'), "assumed: no material specified"),
         ]
     one = found[0]
     keys = {**elasticity(said, one)}
@@ -391,8 +393,8 @@ def _kind(said: Said, one: Component, designation: str, hardness: tuple[float, s
     for pattern, kind, begins in _BY_NAME:
         match = re.search(pattern, designation, re.IGNORECASE)
         if match and re.match(begins or ".", match[0]):
-            return kind, "kind assumed from the designation"
+            return kind, "type assumed from the designation"
     soft = hardness is not None and hardness[0] < (_CASE if hardness[1] != "HRC" else 52.0)
     kind = "through-hardened-alloy-steel" if soft else "case-hardened-steel"
-    said.notes.append(f"{one.said} {designation}: no kind of ISO 6336-5 is said; {kind} is assumed.")
-    return kind, "kind assumed"
+    said.notes.append(f"{one.said} {designation}: material type of ISO 6336-5 not specified; {kind} assumed.")
+    return kind, "type assumed"

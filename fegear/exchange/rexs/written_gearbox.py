@@ -60,7 +60,7 @@ _OF_GEAR = {
     "sigma_F": ("stress", "tooth_root_stress_iso_6336_{}"),
 }
 #: What marks the second gear of a pair that names one twice.
-_LIKE = ", its like"
+_LIKE = ", identical stage"
 _NOTHING = Found()
 #: A torque below so much of the largest on its shaft balances.
 _BALANCED = 1e-9
@@ -105,9 +105,9 @@ def model_text(scene: Scene, date: str, results: Found = _NOTHING) -> tuple[str,
     pairs = {name: part for name, part in scene.case.pair.items() if name not in in_sets}
     sets = {name: part for name, part in scene.case.planetary.items() if part.ring is not None}
     if not pairs and not sets:
-        raise InputError("pair", "(not given)", "is missing: a REXS model holds gears in mesh", "add [pair.NAME]")
+        raise InputError("pair", "(not given)", "is required: a REXS model contains gears in mesh", "add [pair.NAME]")
     written.remarks += [
-        f"Set {name}: its ring is no gear of the case and is not written to REXS."
+        f"Set {name}: ring is not a gear of the case; not written to REXS."
         for name in scene.case.planetary if name not in sets
     ]  # fmt: skip
     used = dict.fromkeys(gear for part in pairs.values() for gear in (part.driver, _mate(part)))
@@ -217,7 +217,7 @@ def _load_over_face(written: Written, stage: Part, name: str, along: float, widt
         stage.say("length", load_distribution_node_positions=[z + 0.5 * width for z, _ in rows])
         stage.say("line load", load_distribution_along_face_width=[q for _, q in rows])
     elif over:
-        written.remarks.append(f"Pair {name}: load distribution not written, for its table lacks z or mean_line_load.")
+        written.remarks.append(f"Pair {name}: load distribution not written (table has no z or mean_line_load).")
 
 
 def _application_factor(part: PairPart, stage: Part) -> int:
@@ -281,7 +281,7 @@ def _set(
     bodies.join(bodies.shaft[part.sun].id, bodies.shaft[str(part.ring)].id, turning.id)
     members = {"sun": bodies.shaft[part.sun], "ring": bodies.shaft[str(part.ring)], "carrier": turning}
     _supports(written, name, part, members, casing)
-    held = written.part("coupling", f"{name}, {part.fixed} held").say(
+    held = written.part("coupling", f"{name}, {part.fixed} fixed").say(
         "tilting stiffness", rotational_stiffness=stiff.turning
     )
     if part.fixed in part.floating:

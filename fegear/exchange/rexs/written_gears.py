@@ -167,7 +167,7 @@ def _end_relief(written: Written, name: str, end: str, relief: EndReliefPart) ->
     known = {"amount", "start_radius", "length", "shape"}
     if relief.amount is None or (relief.start_radius is None and relief.length is None):
         written.remarks.append(
-            f"Gear {name}, relief.{end}: not written to REXS, which wants an amount, and start_radius or length."
+            f"Gear {name}, relief.{end}: not written to REXS, which requires an amount, and start_radius or length."
         )
         return None
     left_out(written, f"Gear {name}, relief.{end}", relief, known)
@@ -198,7 +198,7 @@ def _material(written: Written, name: str, part: GearPart, gear: Part) -> None:
     )
     kind = next((rexs for rexs, case in MATERIALS.items() if case == strength.material), None)
     if kind is None:
-        written.remarks.append(f"Gear {name}: REXS has no kind of material like {strength.material}.")
+        written.remarks.append(f"Gear {name}: material type {strength.material} is not defined in REXS.")
     made.word(heat_treated_material_type_iso_6336_2019=kind)
     made.say("hardness", surface_hardness_vickers=strength.hardness, core_hardness_vickers=strength.core_hardness)
     made.say(

@@ -139,7 +139,7 @@ def _loads(written: Written, name: str, part: ShaftInSpacePart, shaft: Part) -> 
     for n, one in enumerate(part.loads):
         force, moment = one.force or [0.0] * 3, one.moment or [0.0] * 3
         if moment[2]:
-            written.remarks.append(f"Shaft {name}, loads.{n}: the moment about the axis is not written to REXS.")
+            written.remarks.append(f"Shaft {name}, loads.{n}: moment about the axis not written to REXS.")
         made = written.part("external_load", f"{name}, load {n + 1}").say("length", u_coordinate_on_shaft=one.at)
         made.say("force", force_u_direction=force[2], force_v_direction=force[0], force_w_direction=force[1])
         made.say("torque", torque_around_v_axis=moment[0], torque_around_w_axis=moment[1])

@@ -240,9 +240,9 @@ def check_bore(tooth: InvoluteTooth, bore_radius: float, module: float | None = 
     raise RangeError(
         "bore_radius",
         f"{bore_radius * unit:.9g} {name}",
-        f"lies too near {near} for finite elements",
-        f"choose between {1.001 * lowest * unit:.4g} and {math.floor(highest * unit / step) * step:.6g} {name}: "
-        "the radius at which shaft or hub hold the body",
+        f"is too close to {near} for the FE mesh",
+        f"choose between {1.001 * lowest * unit:.4g} and {math.floor(highest * unit / step) * step:.6g} {name} "
+        "(radius at which the gear body is fixed to shaft or hub)",
     )
 
 
@@ -251,15 +251,15 @@ def _check_rim(root: float, outer: float, unit: float, name: str) -> None:
     lowest, highest = root + _THINNEST_RIM, _LARGEST_RING * root
     if lowest <= outer <= highest:
         return
-    rule = "lies too near" if outer < lowest else "lies too far outside"
+    rule = "is too close to" if outer < lowest else "is too far outside"
     # rounded inward, so that what is reported is accepted
     step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
     raise RangeError(
         "outer_radius",
         f"{outer * unit:.9g} {name}",
-        f"{rule} the root circle of radius {root * unit:.6g} {name} for finite elements",
+        f"{rule} the root circle of radius {root * unit:.6g} {name} for the FE mesh",
         f"choose between {math.ceil(lowest * unit / step) * step:.6g} and "
-        f"{math.floor(highest * unit / step) * step:.6g} {name}: the radius at which the ring is held",
+        f"{math.floor(highest * unit / step) * step:.6g} {name} (radius at which the ring is fixed)",
     )
 
 

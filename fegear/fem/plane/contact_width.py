@@ -60,7 +60,7 @@ def check_half_widths(
         raise RangeError(
             key,
             f"{b[wide][0] * scale:.6g} {unit}",
-            f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * scale:.6g} {unit}",
+            f"exceeds half a module, {LARGEST_HALF_WIDTH * scale:.6g} {unit}",
             usual,
         )
     past = b > np.maximum(room, 0.0) + FARTHEST_PAST_END * (1.0 + 1e-9)
@@ -68,9 +68,9 @@ def check_half_widths(
         raise RangeError(
             key,
             f"{b[past][0] * scale:.6g} {unit}",
-            f"reaches past the end of the flank, {room[past][0] * scale:.6g} {unit} from the contact's centre, "
-            f"by more than a tenth of a module",
-            usual + ", or choose radii farther from the flank's ends",
+            f"extends more than a tenth of a module beyond the end of the flank ({room[past][0] * scale:.6g} {unit} "
+            "from the contact centre)",
+            usual + ", or choose radii farther from the ends of the flank",
         )
 
 

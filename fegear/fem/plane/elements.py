@@ -244,8 +244,8 @@ def _refuse_inverted(determinant: Array, origin: str) -> None:
         raise InputError(
             "mesh",
             origin,
-            f"has {int(inverted.sum())} curved elements that are turned inside out",
-            "mesh finer near curved boundaries",
+            f"has {int(inverted.sum())} inverted curved elements",
+            "refine the mesh at curved boundaries",
         )
 
 

@@ -88,7 +88,7 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
     teeth = sectors[row[0]].teeth
     closed = len(row) == teeth
     if row != list(range(row[0], row[0] + len(row))) or len(row) > teeth:
-        raise InputError("sectors", str(row), f"must be numbers one apart, at most {teeth}")
+        raise InputError("sectors", str(row), f"must be consecutive numbers, at most {teeth}")
     points, triangles, quadrilaterals = [], [], []
     places: dict[tuple[str, int], Index] = {}
     count = 0
@@ -107,7 +107,7 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
         a, b = _side(every, places[_facing(sectors[k])[1], k]), _side(every, places[_facing(sectors[after])[0], after])
         if a.size != b.size or np.abs(every[:, a] - every[:, b]).max() > _SAME * np.abs(every).max():
             raise InputError(
-                "mesh", sectors[after].origin, "has sides whose nodes do not fit each other after one pitch's turn"
+                "mesh", sectors[after].origin, "has sides whose nodes do not match after rotation by one pitch"
             )
         merged[b] = a
     triangles_, quadrilaterals_ = merged[np.hstack(triangles)], merged[np.hstack(quadrilaterals)]

@@ -76,8 +76,8 @@ def holed_ring(
         except InputError:
             continue
     raise RangeError(
-        "body.holes", holes, "cannot be meshed: elements between hub, rim and holes turn inside out",
-        "make the holes smaller, or the hub larger",
+        "body.holes", holes, "cannot be meshed: inverted elements between hub, rim and holes",
+        "reduce the hole diameter, or increase the hub radius",
     )  # fmt: skip
 
 

@@ -79,14 +79,14 @@ def read_sector_mesh(
         return InputError(key, f'"{path.name}"', rule, remedy)
 
     if not path.is_file():
-        raise InputError(key, f'"{path}"', "is not there", "give the path relative to the case file")
+        raise InputError(key, f'"{path}"', "file not found", "specify the path relative to the case file")
     try:
         data = read_mesh_file(path)
     except ValueError as problem:
-        raise refuse(f"cannot be read by meshio ({problem})", "write it as .msh, .inp, .vtu or .med") from None
+        raise refuse(f"cannot be read by meshio ({problem})", "save it as .msh, .inp, .vtu or .med") from None
     blocks = [b.data for b in data.cells if b.type in ("triangle", "triangle6")]
     if not blocks or any(b.type in ("quad", "quad8", "quad9", "tetra") for b in data.cells):
-        raise refuse("does not consist of triangles", "mesh the sector with three-node or six-node triangles")
+        raise refuse("must consist of triangles", "mesh the sector with three-node or six-node triangles")
     if len({block.shape[1] for block in blocks}) > 1:
         raise refuse("mixes three-node and six-node triangles", "use one kind")
     cells = np.vstack(blocks).T.astype(np.int64)
@@ -140,7 +140,7 @@ def _group(data: Any, name: str, old: Index, refuse: Any) -> NDArray[np.bool_]:
     if not members or not sum(m.size for m in members):
         known = sorted({*data.cell_sets, *data.point_sets, *data.field_data})
         raise refuse(
-            f'has no group "{name}" (it has: {", ".join(known) or "none"})', f"name the groups {', '.join(GROUPS)}"
+            f'has no group "{name}" (it has: {", ".join(known) or "none"})', f"add the groups {', '.join(GROUPS)}"
         )
     return np.isin(old, np.concatenate(members).astype(np.int64))
 
@@ -157,7 +157,7 @@ def _named_edges(six: Index, groups: dict[str, NDArray[np.bool_]], points: Array
         if member[outer[2]].any():
             inside &= member[outer[2]]
         if not inside.any():
-            raise refuse(f'has a group "{name}" that holds no edge of the boundary')
+            raise refuse(f'has a group "{name}" without boundary edges')
         right = points[0, outer[2]] > 0.0
         if name in ("flank", "fillet"):
             named[name], named[f"back_{name}"] = outer[:, inside & right], outer[:, inside & ~right]
@@ -203,13 +203,13 @@ def check_triangles(points: Array, cells: Index, module: float, refuse: Refuse) 
         return f"at x = {x:.5g}, y = {y:.5g} mm"
 
     if cells.size and (cells.min() < 0 or cells.max() >= points.shape[1]):
-        raise refuse(f"has elements on nodes that it does not have (it has {points.shape[1]})", "write it again")
+        raise refuse(f"has elements with missing nodes (it has {points.shape[1]} nodes)", "write it again")
     used = np.unique(cells)
     bad = used[~np.isfinite(points[:, used]).all(axis=0)]
     if bad.size:
-        raise refuse(f"has {bad.size} nodes that are nowhere (node {bad[0] + 1} of the file: nan)", "write it again")
+        raise refuse(f"has {bad.size} nodes with invalid coordinates (node {bad[0] + 1}: nan)", "write it again")
     if np.ptp(points[2, used]) > 1e-6 * np.ptp(points[:2, used]):
-        raise refuse("does not lie in a plane z = constant", "mesh the transverse section in the x-y plane")
+        raise refuse("must be in a plane z = constant", "mesh the transverse section in the x-y plane")
     corners = cells[:3]
     a, b, c = (points[:2, corner] for corner in corners)
     area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -220,12 +220,12 @@ def check_triangles(points: Array, cells: Index, module: float, refuse: Refuse) 
     _, first, times = np.unique(np.sort(corners, axis=0), axis=1, return_index=True, return_counts=True)
     if (times > 1).any():
         place = where(((a + b + c) / 3.0)[:, first[np.argmax(times > 1)]])
-        raise refuse(f"has {np.count_nonzero(times > 1)} elements twice (one {place})", "leave the copies out")
+        raise refuse(f"has {np.count_nonzero(times > 1)} duplicate elements (one {place})", "remove the duplicates")
     vertices = np.unique(corners)
     near = cKDTree(points[:2, vertices].T).query_pairs(_ONE_PLACE, output_type="ndarray")
     if near.size:
         place = where(points[:, vertices[near[0, 0]]])
-        raise refuse(f"has {len(near)} pairs of nodes at one place (one {place})", "merge them")
+        raise refuse(f"has {len(near)} pairs of coincident nodes (one {place})", "merge them")
     _check_boundary(points, corners, where, refuse)
 
 
@@ -238,7 +238,7 @@ def _check_boundary(points: Array, corners: Index, where: Callable[[Array], str]
     edges, times = np.unique(ends, axis=1, return_counts=True)
     if (times > 2).any():
         place = where(points[:, edges[0, np.argmax(times > 2)]])
-        raise refuse(f"has edges between more than two elements (one {place})", "leave overlapping elements out")
+        raise refuse(f"has edges between more than two elements (one {place})", "remove overlapping elements")
     outer = edges[:, times == 1]
     nodes, local = np.unique(outer, return_inverse=True)
     local = local.reshape(2, -1)
@@ -248,10 +248,12 @@ def _check_boundary(points: Array, corners: Index, where: Callable[[Array], str]
         # The outline is the line that reaches farthest up; any other is a hole or a piece that hangs on nothing.
         outline = part[np.argmax(np.hypot(*points[:2, nodes]))]
         place = where(points[:, nodes[np.argmax(part != outline)]])
-        raise refuse(f"has {parts - 1} holes or loose pieces (one {place})", "a sector is one piece without holes")
+        raise refuse(
+            f"has {parts - 1} holes or unconnected parts (one {place})", "the sector must be one part without holes"
+        )
     if (np.bincount(local.reshape(-1)) != 2).any():
         place = where(points[:, nodes[np.argmax(np.bincount(local.reshape(-1)) != 2)]])
-        raise refuse(f"hangs together by a single node ({place})", "repair the mesh")
+        raise refuse(f"is connected by a single node only ({place})", "repair the mesh")
 
 
 def check_gear(
@@ -275,26 +277,26 @@ def check_gear(
     radius, angle = np.hypot(*flank), np.arctan2(*flank)
     inside = radius >= tooth.base_radius
     if not inside.any():
-        raise refuse("has its whole flank inside the base circle", "check the length unit and the gear's data")
+        raise refuse("has its entire flank inside the base circle", "check the length unit and the gear data")
     off = np.abs(angle[inside] - tooth.involute.polar(radius[inside])) * radius[inside]
     if off.max() > _OFF_FLANK:
         raise refuse(
-            f"has a flank up to {off.max():.3g} modules off the gear's involute",
-            "check the length unit, the tooth number and that the tooth stands on the y axis",
+            f"has a flank up to {off.max():.3g} modules away from the involute of the gear",
+            "check the length unit, the tooth number and that the tooth is centred on the y axis",
         )
     mm = module * 1e3
     if abs(radius.max() - tooth.involute_tip_radius) > _OFF_TIP:
         raise refuse(
-            f"has a flank that ends at radius {radius.max() * mm:.6g} mm, the case's at "
+            f"has a flank ending at radius {radius.max() * mm:.6g} mm, in the case at "
             f"{tooth.involute_tip_radius * mm:.6g} mm",
-            "give tip_diameter, tip_radius_rounding or tip_chamfer as the mesh has them",
+            "set tip_diameter, tip_radius_rounding or tip_chamfer as in the mesh",
         )
     bore = np.hypot(*points[:, np.unique(edges["bore"][:2])])
     if np.abs(bore - bore_radius).max() > _OFF_BORE:
         raise refuse(
-            f"has its bore at radius {bore.min() * mm:.6g} to {bore.max() * mm:.6g} mm, the case at "
+            f"has its bore at radius {bore.min() * mm:.6g} to {bore.max() * mm:.6g} mm, in the case at "
             f"{bore_radius * mm:.6g} mm",
-            f'write bore_radius = "{bore.mean() * mm:.8g} mm" if the mesh is right',
+            f'set bore_radius = "{bore.mean() * mm:.8g} mm" if the mesh is correct',
         )
 
 
@@ -312,9 +314,9 @@ def check_fillet(
         worst = int(np.argmax(off))
         if off[worst] > _OFF_FILLET:
             raise refuse(
-                f"has a fillet up to {off[worst]:.2g} modules off the one that the case's rack cuts, at radius "
-                f"{np.hypot(*nodes[:, worst]) * module * 1e3:.6g} mm",
-                'check rack (dedendum, tip_radius) and profile_shift, or write tooth_mesh_fillet = "own"',
+                f"has a fillet deviating up to {off[worst]:.2g} modules from the one generated by the rack of the "
+                f"case, at radius {np.hypot(*nodes[:, worst]) * module * 1e3:.6g} mm",
+                'check rack (dedendum, tip_radius) and profile_shift, or set tooth_mesh_fillet = "own"',
             )
 
 

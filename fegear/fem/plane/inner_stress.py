@@ -74,8 +74,8 @@ def inner_stress(influence: Influence, reach: int) -> InnerStress:
     """
     if influence.support is not None:
         raise InputError(
-            "rim_support", "pins or a spline", "is not known to the stress inside a gear, whose rim is held",
-            "leave this result out: root stress and deflections take the support",
+            "rim_support", "pins or a spline", "is not available for the stress field (rim fixed)",
+            "remove this result (root stress and deflections include the support)",
         )  # fmt: skip
     mesh, flank = influence.mesh, influence.flank
     reach = min(reach, (mesh.teeth - 1) // 2)

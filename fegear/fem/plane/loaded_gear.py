@@ -40,8 +40,8 @@ def loaded_gear(
     """
     if gear.support is not None:
         raise InputError(
-            "rim_support", "pins or a spline", "is not known to fields of the whole gear, whose rim is held",
-            'write rim_support = { kind = "held" }',
+            "rim_support", "pins or a spline", "is not available for fields of the full gear (rim fixed)",
+            'set rim_support = { kind = "held" }',
         )  # fmt: skip
     if settings.order > _FIELD_ORDER:
         settings = replace(settings.scaled(_SIX_NODE_EDGES), order=_FIELD_ORDER)

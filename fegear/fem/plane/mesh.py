@@ -54,7 +54,7 @@ class SectorMesh:
                 "mesh",
                 self.origin,
                 f"has {int((self.jacobians.min(axis=0) <= 0).sum())} inverted elements",
-                "mesh finer near curved boundaries, or check the order of the elements' nodes",
+                "refine the mesh at curved boundaries, or check the node order of the elements",
             )
 
     @property

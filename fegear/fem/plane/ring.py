@@ -121,7 +121,7 @@ class Ring:
         place = np.minimum(np.searchsorted(self.sector.kept, unknowns, sorter=order), order.size - 1)
         found = order[place]
         if (self.sector.kept[found] != unknowns).any():
-            raise ValueError("only ports of the ring can be loaded or watched")
+            raise ValueError("loads and displacements are possible at ports of the ring only")
         return found
 
     def field(self, loaded: Index, forces: Array, sectors: list[int]) -> dict[int, Array]:
@@ -176,8 +176,8 @@ def close_ring(
     """
     if sector_teeth and not 2 * reach + 1 <= sector_teeth <= mesh.teeth:
         raise InputError(
-            "sector_teeth", sector_teeth, f"must lie between {2 * reach + 1} and {mesh.teeth}",
-            "the neighbours that are asked for must be in the sector",
+            "sector_teeth", sector_teeth, f"must be between {2 * reach + 1} and {mesh.teeth}",
+            "the requested neighbours must be in the sector",
         )  # fmt: skip
 
     started = time.perf_counter()
@@ -418,8 +418,8 @@ def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Ind
         raise InputError(
             "mesh",
             "side_a, side_b",
-            "do not carry the same nodes, so the sectors cannot be joined",
-            "mesh side_b as side_a turned by one pitch",
+            "have different nodes, so that sectors cannot be joined",
+            "mesh side_b as side_a rotated by one pitch",
         )
     pitch = 2.0 * np.pi / mesh.teeth
     if abs(angle_b - angle_a - pitch) > 1e-6:

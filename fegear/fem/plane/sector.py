@@ -166,8 +166,8 @@ def mesh_sector(
             refused = problem
             settings = settings.scaled(_FINER)
     raise FegearError(
-        f"No sound mesh of the tooth sector was found: at edges of {settings.root_edge_length:.3g} modules along the "
-        f"fillet it still {refused.rule}. Choose a thicker rim or a larger fillet."
+        f"No valid mesh of the tooth sector: with edges of {settings.root_edge_length:.3g} modules along the fillet "
+        f"it still {refused.rule}. Increase rim thickness or fillet radius."
     ) from refused
 
 
@@ -348,8 +348,8 @@ def _refuse_flat(vertices: NDArray[np.float64], triangles: NDArray[np.int64], bo
     flattest = float((2.0 * math.sqrt(3.0) * _areas(vertices, triangles) / sides).min(initial=1.0))
     if flattest < _FLATTEST:
         raise InputError(
-            "mesh", GENERATED, f"has a triangle of quality {flattest:.2g} (1 is equilateral, {_FLATTEST:g} the least)",
-            "shorten the edges",
+            "mesh", GENERATED, f"has a triangle of quality {flattest:.2g} (1: equilateral, minimum {_FLATTEST:g})",
+            "reduce the edge length",
         )  # fmt: skip
 
 

@@ -84,8 +84,8 @@ class MeshSettings:
         triangles = self.expected_triangles
         if triangles * self.order**2 > _MOST_UNKNOWNS:
             raise InputError(
-                "accuracy", "(edge lengths)", f"asks for about {triangles:.1g} triangles of order {self.order}",
-                f"lengthen the edges: {_MOST_UNKNOWNS / self.order**2:.1g} is what a large computer can solve",
+                "accuracy", "(edge lengths)", f"requires about {triangles:.1g} triangles of order {self.order}",
+                f"increase the edge length: the limit is about {_MOST_UNKNOWNS / self.order**2:.1g}",
             )  # fmt: skip
 
     @property

@@ -138,7 +138,7 @@ def solve_gear(
     shape = _shape(gear)
     coarser = coarser or settings.refined(LEVEL_RATIO)
     if mesh is not None:
-        say("influence functions on the given mesh")
+        say("influence functions on the user mesh")
         _, _, nu, plane = shape
         order, closest = settings.order, settings.corner_distance
         fine = cache.call_kept(

@@ -42,26 +42,34 @@ class StiffnessTable:
         "um.mm/N", "deflection of the loaded tooth at the contact per line load", label="compliance", table="flank"
     )
     c_prev: Array = shown(
-        "um.mm/N", "deflection of the tooth before it at the same radius", label="compliance", table="flank"
+        "um.mm/N",
+        "deflection of the previous tooth at the same radius per line load",
+        label="compliance",
+        table="flank",
     )
     c_next: Array = shown(
-        "um.mm/N", "deflection of the tooth after it (which the loaded flank faces)", label="compliance", table="flank"
+        "um.mm/N",
+        "deflection of the next tooth (facing the loaded flank) per line load",
+        label="compliance",
+        table="flank",
     )
-    half_width: Array = shown(
-        "mm", "half-width of the contact that c_self is for", name="contact_half_width", table="flank"
-    )
+    half_width: Array = shown("mm", "contact half-width used for c_self", name="contact_half_width", table="flank")
     root_tension: Array = shown(
-        "MPa.mm/N", "largest tangential stress of the fillet below the loaded flank",
-        label="largest root stress per line load", table="flank")  # fmt: skip
-    root_tension_radius: Array = shown("mm", "where it sits", table="flank")
+        "MPa.mm/N", "root stress, tension side: maximum tangential stress in the fillet of the loaded flank",
+        label="maximum root stress per line load", table="flank")  # fmt: skip
+    root_tension_radius: Array = shown("mm", "radius of the maximum", table="flank")
     root_tension_angle: Array = shown(
-        "deg", "fillet tangent to tooth centre line there", label="fillet tangent to centre line"
+        "deg",
+        "angle of the fillet tangent to the tooth centre line at the maximum",
+        label="angle of fillet tangent to tooth centre line",
     )
-    root_compression: Array = shown("MPa.mm/N", "most negative tangential stress of the other fillet", table="flank")
-    root_compression_radius: Array = shown("mm", "where it sits", table="flank")
-    root_compression_angle: Array = shown("deg", "the same on the other fillet")
+    root_compression: Array = shown(
+        "MPa.mm/N", "root stress, compression side: minimum tangential stress in the opposite fillet", table="flank"
+    )
+    root_compression_radius: Array = shown("mm", "radius of the maximum", table="flank")
+    root_compression_angle: Array = shown("deg", "angle of the fillet tangent on the compression side")
     c_self_reduction: Array = shown(
-        "um.mm/N", "reduction of c_self by contact with a mating flank near the tip; not applied to c_self"
+        "um.mm/N", "reduction of c_self for contact with a mating flank near the tip; not included in c_self"
     )
 
     @cached_property
@@ -114,7 +122,7 @@ def stiffness_table(
         raise RangeError(
             "radii",
             f"{r[off][0] * 1e3:.6g} mm",
-            f"lies off the involute flank, which runs from {low * 1e3:.6g} to {high * 1e3:.6g} mm",
+            f"is outside the involute flank, {low * 1e3:.6g} to {high * 1e3:.6g} mm",
         )
     check_contacts(gear, r, b)
     known = influence or solve_gear(gear, settings, progress=progress)

@@ -172,9 +172,7 @@ class LoadedFlank:
         slack = 1e-7 * high
         if r.size and not (r.min() >= low - slack and r.max() <= high + slack):
             off = r[~((r >= low - slack) & (r <= high + slack))][0]
-            raise RangeError(
-                "radius", f"{off:.8g} modules", f"lies off the flank, which runs from {low:.8g} to {high:.8g}"
-            )
+            raise RangeError("radius", f"{off:.8g} modules", f"is outside the flank, {low:.8g} to {high:.8g}")
         roll_squared = np.maximum(r * r / self.base_radius**2 - 1.0, 0.0)
         run = self.arc[self.first_flank_edge : self.after_flank_edge + 1]
         return np.interp(self.side * roll_squared, self.side * self.roll_squared, run)

@@ -80,7 +80,7 @@ def whole_gear(mesh: SectorMesh) -> WholeGear:
         a, b = b, a
     size = float(np.abs(mesh.points).max())
     if a.size != b.size or np.abs(turned(mesh.points[:, a], pitch) - mesh.points[:, b]).max() > 1e-9 * size:
-        raise InputError("mesh", mesh.origin, "has sides whose nodes do not fit each other after one pitch's turn")
+        raise InputError("mesh", mesh.origin, "has sides whose nodes do not match after rotation by one pitch")
     own = np.setdiff1d(np.arange(count), a)
     nodes = np.empty((z, count), dtype=np.int64)
     nodes[:, own] = np.arange(own.size) + own.size * np.arange(z)[:, None]

@@ -230,10 +230,10 @@ def _check(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> None:
     if over.any() or not np.isfinite(pressed.zeta).all():
         at = pressed.zeta[np.argmax(over)]
         raise RangeError(
-            "zeta", f"{at:.6g} modules", f"is the middle of a band that reaches over an end face at {half:.6g} modules"
+            "zeta", f"{at:.6g} modules", f"is the centre of a band extending beyond the end face at {half:.6g} modules"
         )
     if not ((pressed.before >= 0.0) & (pressed.after >= 0.0) & (pressed.before + pressed.after > 0.0)).all():
-        raise RangeError("reach", "not positive", "must be positive: a band has an extent along the face")
+        raise RangeError("reach", "not positive", "must be positive")
     if not np.isfinite(pressed.slope).all():
         raise RangeError("slope", "not finite", "must be finite: arc length up the flank per length along the face")
     check_half_width(pressed.half_width, flank)
@@ -251,7 +251,7 @@ def check_half_width(half_width: Array, flank: LoadedFlank) -> None:
     if wrong.any():
         raise RangeError(
             "half_width", f"{half_width[wrong][0]:.6g} modules",
-            f"must be positive and at most {most:.6g} modules: a contact has a width and lies on the flank",
+            f"must be positive and at most {most:.6g} modules",
         )  # fmt: skip
 
 

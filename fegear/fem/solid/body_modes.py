@@ -52,9 +52,9 @@ class BodyMode:
     shape: Array
     diameters: int = shown("", "nodal diameters n")
     frequency: float = shown("Hz", "natural frequency")
-    axial: float = shown("", "share of the kinetic energy that moves along the axis")
-    radial: float = shown("", "share outward and inward")
-    tangential: float = shown("", "share round the axis")
+    axial: float = shown("", "kinetic energy share, axial")
+    radial: float = shown("", "kinetic energy share, radial")
+    tangential: float = shown("", "kinetic energy share, circumferential")
 
     @property
     @shows("", "along which direction it moves most")
@@ -111,7 +111,7 @@ def body_modes(
     from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
     if not 0 <= diameters <= tooth.teeth // 2:
-        raise InputError("diameters", diameters, f"must lie between 0 and {tooth.teeth // 2}, half the number of teeth")
+        raise InputError("diameters", diameters, f"must be between 0 and {tooth.teeth // 2}, half the number of teeth")
     with one_thread():
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True, layer=_LAYER / fineness)
         along = None if body is None else body.along(width)

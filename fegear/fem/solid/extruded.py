@@ -119,7 +119,7 @@ def extruded(
     """
     z = np.asarray(stations, dtype=float)
     if z.ndim != 1 or z.size < 2 or not (np.diff(z) > 0.0).all():
-        raise InputError("stations", str(stations), "must ascend", "give at least the two ends of the face")
+        raise InputError("stations", str(stations), "must ascend", "specify at least the two ends of the face")
     corners, size = _corners(section), section.points.shape[1]
     along = None if body is None else body.along(float(z[-1] - z[0]))
     heights = _heights(section.points, body, along)
@@ -158,7 +158,7 @@ def _heights(points: Array, body: GearBody | None, along: BodyAlong | None) -> C
 def _filled(along: BodyAlong, zone: Index, stations: Array) -> Mask:
     """Which elements of each layer are material, shape (L, M)."""
     if np.abs(np.subtract.outer(along.ends, stations)).min(axis=1).max() > 1e-9 * np.ptp(stations):
-        raise InputError("stations", str(stations), "must hold the places where web and hub end")
+        raise InputError("stations", str(stations), "must include the end positions of web and hub")
     middle = 0.5 * (stations[1:] + stations[:-1])
     there = np.array([(middle > low) & (middle < high) for low, high in along.spans])
     return np.asarray(there[zone].T)
@@ -258,11 +258,13 @@ def pressed_band(
     low, top, high = hat
     half = 0.5 * (mesh.stations[-1] - mesh.stations[0])
     if place - half_width < arc[0] - 1e-9 or place + half_width > arc[-1] + 1e-9:
-        raise RangeError("half_width", f"{half_width:.6g} modules", "reaches past an end of the flank")
+        raise RangeError("half_width", f"{half_width:.6g} modules", "extends beyond an end of the flank")
     if not (mesh.stations[0] - 1e-9 <= low <= top <= high <= mesh.stations[-1] + 1e-9) or low == high:
-        raise RangeError("hat", str(hat), f"must ascend within the face, {-half:.6g} to {half:.6g} modules")
+        raise RangeError(
+            "hat", str(hat), f"must be increasing within the face width, {-half:.6g} to {half:.6g} modules"
+        )
     if np.abs(mesh.stations[:, None] - np.array(hat)).min(axis=0).max() > 1e-9:
-        raise RangeError("hat", str(hat), "must lie on stations of the mesh")
+        raise RangeError("hat", str(hat), "must coincide with mesh stations")
     # Along the flank: s = place + a sin(theta), (2 / pi) cos^2(theta) dtheta of the load; on each edge Gauss points.
     bounds = np.arcsin(np.clip((arc - place) / half_width, -1.0, 1.0))
     width = 0.5 * np.diff(bounds)

@@ -248,8 +248,8 @@ def _check_sides(side_a: Index, side_b: Index, places: Array, teeth: int) -> Non
         if np.abs(turned - b).max() < 1e-6 * np.abs(b).max():
             return
     raise InputError(
-        "mesh", "side_a, side_b", "do not carry the same nodes, so the sectors cannot be joined",
-        "mesh side_b as side_a turned by one pitch",
+        "mesh", "side_a, side_b", "have different nodes, so that sectors cannot be joined",
+        "mesh side_b as side_a rotated by one pitch",
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.printed import percent
 from fegear.fem.plane.settings import MeshSettings
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class SolidSettings:
             if f.name not in ("section", "source", "fewer_on_pieces") and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
         if self.room_share > 0.95:
-            raise InputError("accuracy.room_share", self.room_share, "must be at most 0.95: a band stays on the flank")
+            raise InputError("accuracy.room_share", self.room_share, "must be at most 0.95")
         if self.fewest_waves < 2.0:  # a rigid motion along the face takes two
             raise InputError("accuracy.fewest_waves", self.fewest_waves, "must be at least 2")
         if self.fewer_on_pieces < 0:
@@ -157,7 +158,7 @@ def solid_settings(tolerance: float) -> SolidSettings:
         1e-2 takes elements of order 3, 3e-3 those of order 4; others make these finer or coarser, .1 to 1e-3 at most.
     """
     if not 1e-3 <= tolerance <= 0.1:
-        raise InputError("accuracy.tolerance", tolerance, "must lie between 1e-3 and 0.1 for teeth with a width")
+        raise InputError("accuracy.tolerance", tolerance, "must be between 1e-3 and 0.1 for 3D gears")
     if tolerance >= _USUAL:
         return SolidSettings() if tolerance == _USUAL else SolidSettings().scaled((tolerance / _USUAL) ** _ORDER)
     if tolerance >= _FINE:
@@ -203,26 +204,26 @@ def check_solid(
     """
     if not (1.0 - _LIMIT_ROUND_OFF) * _NARROWEST <= width <= (1.0 + _LIMIT_ROUND_OFF) * _WIDEST:
         raise RangeError(
-            "face_width", f"{width:.12g} modules", f"must lie between {_NARROWEST:g} and {_WIDEST:g} modules",
-            "treat a narrower gear as plane, and shorten a wider one to the part that carries the load",
+            "face_width", f"{width:.12g} modules", f"must be between {_NARROWEST:g} and {_WIDEST:g} modules",
+            "use the plane (2D) model for narrower gears; reduce wider ones to the loaded part",
         )  # fmt: skip
     outer, where = (section.root_radius, "root") if section.internal else (section.tip_radius, "tip")
     if not abs(tau) <= math.tan(_STEEPEST) / outer:
         angle = math.degrees(math.atan(tau * outer)) if math.isfinite(tau) else tau
         raise RangeError(
-            "helix_angle", f"{angle:.6g} degrees at the {where}", f"must stay below {math.degrees(_STEEPEST):g} degrees"
+            "helix_angle", f"{angle:.6g} deg at the {where}", f"must stay below {math.degrees(_STEEPEST):g} degrees"
         )
     if not -1.0 < poisson_ratio < 0.5:
-        raise RangeError("poisson_ratio", poisson_ratio, "must lie between -1 and 0.5")
+        raise RangeError("poisson_ratio", poisson_ratio, "must be between -1 and 0.5")
     if settings.degree(width) > _HIGHEST_DEGREE:
         raise RangeError(
             "face_width", f"{width:.6g} modules",
-            f"asks for polynomials of degree {settings.degree(width)} along it at {settings.waves_per_module:g} waves "
-            f"a module; {_HIGHEST_DEGREE} is what can be solved",
-            f"shorten it to {_HIGHEST_DEGREE / settings.degree(width):.0%}, or take a coarser tolerance",
+            f"requires polynomials of degree {settings.degree(width)} along it at {settings.waves_per_module:g} "
+            f"waves per module (maximum {_HIGHEST_DEGREE})",
+            f"reduce it to {percent(_HIGHEST_DEGREE / settings.degree(width))}, or increase the tolerance",
         )  # fmt: skip
     if reach < 0:
-        raise RangeError("reach", reach, "must be at least 0: so many teeth to either side are known")
+        raise RangeError("reach", reach, "must be at least 0")
     if held is None:
         return
     low, high = held
@@ -230,6 +231,6 @@ def check_solid(
     if not -half <= low < high <= half or high - low < _SHORTEST_HELD * width:
         raise RangeError(
             "held", f"({low:.6g}, {high:.6g}) modules",
-            f"must be a part of the face, from {-0.5 * width:.6g} to {0.5 * width:.6g} modules, and at least "
-            f"{_SHORTEST_HELD:.0%} of it",
+            f"must be within the face width, {-0.5 * width:.6g} to {0.5 * width:.6g} modules, and at least "
+            f"{100.0 * _SHORTEST_HELD:g} % of it",
         )  # fmt: skip

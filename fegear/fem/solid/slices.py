@@ -114,21 +114,21 @@ def solve_slices(
     """
     if tooth.internal:
         raise RangeError(
-            "internal", "true", "is not known to slices, whose laws were fitted to external gears",
-            'solve it as a solid: width = "solid"',
+            "internal", "true", 'is not available with width = "slices" (external gears only)',
+            'set width = "solid"',
         )  # fmt: skip
     if body is not None:
         raise RangeError(
-            "body", "web and hub", "are not known to slices, whose body is a disc as wide as the face",
-            'solve it as a solid: width = "solid"',
+            "body", "web and hub", 'are not available with width = "slices" (solid disc only)',
+            'set width = "solid"',
         )  # fmt: skip
     if support is not None:
         raise RangeError(
-            "rim_support", "pins or a spline", "is not known to slices, whose laws were fitted to external gears",
-            'solve it as a solid: width = "solid"',
+            "rim_support", "pins or a spline", 'is not available with width = "slices" (external gears only)',
+            'set width = "solid"',
         )  # fmt: skip
     if held is not None:
-        raise RangeError("held", held, "is not known to slices, whose bore is held all along the face")
+        raise RangeError("held", held, 'is not available with width = "slices" (bore fixed over the full face width)')
     started = time.perf_counter()
     plane = plane or plane_section(tooth, poisson_ratio, bore_radius, settings, reach)
     solved = time.perf_counter()

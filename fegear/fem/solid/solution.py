@@ -129,8 +129,8 @@ class SolidSolution(SolidFlank):
     def _check_tooth(self, k: int) -> None:
         if k not in self.compliance:
             raise RangeError(
-                "k", k, f"must be a whole number from {-self.reach} to {self.reach}: teeth that were solved for",
-                "ask for a larger reach",
+                "k", k, f"must be a whole number from {-self.reach} to {self.reach}",
+                "increase reach",
             )  # fmt: skip
 
     def largest_root_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> tuple[Array, Array]:
@@ -214,7 +214,7 @@ class SolidSolution(SolidFlank):
         z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
         if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
             raise RangeError(
-                "zeta", f"{off[0]:.6g} modules", f"lies off the face, which runs from {-half:.6g} to {half:.6g} modules"
+                "zeta", f"{off[0]:.6g} modules", f"is outside the face width, {-half:.6g} to {half:.6g} modules"
             )
         values, slopes = self.face.at(z)
         return surface_stress(self.fillets[side], self.tau, self.poisson_ratio, moved, values, slopes)
@@ -282,7 +282,7 @@ def solve_solid(
     """
     settings = settings or SolidSettings()
     if body is not None and body.holes is not None and (sector_teeth or plane_strain):
-        raise RangeError("body.holes", body.holes.count, "are known to whole gears alone, not to plane or open ones")
+        raise RangeError("body.holes", body.holes.count, "are available for full 3D gears only")
     if support is not None:
         _check_support(support, tooth, alone=held is None and body is None and not sector_teeth)
     with one_thread():
@@ -419,7 +419,7 @@ def _check_support(support: RimSupport, tooth: InvoluteTooth, *, alone: bool) ->
     if not (tooth.internal and alone):
         kind = '"pins"' if support.pins else '"splined"'
         raise RangeError(
-            "rim_support.kind", kind, "is known to whole internal rings alone, without a body or a held part"
+            "rim_support.kind", kind, "is available for complete internal rings only, without a body or a fixed part"
         )
 
 

@@ -97,13 +97,13 @@ def write_step(
             _build(gmsh.model.occ, gear, (*left, *right), scale, helix, bore)
             solid = _alone(gmsh, path)
         except Exception as problem:
-            raise FegearError(f"{path.name}: OpenCASCADE made no solid of the outline: {problem}") from problem
+            raise FegearError(f"{path.name}: OpenCASCADE could not create a solid: {problem}") from problem
         volume, expected = gmsh.model.occ.getMass(3, solid) / _MM**3, area * 2.0 * half / _MM**3
         made = SolidModel(volume, expected, *_closed(gmsh, path.name))
         if abs(volume / expected - 1.0) > _VOLUME:
             raise FegearError(
-                f"{path.name}: the solid's volume is {volume * _MM**3:.9g} mm^3, and the section's area times the face "
-                f"width {expected * _MM**3:.9g} mm^3; it is not written."
+                f"{path.name}: the solid's volume is {volume * _MM**3:.9g} mm^3, and the section's area times the "
+                f"face width {expected * _MM**3:.9g} mm^3; not written."
             )
         with _silence():
             gmsh.write(str(path))
@@ -217,7 +217,7 @@ def _closed(gmsh: Any, name: str) -> tuple[int, int]:
     single = len(gmsh.model.getEntities(3)) == 1 and len(on) == len(edges) - 1
     if not single or any(count != 2 for count in on.values()):
         free = sum(count != 2 for count in on.values())
-        raise FegearError(f"{name}: the surfaces do not close to one solid ({free} free edges); it is not written.")
+        raise FegearError(f"{name}: the surfaces do not close to one solid ({free} free edges); not written.")
     return len(faces), len(edges)
 
 

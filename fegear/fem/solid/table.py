@@ -48,13 +48,15 @@ class RootStressOfBands(ReadOnlyArrays):
     `places`, shape (S,), lie along the face, and `along`, shape (R, Z, S), is the largest up the fillet at each.
     """
 
-    value: Array = shown("MPa/N", "largest tangential stress of the fillet, anywhere along the face")
-    position: Array = shown("mm", "where it sits along the face")
-    radius: Array = shown("mm", "and its distance from the axis")
-    axial: Array = shown("MPa/N", "stress across it in the surface there")
-    shear: Array = shown("MPa/N", "shear between both there")
-    places: Array = shown("mm", "along the face, from its middle", label="face position")
-    along: Array = shown("MPa/N", "largest up the fillet at a place along the face")
+    value: Array = shown(
+        "MPa/N", "root stress, tension side: maximum tangential stress in the fillet over the face width"
+    )
+    position: Array = shown("mm", "face position of the maximum")
+    radius: Array = shown("mm", "radius of the maximum")
+    axial: Array = shown("MPa/N", "surface stress perpendicular to it at the maximum")
+    shear: Array = shown("MPa/N", "surface shear stress at the maximum")
+    places: Array = shown("mm", "face position from mid-face", label="face position")
+    along: Array = shown("MPa/N", "maximum tangential stress in the fillet at this face position")
 
 
 @dataclass(frozen=True)
@@ -74,18 +76,20 @@ class SolidTable(ReadOnlyArrays):
     errors: Mapping[str, Array]
     influence: SolidInfluence
     seconds: float
-    radius: Array = shown("mm", "radius of the band's middle")
-    roll_angle: Array = shown("deg", "roll angle of the band's middle", label="roll angle of the load")
-    half_width: Array = shown("mm", "half-width of the contact that c_self is for", name="contact_half_width")
-    pressed_half_width: Array = shown("mm", "of the pressure that all else is for")
-    position: Array = shown(
-        "mm", "place of the band's top along the face, from its middle", name="face_position", label="face position"
+    radius: Array = shown("mm", "radius of the band centre")
+    roll_angle: Array = shown("deg", "roll angle of the band centre", label="roll angle of the load")
+    half_width: Array = shown("mm", "contact half-width used for c_self", name="contact_half_width")
+    pressed_half_width: Array = shown(
+        "mm", "half-width of the pressure distribution used for neighbours and root stress"
     )
-    before: Array = shown("mm", "how far the band reaches toward the face end at minus", name="band_before")
-    after: Array = shown("mm", "how far it reaches toward the other end", name="band_after")
+    position: Array = shown(
+        "mm", "face position of the band peak, from mid-face", name="face_position", label="face position"
+    )
+    before: Array = shown("mm", "extent of the band towards end I (-b/2)", name="band_before")
+    after: Array = shown("mm", "extent of the band towards end II (+b/2)", name="band_after")
     c_self: Array = shown("um/N", "approach of the contact per force")
-    c_prev: Array = shown("um/N", "deflection of the same band on the tooth before")
-    c_next: Array = shown("um/N", "of the same band on the tooth after (which the flank faces)")
+    c_prev: Array = shown("um/N", "deflection of the same band on the previous tooth")
+    c_next: Array = shown("um/N", "deflection of the same band on the next tooth (facing the loaded flank)")
 
 
 def solid_table(
@@ -182,7 +186,7 @@ def bands_of_table(
     if (off := z[np.abs(z) > half * (1.0 + 1e-9)]).size:
         unit, name = (1.0, "modules") if math.isnan(module) else (1e3 * module, "mm")
         end = half * unit
-        rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} {name}"
+        rule = f"is outside the face width, {-end:.6g} to {end:.6g} {name}"
         raise RangeError("face_positions", f"{off[0] * unit:.6g} {name}", rule)
     z = np.clip(z, -half, half)
     width = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()

@@ -356,7 +356,7 @@ class AllowableStress:
 def _on_line(line: _Line, brinell: float, what: str) -> float:
     if not line.softest <= brinell <= line.hardest:
         rule = f"must be {line.softest:g} to {line.hardest:g} HB for {what} (ANSI/AGMA 2101-D04, 16)"
-        raise RangeError("hardness", f"{brinell:g} HB", rule, "give sigma_HP and sigma_FP yourself")
+        raise RangeError("hardness", f"{brinell:g} HB", rule, "specify sigma_HP and sigma_FP")
     return (line.slope * brinell + line.start) * 1e6
 
 

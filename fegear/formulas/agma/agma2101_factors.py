@@ -49,13 +49,13 @@ def dynamic_factor(speed: float, accuracy: int) -> float:
         If the level is not between 6 and 12 or the velocity above (C + 14 - A_v)^2 / 196.85.
     """
     if not 6 <= accuracy <= 12:
-        raise RangeError("A_v", accuracy, "must be 6 to 12 (ANSI/AGMA 2101-D04, clause 8)", "give K_v yourself")
+        raise RangeError("A_v", accuracy, "must be 6 to 12 (ANSI/AGMA 2101-D04, clause 8)", "specify K_v")
     b = 0.25 * (accuracy - 5.0) ** 0.667
     c = 50.0 + 56.0 * (1.0 - b)
     fastest = (c + 14.0 - accuracy) ** 2 / 196.85
     if not 0.0 <= speed <= fastest:
         rule = f"must not exceed {fastest:.4g} m/s at A_v = {accuracy} (ANSI/AGMA 2101-D04, clause 8)"
-        raise RangeError("pitch line velocity", f"{speed:.4g} m/s", rule, "choose a finer accuracy level")
+        raise RangeError("pitch line velocity", f"{speed:.4g} m/s", rule, "choose a better accuracy level")
     return ((c + math.sqrt(196.85 * speed)) / c) ** b
 
 
@@ -118,9 +118,9 @@ def load_distribution(face_width: float, pinion_diameter: float, mounting: Mount
         raise RangeError("face width, pinion diameter", (face_width, pinion_diameter), "must be positive")
     if b > 2.0 * d or b > 1020.0:
         rule = "must be at most 2 pinion diameters and 1020 mm for the empirical method (ANSI/AGMA 2101-D04, 15)"
-        raise RangeError("face width", f"{b:.4g} mm", rule, "take K_H from a computed load distribution")
+        raise RangeError("face width", f"{b:.4g} mm", rule, "use K_H from an FE load distribution")
     if not 0.0 <= abs(mounting.offset_ratio) <= 0.5:
-        raise RangeError("S_1/S", mounting.offset_ratio, "must be between -0.5 and 0.5: the pinion is between bearings")
+        raise RangeError("S_1/S", mounting.offset_ratio, "must be between -0.5 and 0.5 (pinion between bearings)")
     if mounting.enclosure not in _ALIGNMENT:
         raise RangeError("enclosure", mounting.enclosure, f"must be one of {', '.join(_ALIGNMENT)}")
     slim = max(b / (10.0 * d), 0.05)
@@ -145,7 +145,7 @@ def rim_factor(backup_ratio: float) -> float:
         For m_B below 0.5, where the rim rather than the tooth breaks.
     """
     if not backup_ratio >= 0.5:
-        raise RangeError("m_B", f"{backup_ratio:.4g}", "must be at least 0.5: thinner rims break, not teeth")
+        raise RangeError("m_B", f"{backup_ratio:.4g}", "must be at least 0.5; below that rim fracture governs")
     return 1.0 if backup_ratio >= 1.2 else 1.6 * math.log(2.242 / backup_ratio)
 
 
@@ -187,7 +187,7 @@ def work_hardening_factor(pinion_roughness: float, gear_hardness: float) -> floa
         HB_2.
     """
     if not 180.0 <= gear_hardness <= 400.0:
-        raise RangeError("HB_2", gear_hardness, "must be 180 to 400 HB for work hardening", "take Z_W = 1")
+        raise RangeError("HB_2", gear_hardness, "must be 180 to 400 HB for work hardening", "use Z_W = 1")
     if pinion_roughness < 0.0:
         raise RangeError("roughness", pinion_roughness, "must not be negative")
     rough = pinion_roughness * 1e6

@@ -151,7 +151,7 @@ def contact_geometry(pair: GearPair) -> ContactGeometry:
         both = rho_m * (reach - rho_m) * path / (lowest * (reach - lowest) * normal_pitch)
         overlap = math.sqrt(1.0 - m_f * (1.0 - both))
     if not 0.0 < rho < reach:
-        raise RangeError("rho_1", f"{rho:.4g} modules", "lies off the line of action: the tips interfere")
+        raise RangeError("rho_1", f"{rho:.4g} modules", "is outside the line of action (tip interference)")
     psi_r = math.atan(math.tan(base_helix) / math.cos(phi_r))
     normal = math.asin(math.cos(base_helix) * math.sin(phi_r))
     return ContactGeometry(member, m_p, m_f, length, shared, overlap, phi_r, psi_r, normal, (rho, reach - rho))
@@ -186,7 +186,7 @@ def bending_factor(pair: GearPair, member: Member, contact: ContactGeometry | No
     tooth, phi, psi = gear.external_tooth, gear.normal_pressure_angle, gear.helix_angle
     if tooth.rack.residual_undercut > 0.0:
         raise RangeError(
-            "rack.protuberance", "(given)", "is not covered by AGMA 908 for helical gears", "rate by ISO 6336"
+            "rack.protuberance", "(given)", "is not covered by AGMA 908 for helical gears", "use the rating to ISO 6336"
         )
     teeth = gear.teeth / math.cos(psi) ** 3
     load_angle = _load_roll(pair, member, at, teeth) - (math.tan(phi) - phi)
@@ -349,7 +349,7 @@ def refuse_undercut(pair: GearPair) -> None:
                 f"{name} form radius",
                 f"{gear.form_radius * 1e3:.6g} mm",
                 f"exceeds the start of active profile, {reach * 1e3:.6g} mm: undercut, which AGMA 908-B89 excludes",
-                "raise the profile shift",
+                "increase the profile shift",
             )
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 #: What a remark says of a value that stands in for a formula's.
-COMPUTED = "computed in place of the formula"
+COMPUTED = "FE value instead of the formula"
 
 
 @dataclass(frozen=True, slots=True)

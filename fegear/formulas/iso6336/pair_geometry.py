@@ -75,7 +75,7 @@ class GearShape:
     def __post_init__(self) -> None:
         """Fill in what follows from the rest; refuse what no gear has."""
         if not self.teeth > 0:
-            raise RangeError("teeth", self.teeth, "must be positive, of an internal gear as well")
+            raise RangeError("teeth", self.teeth, "must be positive, also for an internal gear")
         for name in ("face_width", "root_diameter", "young_modulus", "density"):
             if not getattr(self, name) > 0.0:
                 raise RangeError(name, getattr(self, name), "must be positive")
@@ -84,7 +84,7 @@ class GearShape:
             inward = inward[::-1]
         if not inward[0] > inward[1] > inward[2] >= 0.0:
             diameters = f"{self.tip_diameter:.6g}, {self.root_diameter:.6g}, {self.bore_diameter:.6g} m"
-            rule = f"must {'rise' if self.internal else 'fall'} in this order"
+            rule = f"must be {'increasing' if self.internal else 'decreasing'} in this order"
             raise RangeError(f"tip, root and {'outside' if self.internal else 'bore'} diameter", diameters, rule)
         if math.isnan(self.generating_shift):
             object.__setattr__(self, "generating_shift", self.profile_shift)
@@ -146,12 +146,12 @@ class PairGeometry:
         if self.gears[0].internal or self.gears[0].teeth > self.gears[1].teeth:
             given = f"{self.gears[0].teeth}, {self.gears[1].teeth}"
             raise RangeError(
-                "teeth of pinion and wheel", given, "must not fall", "name the gear with fewer teeth first"
+                "teeth of pinion and wheel", given, "must not be decreasing", "specify the gear with fewer teeth first"
             )
         if not self.module > 0.0:
             raise RangeError("module", self.module, "must be positive")
         if not 0.0 <= self.helix_angle < math.pi / 2:
-            raise RangeError("helix angle", self.helix_angle, "must lie between 0 and 90 deg, without the hand's sign")
+            raise RangeError("helix angle", self.helix_angle, "must be between 0 and 90 deg, unsigned")
         if math.isnan(self.face_width):
             object.__setattr__(self, "face_width", min(g.face_width for g in self.gears))
         if not self.centre_distance > 0.5 * abs(sum(self.signed_base_diameters)):
@@ -170,9 +170,7 @@ class PairGeometry:
         between = self.centre_distance * math.sin(self.working_pressure_angle)
         path = reach + between if self.internal else reach - between
         if not path > 0.0:
-            raise RangeError(
-                "centre distance", f"{self.centre_distance:.6g} m", "is so large that the teeth never meet"
-            )
+            raise RangeError("centre distance", f"{self.centre_distance:.6g} m", "is too large: no tooth contact")
         return path / self.base_pitch
 
     @property

@@ -225,9 +225,9 @@ def method_b(
     name, k_v = of_resonance_ratio(speed / resonance, limit, c, b)
     remark = ""
     if name == "main resonance":
-        remark = "K_v: the pair runs in its main resonance, which the standard says to avoid or to study by method A"
+        remark = "K_v: operation in the main resonance range; ISO 6336-1 recommends to avoid it or to use method A"
     elif k_v < 1.0:
-        remark = f"K_v: {k_v:.3g} is below 1, as the formula of the {name} range has it; 1 is on the safe side"
+        remark = f"K_v: {k_v:.3g} from the formula of the {name} range is below 1; 1 is conservative"
     return DynamicFactor(mass, resonance, speed / resonance, limit, b, c, name, k_v, remark)
 
 
@@ -274,6 +274,6 @@ def method_c(pair: PairGeometry, specific_load: float, velocity: float, grade: i
         remarks.append("beta is above 30 deg")
     if pair.gears[0].teeth >= 50 and x >= 3.0:
         remarks.append("z_1 is not below 50")
-    remark = f"K_v: {' and '.join(remarks)}, outside what method C is stated for" if remarks else ""
+    remark = f"K_v: {' and '.join(remarks)}, outside the range of method C" if remarks else ""
     nan = math.nan
     return DynamicFactor(nan, nan, nan, nan, (nan, nan, nan), (), "method C", k_v, remark)

@@ -110,7 +110,7 @@ def shaft_deformation(shaft: PinionShaft, specific_load: float, width: float, di
     place = shaft.offset / shaft.bearing_span
     remarks = []
     if not place < most:
-        remarks.append(f"s/l = {place:.3g} is not below {most:g}, for which arrangement {shaft.arrangement} is stated")
+        remarks.append(f"s/l = {place:.3g} exceeds the limit {most:g} of arrangement {shaft.arrangement}")
     if shaft.diameter > diameter:
         remarks.append(
             f"the shaft of {shaft.diameter * 1e3:.4g} mm is thicker than the pinion, {diameter * 1e3:.4g} mm at its "
@@ -176,24 +176,26 @@ def method_c(
     if alignment.face_load_factor is not None:
         if not alignment.face_load_factor >= 1.0:
             raise RangeError("K_Hbeta", alignment.face_load_factor, "must be at least 1")
-        return Misalignment(nan, nan, (nan, nan), nan, nan, nan, nan, alignment.face_load_factor, "K_Hbeta: as given")
+        return Misalignment(
+            nan, nan, (nan, nan), nan, nan, nan, nan, alignment.face_load_factor, "K_Hbeta: as specified"
+        )
     remark = ""
     if alignment.deformation is not None:
         deformation = alignment.deformation
     elif alignment.computed is not None:
-        deformation, remark = alignment.computed * specific_load, "f_sh: of the computed shafts under an even load"
+        deformation, remark = alignment.computed * specific_load, "f_sh: from the shaft calculation with uniform load"
     elif alignment.shaft is not None:
         deformation, remark = shaft_deformation(alignment.shaft, specific_load, pair.face_width, pair.diameters[0])
     else:
         raise RangeError(
             "alignment",
             "no shaft",
-            "K_Hbeta by method C asks for the pinion's shaft or f_sh",
-            "give the shaft, f_sh or K_Hbeta",
+            "K_Hbeta by method C requires the pinion shaft or f_sh",
+            "specify the shaft, f_sh or K_Hbeta",
         )
     slope_5 = alignment.helix_slope_5
     if alignment.contact_pattern == "favourable" and slope_5 is None:
-        raise RangeError("f_Hbeta5", "missing", "a favourable contact pattern asks for the tolerance of grade 5")
+        raise RangeError("f_Hbeta5", "missing", "a favourable contact pattern requires the tolerance of grade 5")
     manufacture = manufacturing(quality) if alignment.manufacture is None else alignment.manufacture
     least = max(_LEAST * specific_load, 0.5 * max(q.helix_slope for q in quality))
     initial = initial_misalignment(alignment, deformation, manufacture, least, slope_5 or 0.0)

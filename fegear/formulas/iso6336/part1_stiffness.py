@@ -70,11 +70,11 @@ def theoretical_stiffness(z_n1: float, z_n2: float, x_1: float = 0.0, x_2: float
         if not z > 0.0:
             raise RangeError(name, z, "must be positive: the series is for external gears (inf for a rack)")
     if math.isfinite(z_n1) and math.isfinite(z_n2) and not _in_range(x_1 + x_2):
-        raise RangeError("x_1 + x_2", f"{x_1 + x_2:.4g}", "must lie between -0.5 and 2 (ISO 6336-1, 9.3.1.1)")
+        raise RangeError("x_1 + x_2", f"{x_1 + x_2:.4g}", "must be between -0.5 and 2 (ISO 6336-1, 9.3.1.1)")
     terms = (1.0, 1.0 / z_n1, 1.0 / z_n2, x_1, x_1 / z_n1, x_2, x_2 / z_n2, x_1 * x_1, x_2 * x_2)
     q = sum(c * t for c, t in zip(_C, terms, strict=True))
     if not q > 0.0:
-        raise RangeError("q'", f"{q:.4g} mm um/N", "is not positive: the series does not hold for these gears")
+        raise RangeError("q'", f"{q:.4g} mm um/N", "is not positive: the series is not valid for these gears")
     return UNIT / q
 
 
@@ -86,12 +86,12 @@ def outside_range(x_1: float, x_2: float) -> str:
     """What ISO 6336-1, 9.3.1.1, states about its series and these profile shifts break, in words; empty if nothing."""
     if not _in_range(x_1 + x_2):
         return (
-            f"c': x_1 + x_2 = {x_1 + x_2:.4g} lies outside -0.5 to 2, the range that ISO 6336-1, 9.3.1.1, states for "
-            "its series; the series is continued there for the ring"
+            f"c': x_1 + x_2 = {x_1 + x_2:.4g} is outside -0.5 to 2, the range of the series of ISO 6336-1, 9.3.1.1; "
+            "extrapolated for the ring gear"
         )
     if x_1 >= x_2:
         return ""
-    return f"x_1 = {x_1:.4g} is below x_2 = {x_2:.4g}, outside the range that ISO 6336-1, 9.3.1.1, states for c'"
+    return f"x_1 = {x_1:.4g} is below x_2 = {x_2:.4g}, outside the range of ISO 6336-1, 9.3.1.1, for c'"
 
 
 def blank_factor(web_ratio: float | None, rim_ratio: float = math.inf) -> float:
@@ -107,7 +107,7 @@ def blank_factor(web_ratio: float | None, rim_ratio: float = math.inf) -> float:
     if web_ratio is None:
         return 1.0
     if not web_ratio > 0.0:
-        raise RangeError("web ratio b_s/b", web_ratio, "must be positive", "leave it out for a solid disc")
+        raise RangeError("web ratio b_s/b", web_ratio, "must be positive", "remove it for a solid disc")
     if not rim_ratio > 0.0:
         raise RangeError("rim ratio s_R/m_n", rim_ratio, "must be positive")
     return 1.0 + math.log(min(max(web_ratio, 0.2), 1.2)) / (5.0 * math.exp(max(rim_ratio, 1.0) / 5.0))
@@ -123,7 +123,7 @@ def rack_factor(dedendum: float, pressure_angle: float = math.radians(20.0)) -> 
     """C_B = [1 + 0.5 (1.2 - h_fP/m_n)] [1 - 0.02 (20 deg - alpha_Pn)] (ISO 6336-1:2006, 9.3.1.4)."""
     factor = (1.0 + 0.5 * (1.2 - dedendum)) * (1.0 - 0.02 * (20.0 - math.degrees(pressure_angle)))
     if not factor > 0.0:
-        raise RangeError("dedendum h_fP/m_n", dedendum, "is beyond the range of C_B")
+        raise RangeError("dedendum h_fP/m_n", dedendum, "is outside the range of C_B")
     return factor
 
 
@@ -166,7 +166,7 @@ def stiffness(
         Outside the range of the method.
     """
     if not 0.0 <= helix_angle <= math.radians(45.0):
-        raise RangeError("helix angle", f"{math.degrees(helix_angle):.4g} deg", "must lie between 0 and 45 deg")
+        raise RangeError("helix angle", f"{math.degrees(helix_angle):.4g} deg", "must be between 0 and 45 deg")
     if not contact_ratio >= 1.0:
         raise RangeError("contact ratio", f"{contact_ratio:.4g}", "must be at least 1")
     if helix_angle == 0.0 and contact_ratio >= 2.5:

@@ -74,7 +74,7 @@ def method_b(
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
     if deviation < 0.0:
-        raise RangeError("deviation less y_alpha", deviation, "must not be negative")
+        raise RangeError("deviation minus y_alpha", deviation, "must not be negative")
     total = contact_ratio + overlap_ratio
     relative = stiffness * deviation / specific_load
     if total <= 2.0:

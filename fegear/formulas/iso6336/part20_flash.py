@@ -38,7 +38,7 @@ class FlashTemperatures:
     x: Array
     load_sharing: Array
     approach: Array
-    flash: Array = shown("K", "ISO/TS 6336-20, rise above the teeth", name="flash_temperature_iso")
+    flash: Array = shown("K", "ISO/TS 6336-20, flash temperature", name="flash_temperature_iso")
     contact: Array = shown("degC", "ISO/TS 6336-20", name="contact_temperature_iso")
     friction: float = shown("", "mu_m")
     mean_flash: float = shown("K", "mean flash temperature")

@@ -104,7 +104,9 @@ def contact_ratio_factor(one: float, two: float) -> float:
     """
     whole = one + two
     if not (one > 0.0 and two >= 0.0 and whole < 3.0):
-        raise RangeError("contact ratio", f"{one:.4g} + {two:.4g}", "lies outside the integral temperature method")
+        raise RangeError(
+            "contact ratio", f"{one:.4g} + {two:.4g}", "is outside the range of the integral temperature method"
+        )
     if whole < 1.0:
         sum_ = one * one + two * two
     elif whole < 2.0 and one < 1.0 and two < 1.0:

@@ -49,14 +49,13 @@ def zone_factor(pair: PairGeometry) -> float:
 
 #: What is said of f_ZCa.
 RECALLED = (
-    "f_ZCa: {value:g} of helical flanks {tips} is recalled from memory, for no printed source was at hand; it "
-    "multiplies the contact stress by its square root where the overlap ratio is 1 and more (tip_relief_factor of "
-    "iso_6336)"
+    "f_ZCa: {value:g} for helical gears {tips} is not verified against a printed source; the contact stress is "
+    "multiplied by its square root for overlap ratios of 1 and above (iso_6336.tip_relief_factor)"
 )
 
 
 TIPS: dict[TipRelief, str] = {
-    "none": "without tip relief", "experience": "with tip relief by experience", "computed": "with a computed relief",
+    "none": "without tip relief", "experience": "with tip relief by experience", "computed": "with a calculated relief",
 }  # fmt: skip
 
 
@@ -95,9 +94,7 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
     for one, other in ((0, 1), (1, 0)):
         product = (tips[one] - steps[one]) * (tips[other] - (e - 1.0) * steps[other])
         if not product > 0.0:
-            raise RangeError(
-                "single pair contact", f"{product:.4g}", "lies below a base circle: the teeth are too short"
-            )
+            raise RangeError("single pair contact", f"{product:.4g}", "is below a base circle (teeth too short)")
         factors.append(math.tan(pair.working_pressure_angle) / math.sqrt(product))
     m = (factors[0], factors[1])
     part, helical = min(pair.overlap_ratio, 1.0), math.sqrt(tip_relief)
@@ -272,16 +269,16 @@ def work_hardening(
         if strength[soft].group not in groups.NORMALIZED | groups.THROUGH_HARDENED:
             return (1.0, 1.0), (1.0, 1.0), ""  # of steels only
         if math.isnan(strength[soft].hardness):
-            return (1.0, 1.0), (1.0, 1.0), "Z_W: 1, for the hardness of the softer gear is not known"
+            return (1.0, 1.0), (1.0, 1.0), "Z_W = 1: hardness of the softer gear not specified"
         values = (roughness[1 - soft], roughness[soft])
         equivalent = equivalent_roughness(values, pair.relative_curvature_radius, viscosity, velocity)
         reference[soft], static[soft] = surface_hardened_factor(strength[soft].hardness, equivalent)
         if not 130.0 <= strength[soft].hardness <= 470.0:
-            remark = "Z_W: the softer gear's hardness lies outside 130 to 470 HB"
+            remark = "Z_W: hardness of the softer gear is outside 130 to 470 HB"
     elif all(s.group in groups.THROUGH_HARDENED for s in strength):
         hardness = strength[0].hardness / strength[1].hardness
         if math.isnan(hardness):
-            return (1.0, 1.0), (1.0, 1.0), "Z_W: 1, for the hardness of both gears is not known"
+            return (1.0, 1.0), (1.0, 1.0), "Z_W = 1: hardness of the gears not specified"
         reference[1] = static[1] = through_hardened_factor(hardness, abs(pair.signed_ratio))
     return (reference[0], reference[1]), (static[0], static[1]), remark
 

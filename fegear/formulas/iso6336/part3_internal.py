@@ -120,7 +120,9 @@ def ring_root_form(ring: RingTooth, load_diameter: float) -> RootForm:
     height = 0.5 * (z * math.cos(math.pi / 6 - theta) + math.sqrt(3.0) * (g / c - rho))
     h = -0.5 * (math.cos(gamma) - math.sin(gamma) * math.tan(alpha_f)) * load_diameter - height
     if not (s > 0.0 and h > 0.0 and fillet > 0.0):
-        raise RangeError("tooth", f"s_Fn = {s:.4g}, h_Fe = {h:.4g}", "has no root section beside the load: no lever")
+        raise RangeError(
+            "tooth", f"s_Fn = {s:.4g}, h_Fe = {h:.4g}", "has no root section below the load (no bending moment arm)"
+        )
     y_f = 6.0 * h * math.cos(alpha_f) / (s * s * math.cos(a))
     return RootForm(s, fillet, h, alpha_f, y_f, stress_correction_factor(s, h, fillet), theta, -height)
 
@@ -168,7 +170,7 @@ def outline_root_form(tooth: InvoluteTooth, load_diameter: float) -> RootForm:
     load_angle = math.atan2(abs(float(ny)), abs(float(nx)))
     h = tooth.side * (float(py - px * ny / nx) - y)
     if not h > 0.0:
-        raise RangeError("load radius", f"{radius:.6g} modules", "lies beside the root section: there is no lever")
+        raise RangeError("load radius", f"{radius:.6g} modules", "is at the root section (no bending moment arm)")
     chord = 2.0 * x
     y_f = 6.0 * h * math.cos(load_angle) / (chord**2 * math.cos(tooth.pressure_angle))
     return RootForm(chord, rho, h, load_angle, y_f, stress_correction_factor(chord, h, rho), at, y)

@@ -58,7 +58,7 @@ class RackTooth:
         if not self.tip_radius > 0.0:
             raise RangeError("rack.tip_radius", self.tip_radius, "must be positive (ISO 6336-3, 6.1: a rounded rack)")
         if not 0.0 < self.pressure_angle < math.pi / 4:
-            raise RangeError("pressure_angle", self.pressure_angle, "must lie between 0 and 45 deg")
+            raise RangeError("pressure_angle", self.pressure_angle, "must be between 0 and 45 deg")
         if not math.isfinite(self.profile_shift):
             raise RangeError("profile_shift", self.profile_shift, "must be finite")
 
@@ -107,7 +107,7 @@ def auxiliary_angle(g: float, z: float, h: float) -> float:
             break
         if abs(step) < 1e-14:
             return theta
-    raise ConvergenceError("ISO 6336-3's auxiliary angle theta does not settle: the fillet has no such tangent")
+    raise ConvergenceError("Auxiliary angle theta of ISO 6336-3 does not converge: the fillet has no such tangent")
 
 
 def root_form(gear: RackTooth, load_diameter: float) -> RootForm:
@@ -145,7 +145,7 @@ def root_form(gear: RackTooth, load_diameter: float) -> RootForm:
         (math.pi / 2 + 2.0 * x * math.tan(a)) / z + (math.tan(a) - a) - (math.tan(alpha_e) - alpha_e)
     )  # half the tooth's angle at the load point
     if gamma <= 0.0:
-        raise RangeError("load diameter", f"{load_diameter:.6g} modules", "lies where the tooth is pointed")
+        raise RangeError("load diameter", f"{load_diameter:.6g} modules", "is at the pointed tip")
     alpha_f = alpha_e - gamma
     height = 0.5 * (z * math.cos(math.pi / 3 - theta) + g / c - gear.tip_radius)
     h = 0.5 * (math.cos(gamma) - math.sin(gamma) * math.tan(alpha_f)) * load_diameter - height
@@ -198,14 +198,14 @@ def outer_single_contact_diameter(
     p_bn = math.pi * math.cos(gear.pressure_angle) * d_n / gear.teeth
     reach = 0.5 * math.sqrt(max(tip_diameter**2 - gear.base_diameter**2, 0.0)) - p_bn * (contact_ratio - 1.0)
     if reach < 0.0:
-        raise RangeError("contact ratio", f"{contact_ratio:.4g}", "puts the single contact point below the base circle")
+        raise RangeError("contact ratio", f"{contact_ratio:.4g}", "gives a single contact point below the base circle")
     return 2.0 * math.hypot(reach, 0.5 * gear.base_diameter)
 
 
 def virtual_teeth(teeth: float, helix_angle: float, pressure_angle: float = math.radians(20.0)) -> float:
     """z_n = z / (cos^2(beta_b) cos(beta)) with sin(beta_b) = sin(beta) cos(alpha_n) (ISO 6336-3:2006, 6.2)."""
     if not abs(helix_angle) < math.pi / 2:
-        raise RangeError("helix angle", helix_angle, "must lie inside +-90 deg")
+        raise RangeError("helix angle", helix_angle, "must be inside +-90 deg")
     base = math.asin(math.sin(helix_angle) * math.cos(pressure_angle))
     return teeth / (math.cos(base) ** 2 * math.cos(helix_angle))
 
@@ -351,6 +351,6 @@ SOURCE = RootStressSource(
     "iso-6336-3",
     tooth_root_stress,
     "ISO 6336-3:2006, method B",
-    "section and fillet radius at the 30 degree tangent; radial compression not subtracted; the edition of 2019 is the "
-    "same for one spur tooth under a given load",
+    "section and fillet radius at the 30 degree tangent; radial compression not subtracted; identical in the 2019 "
+    "edition for a single spur tooth under a specified load",
 )

@@ -75,9 +75,9 @@ def life_knots(strength: Strength) -> Knots:
 def _table(table: tuple[tuple[float, float], ...], strength: float, what: str) -> tuple[float, str]:
     """rho' [mm], linear in the strength; the ends of the table, and a remark, beyond it."""
     if math.isnan(strength):
-        return min(layer for _, layer in table), f"rho': {what} is not known, its least value is taken"
+        return min(layer for _, layer in table), f"rho': {what} not specified, minimum value used"
     mega, (low, high) = strength / 1e6, (table[0][0], table[-1][0])
-    note = "" if low <= mega <= high else f"rho': {what} of {mega:.4g} MPa lies outside {low:g} to {high:g} MPa"
+    note = "" if low <= mega <= high else f"rho': {what} of {mega:.4g} MPa is outside {low:g} to {high:g} MPa"
     strengths, layers = zip(*table, strict=True)
     return float(np.interp(mega, strengths, layers)), note
 
@@ -121,7 +121,7 @@ def static_notch_sensitivity(strength: Strength, stress_correction: float) -> fl
 def surface_factor(group: Group, roughness: float) -> tuple[float, str]:
     """Y_RrelT of the root's Rz [m], and a remark beyond 40 um (ISO 6336-3, clause 14; table 4 of 2006)."""
     rz = roughness * 1e6
-    remark = f"Y_RrelT: Rz = {rz:.3g} um of the root lies above 40 um" if rz > 40.0 else ""
+    remark = f"Y_RrelT: Rz = {rz:.3g} um of the root is above 40 um" if rz > 40.0 else ""
     if group in groups.NORMALIZED:
         value = 1.07 if rz < 1.0 else 5.306 - 4.203 * (rz + 1.0) ** 0.01
     elif group in groups.NITRIDED | groups.SOFT_IRON:
@@ -173,9 +173,9 @@ def mean_stress_factor(ratio: float, stress_ratio: float) -> float:
         If R is not between -1.2 and .5, or M not between 0 and 1.
     """
     if not -1.2 <= stress_ratio < 0.5:
-        raise RangeError("stress ratio R", stress_ratio, "must lie between -1.2 and .5 (ISO 6336-3, B.2)")
+        raise RangeError("stress ratio R", stress_ratio, "must be between -1.2 and 0.5 (ISO 6336-3, B.2)")
     if not 0.0 <= ratio <= 1.0:
-        raise RangeError("mean stress ratio M", ratio, "must lie between 0 and 1")
+        raise RangeError("mean stress ratio M", ratio, "must be between 0 and 1")
     return 1.0 / (1.0 - stress_ratio * (1.0 - ratio) / (1.0 + ratio))
 
 
@@ -214,8 +214,8 @@ def root_strength(
     recalled = ""
     if cycles < REFERENCE and strength.group not in groups.CASE_HARDENED:
         recalled = (
-            f"Y_deltarelT: that of static strength of {strength.group}, which counts below 3e6 load cycles, is "
-            "recalled from memory: no printed source was at hand"
+            f"Y_deltarelT: static value for {strength.group} (below 3e6 load cycles) is not verified against a "
+            "printed source"
         )
     remark = "; ".join(r for r in (unsure, rough, recalled) if r)
     return RootStrength(

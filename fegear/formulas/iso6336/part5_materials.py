@@ -187,23 +187,26 @@ def allowable(
     """
     rows = laws(material, stress, quality)
     known = usual_hardness(material, quality) if hardness is None else hardness
-    remark = f"hardness {known:.4g} HV was assumed, the middle of the range" if hardness is None else ""
+    remark = f"hardness {known:.4g} HV assumed (middle of the range)" if hardness is None else ""
     if material == "case-hardened-steel" and stress == "bending" and quality == "MQ":
         row, told = _core(core_hardness, jominy_12)
         rows, remark = (rows[row],), "; ".join(one for one in (remark, told) if one)
     if known < rows[0].lowest * (1.0 - _CONVERSION):
         raise RangeError(
             "hardness", f"{known:.4g} HV",
-            f"is below the {rows[0].lowest:.4g} HV from which ISO 6336-5 knows {material} of quality {quality}",
-            "name another quality or material, or give own stress numbers",
+            f"is below {rows[0].lowest:.4g} HV, the lower limit of ISO 6336-5 for {material}, quality {quality}",
+            "specify another quality or material, or user-defined stress numbers",
         )  # fmt: skip
     known = max(known, rows[0].lowest)
     law = next((one for one in rows if known <= one.highest), rows[-1])
     if known > law.highest * (1.0 + _CONVERSION):
-        end = f"{known:.4g} HV is above the range of ISO 6336-5, whose end at {law.highest:.4g} HV was taken"
+        end = f"{known:.4g} HV is above the range of ISO 6336-5; limit value {law.highest:.4g} HV used"
         remark = "; ".join(one for one in (remark, end) if one)
     if law.row in _NOT_IN_PRINT:
-        level = f"the level of {law.level * 1e-6:.4g} MPa above {law.lowest:.4g} HV was not found in print"
+        level = (
+            f"the level of {law.level * 1e-6:.4g} MPa above {law.lowest:.4g} HV is not verified against a "
+            "printed source"
+        )
         remark = "; ".join(one for one in (remark, level) if one)
     return Allowable(law.at(min(known, law.highest)), law.row, remark)
 
@@ -211,10 +214,10 @@ def allowable(
 def _core(core: float | None, jominy: float | None) -> tuple[int, str]:
     """Which of the three rows holds, and what was assumed (ISO 6336-5, figure 10)."""
     if core is None:
-        return 0, "core hardness of 25 HRC was assumed"
+        return 0, "core hardness of 25 HRC assumed"
     if core < HRC_25 * (1.0 - 1e-9):
         raise RangeError(
-            "core_hardness", f"{core:.4g} HV", "is below the 25 HRC that ISO 6336-5 asks of quality MQ", 'take "ML"'
+            "core_hardness", f"{core:.4g} HV", "is below 25 HRC, the minimum of ISO 6336-5 for quality MQ", 'use "ML"'
         )
     if core >= HRC_30 * (1.0 - 1e-9):
         return 2, ""

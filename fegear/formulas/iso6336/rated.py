@@ -67,7 +67,7 @@ class Strength:
                 raise RangeError(name, value, "must be positive and finite")
         for name, value in zip(("Z_NT", "Y_NT"), self.long_life, strict=True):
             if not 0.85 <= value <= 1.0:
-                raise RangeError(f"{name} at 1e10 cycles", value, "must lie between 0.85 and 1")
+                raise RangeError(f"{name} at 1e10 cycles", value, "must be between 0.85 and 1")
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,9 +78,9 @@ def _geometry(table: FactorTable, pair: PairGeometry, duty: Duty) -> None:
     table.add("epsilon_alpha", pair.contact_ratio, "ISO 21771, 5.4")
     table.add("epsilon_beta", pair.overlap_ratio, "ISO 21771, 5.4")
     table.add("epsilon_gamma", pair.total_contact_ratio, "ISO 21771, 5.4")
-    table.add("K_A", duty.application_factor, "ISO 6336-1, clause 5, as given")
-    table.add("K_gamma", duty.mesh_load_factor, "ISO 6336-1, 4.2, as given")
-    table.add("N_L", duty.cycles, "ISO 6336-6, as given")
+    table.add("K_A", duty.application_factor, "ISO 6336-1, clause 5, as specified")
+    table.add("K_gamma", duty.mesh_load_factor, "ISO 6336-1, 4.2, as specified")
+    table.add("N_L", duty.cycles, "ISO 6336-6, as specified")
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,15 +38,15 @@ def _figure(found: list[tuple[str, float]], tolerance: float) -> Figure:
     points = tuple(
         Points(share[here], rows[here], label, role, symbol, 9.0)
         for here, label, role, symbol in (
-            (share <= tolerance, "within the tolerance", "green", "circle"),
-            (share > tolerance, "over the tolerance", "red", "diamond"),
+            (share <= tolerance, "within tolerance", "green", "circle"),
+            (share > tolerance, "above tolerance", "red", "diamond"),
         )
         if here.any()
     )
     axes = Axis("estimated relative error", log=True), Axis(categories=names)
     return Figure(
-        "estimated_errors", "Estimated errors and the tolerance",
-        "Estimated error of every value over the value; left of the line it is within the case's tolerance.",
+        "estimated_errors", "Estimated errors and tolerance",
+        "Estimated error of every value over the value; left of the line: within tolerance.",
         (Panel(*axes, points, (Mark("x", tolerance, "tolerance"),)),),
     )  # fmt: skip
 
@@ -59,16 +59,16 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
     over = [name for name, share in found if share > tolerance]
     exact = sum(not value.error for value in estimated)
     kinds = (
-        (len(estimated) - exact, "carry an estimated error"),
+        (len(estimated) - exact, "have an estimated error"),
         (exact, "are exact" if exact != 1 else "is exact"),
-        (len(results.values) - len(estimated), "have no estimate"),
+        (len(results.values) - len(estimated), "have no error estimate"),
     )
-    summary = f"The case asks for a relative error of {plain_number(tolerance)}. Of its {len(results.values)} values "
+    summary = f"Relative tolerance of the case: {plain_number(100.0 * tolerance)} %. Of {len(results.values)} values, "
     summary += ", ".join(f"{count} {words}" for count, words in kinds if count) + "."
     if over:
-        summary += f" Over the tolerance: {', '.join(over)}."
+        summary += f" Above tolerance: {', '.join(over)}."
     elif found:
-        summary += " None of the estimates exceeds the tolerance."
+        summary += " No estimated error exceeds the tolerance."
     settings = tuple(
         Folded(f"Settings: {task}", (Facts(outcome.settings),))
         for task, outcome in results.outcomes.items()
@@ -78,7 +78,7 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
         *((Paragraph(summary),) if results.values else ()),
         *(Paragraph(sentence) for sentence in _libraries(results)),
         *((Plot(_figure(found, tolerance)),) if len(found) > 1 else ()),
-        Paragraph("Seconds of each task:", "table-title"),
+        Paragraph("CPU time of each task:", "table-title"),
         Bars({str(task): seconds for task, seconds in results.seconds.items()}, "s"),
         *settings,
     )
@@ -91,10 +91,12 @@ def _libraries(results: Results) -> tuple[str, ...]:
     solver = results.scene.case.accuracy.solver
     first = "gmsh meshes one tooth; scikit-fem numbers its unknowns, maps and integrates its elements"
     if solver == "scikit-fem":
-        rest = "assembles them and eliminates the inner unknowns; fegear closes the ring of all teeth"
+        rest = "assembles them and eliminates the inner unknowns; fegear couples the sectors to the full gear"
         return (f'{first}, {rest} (accuracy.solver = "scikit-fem").',)
     rest = "fegear's nested dissection assembles and eliminates, and closes the ring of all teeth"
-    other = 'accuracy.solver = "scikit-fem" has scikit-fem do that too: same numbers, several times the CPU time'
+    other = (
+        'accuracy.solver = "scikit-fem" uses scikit-fem for this step as well: same results, several times the CPU time'
+    )
     return (f"{first}; {rest}. {other} (fegear check measures both).",)
 
 

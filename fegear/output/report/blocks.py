@@ -139,7 +139,7 @@ class Values(Block):
             return shown, f"± {error}", "", False
         over = self.tolerance is not None and share > self.tolerance
         percent = f"{plain_number(100.0 * share, 2)} %"
-        return shown, f"± {error}", f"({percent}, over the tolerance)" if over else f"({percent})", over
+        return shown, f"± {error}", f"({percent}, above tolerance)" if over else f"({percent})", over
 
 
 def value_cells(value: Value) -> tuple[str, str]:

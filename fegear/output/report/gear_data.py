@@ -71,13 +71,13 @@ def gear_sections(results: Results) -> tuple[Section, ...]:
 
 #: Values of the result ``rating`` that the data sheet shows, in its order.
 _SHOWN = {
-    "S_H": "safety against pitting S_H, ISO 6336",
-    "S_H_computed": "S_H, computed load distribution",
-    "S_H_spectrum": "S_H under the spectrum",
+    "S_H": "safety factor for pitting S_H, ISO 6336",
+    "S_H_computed": "S_H, FE load distribution",
+    "S_H_spectrum": "S_H, load spectrum",
     "S_H_agma": "S_H, AGMA 2101",
-    "S_F": "safety against tooth breakage S_F, ISO 6336",
-    "S_F_computed": "S_F, computed root stress",
-    "S_F_spectrum": "S_F under the spectrum",
+    "S_F": "safety factor for tooth breakage S_F, ISO 6336",
+    "S_F_computed": "S_F, FE root stress",
+    "S_F_spectrum": "S_F, load spectrum",
     "S_F_agma": "S_F, AGMA 2101",
 }
 
@@ -95,7 +95,7 @@ def rated_columns(values: Sequence[Value], pair: str) -> tuple[Column, ...]:
 
 def _loaded(results: Results, name: str) -> tuple[SheetGroup, ...]:
     """What the wanted results tell of a pair under load: a group for each."""
-    groups = (SheetGroup("Load capacity", rated_columns(results.values, name)),)
+    groups = (SheetGroup("Rating (load capacity)", rated_columns(results.values, name)),)
     return tuple(group for group in groups if group.columns)
 
 
@@ -107,7 +107,7 @@ def _blocks(
     groups = [SheetGroup(title, tuple(columns[name] for name in names if name in columns)) for title, names in _GROUPS]
     shared = tuple((value.meaning, value_cells(value)[0], value.unit) for value in values)
     sheet = Sheet(heads, (*(group for group in groups if group.columns), *more), shared)
-    note = "" if table.name in written else 'The table itself is written with results = ["geometry"].'
+    note = "" if table.name in written else 'The table is written with results = ["geometry"].'
     if note:
         return sheet, Paragraph(note, "note screen")
     return sheet, Download(f"tables/{table_file(table)}")

@@ -109,13 +109,13 @@ def _plan(results: Results) -> tuple[Block, ...]:
     facts = {
         "wanted": ", ".join(case.results),
         "tolerance": case.accuracy.tolerance,
-        "effects that are on": ", ".join(case.effects.on()) or "none",
+        "active effects": ", ".join(case.effects.on()) or "none",
         "effects that are off": ", ".join(off) or "none",
     }
     if plan.idle_effects:
-        facts["effects on that nothing uses"] = ", ".join(plan.idle_effects)
+        facts["active effects without influence"] = ", ".join(plan.idle_effects)
     skipped = Folded(
-        f"What was not computed, and why ({len(plan.skipped)} stages)", (Grid(("Stage", "Why not"), plan.skipped),)
+        f"Not computed ({len(plan.skipped)} stages) and reasons", (Grid(("Stage", "Reason"), plan.skipped),)
     )
     return (
         Facts(facts),
@@ -159,9 +159,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     stages = [_stage(results, task, pictures[task], shown) for task in results.outcomes]
     # Pictures before what is a table only: the mesh under load before the data of its gears.
     stages.sort(key=lambda section: not any(isinstance(block, Plot | Still) for block in section.blocks))
-    warned = (
-        f" {len(remarks)} warning{'s' if len(remarks) > 1 else ''}, below the results." if remarks and values else ""
-    )
+    warned = f" {len(remarks)} note{'s' if len(remarks) > 1 else ''}, below the results." if remarks and values else ""
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
@@ -173,7 +171,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
             Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
             *stages,
             *gear_sections(results),
-            Section("Accuracy and its cost", accuracy_blocks(results)),
+            Section("Accuracy and computing time", accuracy_blocks(results)),
             Section("Plan", _plan(results)),
             Section("Case file", (Code(scene.text), Download(name)) if files else ()),
             Section("References", _references(results)),

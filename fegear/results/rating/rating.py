@@ -423,7 +423,7 @@ def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
 
 def _shown(one: Factor, asked: PairToRate) -> bool:
     """Whether a factor's remark is the reader's: not that the case gave it."""
-    return bool(one.remark) and remark_of(one, asked) == one.remark and "as given" not in one.remark
+    return bool(one.remark) and remark_of(one, asked) == one.remark and "as specified" not in one.remark
 
 
 RATING = Stage(

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 #: What the formulas remark where a value of the case stands in.
-_STANDS_IN = "computed in place of the formula"
+_STANDS_IN = "FE value instead of the formula"
 
 
 def _column(symbol: str, member: Member, si: Sequence[float], ending: str = "", said: str = "") -> Column:

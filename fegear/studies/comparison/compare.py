@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from fegear.base.printed import percent
 from fegear.case.known_keys import flat, meaning_of
 from fegear.engine.run import Results
 from fegear.engine.table import Table
@@ -73,16 +74,16 @@ class Comparison:
         """What the terminal shows."""
         lines = [f"A: {self.first.label}", f"B: {self.second.label}"]
         if self.inputs is None:
-            lines.append("Inputs: not known of both; only folders written by this version state them.")
+            lines.append("Inputs: not available for both runs (written by an older version).")
         elif not self.inputs:
-            lines.append("Inputs: the same.")
+            lines.append("Inputs: identical.")
         else:
             lines += ["Inputs that differ:", *(input_line(one) for one in self.inputs)]
         lines += _listed("Values", len(self.values), [value_line(one) for one in self.different_values])
         lines += _listed("Tables", len(self.tables), [
             line for one in self.different_tables for line in table_lines(one, self.tolerance)
         ])  # fmt: skip
-        return lines + [f"Only {label} has the table {name}." for name, label in self.alone]
+        return lines + [f"Table {name} only in {label}." for name, label in self.alone]
 
 
 def compare(first: Side, second: Side, tolerance: float = 0.0) -> Comparison:
@@ -111,7 +112,7 @@ def compare(first: Side, second: Side, tolerance: float = 0.0) -> Comparison:
 
 def _listed(what: str, count: int, lines: list[str]) -> list[str]:
     if not lines:
-        return [f"{what}: {'the same' if count else 'none'}."]
+        return [f"{what}: {'identical' if count else 'none'}."]
     more = [f"  ... {len(lines) - _LINES} more in the report"] if len(lines) > _LINES else []
     return [f"{what} that differ:", *lines[:_LINES], *more]
 
@@ -130,7 +131,10 @@ def value_line(one: Pairing) -> str:
     if one.first.unit != one.second.unit:
         return f"  {one.name}: {one.first.value:.6g}{unit} -> {one.second.value:.6g} {one.second.unit}"
     errors = ", within the estimated errors" if one.within_errors else ""
-    return f"  {one.name}: {one.first.value:.6g} -> {one.second.value:.6g}{unit} ({one.share:+.2%}{errors})"
+    return (
+        f"  {one.name}: {one.first.value:.6g} -> {one.second.value:.6g}{unit} "
+        f"({percent(one.share, signed=True)}{errors})"
+    )
 
 
 def table_lines(one: Joined, tolerance: float) -> list[str]:
@@ -142,18 +146,16 @@ def table_lines(one: Joined, tolerance: float) -> list[str]:
         where = f"{found.where:.6g}" if isinstance(found.where, float) else found.where
         unit = f" {found.column.unit}" if found.column.unit else ""
         at = f" at {place.name} = {where}{f' {place.unit}' if place.unit else ''}" if found.where != "" else ""
-        size = (
-            f"by up to {found.largest:+.4g}{unit}{at}" if math.isfinite(found.largest) else "a number on one side alone"
-        )
+        size = f"by up to {found.largest:+.4g}{unit}{at}" if math.isfinite(found.largest) else "value in one run only"
         lines.append(f"  {one.table.name}, {found.column.name}: {size}")
     if len(moving) > _COLUMNS:
         lines.append(f"  {one.table.name}: {len(moving) - _COLUMNS} more columns")
     if one.only_first or one.only_second:
-        lines.append(f"  {one.table.name}: {one.only_first} rows are in A alone, {one.only_second} in B alone")
+        lines.append(f"  {one.table.name}: {one.only_first} rows only in A, {one.only_second} only in B")
     for label in "AB":
         names = [name for name, side in one.alone if side == label]
         if names:
-            lines.append(f"  {one.table.name}: only {label} has the column{'s' * (len(names) > 1)} {', '.join(names)}")
+            lines.append(f"  {one.table.name}: column{'s' * (len(names) > 1)} {', '.join(names)} only in {label}")
     return lines
 
 

@@ -101,8 +101,9 @@ def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> 
     state = steady_motion(motion, motion_model(motion, data, speed / data.speed_ratio), "static", tolerance)
     if state.kind == "growing":
         raise RangeError(
-            "dynamics.speed", f"{speed:.9g} rad/s", f"lets the motion grow {state.multiplier:.4g} times a period",
-            "give the meshes damping, let teeth part (effects.contact_loss), or take another speed",
+            "dynamics.speed", f"{speed:.9g} rad/s", f"gives an unstable motion (multiplier {state.multiplier:.4g} "
+                                                    "per period)",
+            "specify mesh damping, allow loss of contact (effects.contact_loss), or change the speed",
         )  # fmt: skip
     return float(state.tooth_force[i]) / float(data.forces[i])
 
@@ -221,7 +222,7 @@ class StressFormula:
 
     def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:  # noqa: ARG002  (the interface)
         """None: it is a formula for stress."""
-        raise RangeError("compliance", f"{self.name}, {pair}, {member}", "is not known to a root-stress formula")
+        raise RangeError("compliance", f"{self.name}, {pair}, {member}", "is not available with a root-stress formula")
 
 
 @dataclass(frozen=True)

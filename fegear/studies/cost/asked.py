@@ -117,9 +117,9 @@ def _names(scene: Scene) -> list[str]:
     found = [name for result in scene.case.results for name in _OF_RESULT.get(result, ())]
     if not found:
         raise InputError(
-            "results", ", ".join(f'"{r}"' for r in scene.case.results), "ask for nothing whose cost can be chosen",
-            "ask for one of " + ", ".join(f'"{r}"' for r in (*_OF_RESULT, "load-distribution"))
-            + ', or write quantities = ["c_0"] under [cost]',
+            "results", ", ".join(f'"{r}"' for r in scene.case.results), "contain nothing with selectable accuracy",
+            "request one of " + ", ".join(f'"{r}"' for r in (*_OF_RESULT, "load-distribution"))
+            + ', or set quantities = ["c_0"] under [cost]',
         )  # fmt: skip
     order = (*OF_GEAR, "te-peak-to-peak", "tooth-force", "dynamic-factor")
     return sorted(set(found), key=order.index)
@@ -132,13 +132,13 @@ def _pair(scene: Scene, names: list[str]) -> str:
     chosen = scene.case.cost.pair or next((p for p in (scene.case.stiffness.pair, *loaded) if p in loaded), None)
     if chosen is None or chosen not in loaded:
         raise InputError(
-            "cost.pair", f'"{chosen}"' if chosen else "(not given)", "must be a pair of spur gears that carries a load",
-            "describe one with load or torque, or remove the quantities of pairs",
+            "cost.pair", f'"{chosen}"' if chosen else "(not given)", "must be a loaded spur pair",
+            "specify one with load or torque, or remove the quantities of pairs",
         )  # fmt: skip
     if scene.case.pair[chosen].compliance.source != "table" and scene.case.effects.hertz == "none":
         raise InputError(
-            "effects.hertz", '"none"', "leaves contacts as wide as the pressure that loads the mesh, so that nothing "
-            "converges", 'write hertz = "load-dependent" under [effects], or remove the quantities of pairs',
+            "effects.hertz", '"none"', "leaves the contact width equal to the mesh pressure patch: no convergence",
+            'set hertz = "load-dependent" under [effects], or remove the quantities of pairs',
         )  # fmt: skip
     return chosen
 
@@ -149,7 +149,7 @@ def _gear(scene: Scene, names: list[str], pair: str) -> str:
     first = scene.case.pair[pair].driver if pair else next(iter({**scene.spur_gears, **scene.gears}), "")
     chosen = scene.case.cost.gear or scene.case.stiffness.gear or first
     if not chosen:
-        raise InputError("gear", "(none)", "a gear is needed for these quantities", "describe one")
+        raise InputError("gear", "(none)", "a gear is required for these quantities", "specify one")
     return chosen
 
 
@@ -162,8 +162,8 @@ def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
         mesh = next((m for m, part in train.mesh.items() if part.like is None and train.pair_of(m) == pair), "")
     if "dynamic-factor" in names and not (mesh and motion_inputs(scene).in_time):
         raise InputError(
-            "cost.quantities", '"dynamic-factor"', "needs a train, speeds, and an effect of motion in time",
-            "describe them and set effects.contact_loss = true, or remove the quantity",
+            "cost.quantities", '"dynamic-factor"', "requires a train, speeds, and an effect in the time domain",
+            "specify them and set effects.contact_loss = true, or remove the quantity",
         )  # fmt: skip
     if mesh and train is not None and _over_the_face(scene, train, names):
         return ""
@@ -182,8 +182,8 @@ def _over_the_face(scene: Scene, train: TrainPart, names: list[str]) -> bool:
     moving = sorted({"tooth-force", "dynamic-factor"} & set(names))
     if wide and moving:
         raise InputError(
-            "cost.quantities", f'"{moving[0]}"', f"needs plane teeth in all of the train, and pair {wide[0]} is loaded "
-            "over its face", "remove the quantity",
+            "cost.quantities", f'"{moving[0]}"', f"requires plane (2D) teeth in the entire train; pair {wide[0]} is "
+                                                 "3D", "remove the quantity",
         )  # fmt: skip
     return bool(wide)
 
@@ -216,8 +216,8 @@ def _asked_of_flanks(scene: Scene, pair: str) -> Asked:
     check_flanks_to_load(scene, pair)
     if scene.case.effects.hertz == "none":
         raise InputError(
-            "effects.hertz", '"none"', "leaves contacts as wide as the load that a mesh resolves",
-            'write hertz = "load-dependent" under [effects]',
+            "effects.hertz", '"none"', "leaves the contact width equal to the mesh resolution",
+            'set hertz = "load-dependent" under [effects]',
         )  # fmt: skip
     known = {
         "te-mean": Quantity("te-mean", pair, "um", f"mean loaded transmission error of pair {pair}"),
@@ -225,7 +225,7 @@ def _asked_of_flanks(scene: Scene, pair: str) -> Asked:
             "te-peak-to-peak",
             pair,
             "um",
-            f"peak-to-peak transmission error of pair {pair} at its roll positions",
+            f"peak-to-peak transmission error of pair {pair} over its mesh positions",
         ),
         "face-load-factor": Quantity("face-load-factor", pair, "", f"K_Hbeta, face load factor of pair {pair}"),
     }
@@ -276,12 +276,12 @@ def _notes(found: Asked, refusal: InputError, scene: Scene) -> tuple[str, ...]:
     of = " and ".join(f"{kind} {name}" for kind, name in (("gear", found.gear), ("pair", found.pair)) if name)
     names = ", ".join(quantity.name for quantity in found.quantities)
     why = f"{refusal.key} = {refusal.value}: {refusal.rule}"
-    notes = [f"Studied instead of what the results stand for: {names} of {of} ({why})."]
+    notes = [f"Studied instead of the requested results: {names} of {of} ({why})."]
     if found.gear and scene.gears[found.gear].helix_angle:
-        notes.append(f"Gear {found.gear} is helical: its transverse section is studied as a plane problem.")
+        notes.append(f"Gear {found.gear} is helical: transverse section studied in 2D.")
     own = [name for name in found.gears if scene.case.gear[name].tooth_mesh is not None]
     if own:
-        notes.append(f"Gear {', '.join(own)}: meshes of the study are generated, in place of tooth_mesh.")
+        notes.append(f"Gear {', '.join(own)}: generated meshes used instead of tooth_mesh.")
     return tuple(notes)
 
 
@@ -293,8 +293,10 @@ def _asked(scene: Scene) -> Asked:
     alone = sorted(set(names) & (set(OF_FLANKS) - {"te-peak-to-peak"}))
     if alone:
         raise InputError(
-            "cost.quantities", f'"{alone[0]}"', "is of a pair that is loaded over its face, and is studied without "
-            "quantities of plane teeth", 'ask for results = ["load-distribution"], and remove the others',
+            "cost.quantities", f'"{alone[0]}"', "applies to a 3D pair and "
+                                                "cannot be combined with "
+                                                "quantities of plane (2D) "
+                                                "teeth", 'set results = ["load-distribution"] and remove the others',
         )  # fmt: skip
     pair = _pair(scene, names)
     gear = _gear(scene, names, pair)
@@ -303,7 +305,7 @@ def _asked(scene: Scene) -> Asked:
         own = scene.case.gear[name].tooth_mesh if name else None
         if own is not None:
             raise InputError(
-                f"gear.{name}.tooth_mesh", f'"{own}"', "fixes the mesh, whose fineness is what the study varies",
+                f"gear.{name}.tooth_mesh", f'"{own}"', "fixes the mesh, but the study varies the mesh density",
                 "remove it, for example in a second case",
             )  # fmt: skip
     none = np.empty(0)
@@ -320,16 +322,18 @@ def _asked(scene: Scene) -> Asked:
 def _quantity(name: str, gear: str, pair: str, mesh: str, scene: Scene) -> Quantity:
     speed = scene.case.dynamics.one_speed * 30.0 / math.pi
     force = (
-        Quantity(name, mesh, "N", f"largest force on one tooth pair of mesh {mesh} at {speed:.6g} rpm")
+        Quantity(name, mesh, "N", f"maximum force on one tooth pair of mesh {mesh} at {speed:.6g} rpm")
         if mesh and not math.isnan(speed)
-        else Quantity(name, pair, "N", f"largest static load on one tooth pair of {pair}")
+        else Quantity(name, pair, "N", f"maximum static load on one tooth pair of {pair}")
     )
     known = {
-        "c_0": Quantity(name, gear, "um.mm/N", f"self compliance of gear {gear} at its load positions"),
+        "c_0": Quantity(name, gear, "um.mm/N", f"self-compliance of gear {gear} at its load positions"),
         "c_1": Quantity(name, gear, "um.mm/N", f"deflection of the next tooth of gear {gear}"),
-        "root-stress": Quantity(name, gear, "MPa.mm/N", f"largest root tension of gear {gear} per line load"),
+        "root-stress": Quantity(
+            name, gear, "MPa.mm/N", f"maximum root stress (tension side) of gear {gear} per line load"
+        ),
         "te-peak-to-peak": Quantity(name, pair, "um", f"peak-to-peak loaded transmission error of pair {pair}"),
         "tooth-force": force,
-        "dynamic-factor": Quantity(name, mesh, "", f"largest tooth force over the mean mesh force, mesh {mesh}"),
+        "dynamic-factor": Quantity(name, mesh, "", f"maximum tooth force / mean mesh force, mesh {mesh}"),
     }
     return known[name]

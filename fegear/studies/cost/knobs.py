@@ -81,22 +81,25 @@ def ladder_knobs(found: Found, ladder: Ladder, best: FiniteElements) -> list[Kno
             factors = np.array([configuration.factor for configuration in there])
             edges = factors * MeshSettings().root_edge_length
             errors = [miss(name, values[configuration, name], exact).rms for configuration in there]
-            at = f"patch {settings.patch_half_width:g} modules, against the reference's mesh with it; root mean square"
+            at = (
+                f"patch {settings.patch_half_width:g} modules, relative to the reference mesh with this patch; root "
+                "mean square"
+            )
             spent = [seconds[configuration, name] for configuration in there]
             knob = f"edge length, order {settings.order}"
             knobs.append(make_knob(name, knob, at, edges, factors, errors, found.mesh_floors[name], spent))
         known = [fine(a) for a in _PATCHES]
         change = [miss(name, a, b).rms for a, b in pairwise(known)]
-        at = "the reference's mesh, change to the next narrower of equal ratio"
+        at = "reference mesh, change to the next narrower patch of equal ratio"
         knobs.append(make_knob(name, "patch half-width", at, _PATCHES[:-1], _PATCHES[:-1], change))
         sectors = [row for row in rows if row.configuration.family == "sector" and row.quantity == name]
         teeth = np.array([row.configuration.teeth for row in sectors], dtype=float)
         if teeth.size > 1:
-            at = "against the whole gear; root mean square"
+            at = "relative to the full gear; root mean square"
             errors = [row.miss.rms for row in sectors]
             spent = [row.seconds.cpu for row in sectors]
             floor = found.floors[name]
-            knob = "teeth of a sector with free sides"
+            knob = "number of teeth of a sector with free sides"
             knobs.append(make_knob(name, knob, at, teeth, 1.0 / teeth, errors, floor, spent))
     return knobs
 
@@ -202,7 +205,7 @@ def pair_knobs(asked: Asked, source: Source) -> list[Knob]:
                 value, seconds = timed(partial(factor_at, asked, data, speed, tolerance))
                 errors.append(abs(value / still - 1.0))
                 spent.append(seconds.cpu)
-            at = f"at {speed * 30.0 / math.pi:.6g} rpm, against {_TIGHT:g}"
+            at = f"at {speed * 30.0 / math.pi:.6g} rpm, relative to {_TIGHT:g}"
             found.append(
                 make_knob("dynamic-factor", "time tolerance", at, _TOLERANCES, _TOLERANCES, errors, 0.0, spent)
             )
@@ -230,8 +233,8 @@ def _error_knobs(engagement: Engagement, load: float) -> list[Knob]:
     def gauss(n: int) -> TransmissionError:
         return transmission_error(engagement, load, HARMONICS, order=n)
 
-    even, between = "positions per base pitch, evenly spaced", "Gauss points per piece between jumps"
-    te, first = "te-peak-to-peak", f"first {_FIRST} amplitudes over the largest"
+    even, between = "positions per base pitch, equally spaced", "Gauss points per interval between discontinuities"
+    te, first = "te-peak-to-peak", f"first {_FIRST} amplitudes relative to the largest"
     placed = f"root mean square over {_PLACEMENTS} placements"
     dense = {n: _even(engagement, load, _PLACEMENTS * n) for n in _EVEN}
 
@@ -240,9 +243,9 @@ def _error_knobs(engagement: Engagement, load: float) -> list[Knob]:
         return math.sqrt(float(np.mean([off(found[start::_PLACEMENTS]) ** 2 for start in range(_PLACEMENTS)])))
 
     return [
-        _counted(te, even, f"as a run without break points would; {placed}", _EVEN,
+        _counted(te, even, f"as in a run without break points; {placed}", _EVEN,
                  lambda n: rms(n, 0, lambda v: float(np.ptp(v)) / best.peak_to_peak - 1.0), floor),
-        _counted(te, between, "as a run does, with 16", _GAUSS,
+        _counted(te, between, "as in a run, with 16", _GAUSS,
                  lambda n: abs(gauss(n).peak_to_peak / best.peak_to_peak - 1.0), floor),
         _counted(te, "harmonics of the transmission error", "peak-to-peak of the partial sum", _PARTIAL_SUMS,
                  lambda n: _partial(best, n), floor),
@@ -299,7 +302,11 @@ _QUICK = slice(0, -1)
 
 
 #: What is looked at, and what it is called.
-_NAMES = {"c_self": "c_0 over the face", "c_next": "c_1 over the face", "root_tension": "root tension over the face"}
+_NAMES = {
+    "c_self": "c_0 over the face width",
+    "c_next": "c_1 over the face width",
+    "root_tension": "root stress (tension side) over the face width",
+}
 
 
 def solid_knobs(asked: Asked, *, quick: bool = False) -> list[Knob]:
@@ -333,7 +340,7 @@ def solid_knobs(asked: Asked, *, quick: bool = False) -> list[Knob]:
         *_varied(asked, by_wave, "functions per module of face", f"edges of {edge:g} modules", np.array(counts),
                  1.0 / np.array(counts)),
         *(_varied(asked, [*by_slice, usual], "edges of the section, slices", "coupled slices of the plane section",
-                  edge * of_slices, edge * of_slices, "the solid gear") if sliced else ()),
+                  edge * of_slices, edge * of_slices, "3D gear") if sliced else ()),
     ]  # fmt: skip
 
 
@@ -343,7 +350,7 @@ def _varied(
     """Knobs of one setting, its last value the one that the others are compared with."""
     answers, spent = zip(*(timed(partial(_answer, asked, one), repeat=False) for one in settings), strict=True)
     seconds = [one.cpu for one in spent[:-1]]
-    at = f"{others}, against {against or f'{setting[-1]:.3g}'}; largest of the bands"
+    at = f"{others}, relative to {against or f'{setting[-1]:.3g}'}; largest of the bands"
     apart = [answers[-1].apart(one) for one in answers[:-1]]
     return [
         make_knob(quantity, name, at, setting[:-1], step[:-1], [float(one[key].max()) for one in apart], 0.0, seconds)

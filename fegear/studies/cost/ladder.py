@@ -206,11 +206,11 @@ class Configuration:
         if self.family == "tolerance":
             return f"tolerance = {self.tolerance:.0e}"
         if self.family == "table":
-            return "the case's table"
+            return "table of the case"
         if self.settings is None:
             return f"{self.formula}, {'root stress' if self.family == 'stress-formula' else 'compliance'}"
         s = self.settings
-        who = f"sector of {self.teeth} teeth" if self.family == "sector" else "whole gear"
+        who = f"sector of {self.teeth} teeth" if self.family == "sector" else "full gear"
         by = ", by scikit-fem" if self.family == "scikit-fem" else ""
         return f"{who}, order {s.order}, edges x {self.factor:.3g}, patch {s.patch_half_width:.4g}{by}"
 

@@ -121,7 +121,7 @@ def solve_gears(asked: Asked, configuration: Configuration) -> tuple[dict[str, I
     """
     settings = configuration.settings
     if settings is None:
-        raise ValueError(f"{configuration.label} is no finite-element configuration")
+        raise ValueError(f"{configuration.label} is not an FE configuration")
     found: dict[str, Influence] = {}
     seconds: dict[str, Seconds] = {}
     shapes: dict[object, Influence] = {}
@@ -141,7 +141,7 @@ def finite_elements(asked: Asked, configuration: Configuration, solved: Mapping[
     """Solved gears with the patch of a configuration."""
     settings = configuration.settings
     if settings is None:
-        raise ValueError(f"{configuration.label} is no finite-element configuration")
+        raise ValueError(f"{configuration.label} is not an FE configuration")
     gears = asked.scene.gears
     return FiniteElements({name: GearInfluence(gears[name], one, None, settings, {}) for name, one in solved.items()})
 
@@ -310,7 +310,7 @@ def measure_flanks(found: Found, group: tuple[Configuration, ...]) -> None:
 
 def _flank(configuration: Configuration) -> FlankConfiguration:
     if not isinstance(configuration, FlankConfiguration):
-        raise TypeError(f"{configuration.label} is no pair that is loaded over its face")
+        raise TypeError(f"{configuration.label} is not a 3D pair")
     return configuration
 
 

@@ -357,7 +357,7 @@ def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Ord
     clear = np.isfinite(e) & (e > ABOVE_FLOOR * floor) & (e > 0.0)
     count = int(clear.sum())
     if count < _FEWEST:
-        at = "lie above the reference's own error" if floor > 0.0 else "have an error"
+        at = "are above the error of the reference" if floor > 0.0 else "have an error"
         return Order(math.nan, 0, math.nan, f"none: only {count} of {h.size} configurations {at}")
     x, y = np.log(h[clear]), np.log(e[clear])
     for used in range(count, _FEWEST - 1, -1):
@@ -365,12 +365,10 @@ def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Ord
         scatter = float(np.exp(np.abs(np.polyval(line, x[:used]) - y[:used]).max()))
         if scatter <= _SCATTER:
             if line[0] < _FLAT:
-                return Order(math.nan, 0, math.nan, "none: the error does not fall with the knob")
+                return Order(math.nan, 0, math.nan, "none: the error does not decrease with the setting")
             basis = f"{used} of {h.size} configurations, within a factor of {scatter:.2f} of the line"
             return Order(float(line[0]), used, scatter, basis)
-    return Order(
-        math.nan, 0, math.nan, f"none: no {_FEWEST} neighbouring configurations lie within {_SCATTER} of a line"
-    )
+    return Order(math.nan, 0, math.nan, f"none: no {_FEWEST} adjacent configurations within {_SCATTER} of a line")
 
 
 T = TypeVar("T")

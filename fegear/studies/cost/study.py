@@ -100,17 +100,16 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
     except KeyboardInterrupt:
         if not found.rows:
             raise
-        found.remarks.append("Interrupted: only the configurations that were finished are here.")
+        found.remarks.append("Interrupted: only completed configurations are listed.")
     found.remarks.extend(asked.notes)
     if quick:
         found.remarks.append(
-            f"Quick study: fewer configurations and a coarser reference ({ladder.reference.label}), whose own error is "
-            "the floor of each quantity. Without --quick both are finer."
+            f"Quick study: fewer configurations and a coarser reference ({ladder.reference.label}), whose error "
+            "limits each quantity."
         )
     if asked.over_face and (rings := internal_gears(asked)):
         found.remarks.append(
-            f"Coupled slices are left out: their laws were fitted to external gears, and gear {', '.join(rings)} is "
-            "internal."
+            f"Coupled slices omitted: available for external gears only, gear {', '.join(rings)} is internal."
         )
     whole = {one: len(answered(asked, one)) for one in ladder.configurations}
     done = [one for one, count in whole.items() if sum(row.configuration == one for row in found.rows) == count]
@@ -132,8 +131,9 @@ def _saved_by_condensation(rows: Sequence[Measured]) -> str:
         if same is not None and same.seconds.cpu > 0.0:
             plain, dissected = row.seconds.cpu, same.seconds.cpu
             return (
-                f"accuracy.solver: the sector assembled, condensed and solved by scikit-fem takes {plain:.2g} s of CPU "
-                f"time, {plain / dissected:.1f} times the {dissected:.2g} s of nested dissection, for the same numbers."
+                f"accuracy.solver: the sector assembled, condensed and solved by scikit-fem takes {plain:.2g} s of "
+                f"CPU time, {plain / dissected:.1f} times the {dissected:.2g} s of nested dissection, for the same "
+                "results."
             )
     return ""
 
@@ -158,13 +158,16 @@ def _steps(found: Found, ladder: Ladder, *, quick: bool) -> list[tuple[str, Call
         more = f" and {len(group) - 1} more" if len(group) > 1 else ""
         steps.append((group[0].label + more, partial(measure_meshes, found, group)))
     steps += [(one.label, partial(measure_alone, found, one)) for one in ladder.others if not one.formula]
-    steps.append(("Knobs of the finite elements", vary))
+    steps.append(("Settings of the finite elements", vary))
     if asked.pair:
         steps.append(
-            ("Knobs of load sharing and dynamics", lambda: found.knobs.extend(pair_knobs(asked, _of_pair(asked, kept))))
+            (
+                "Settings of load sharing and dynamics",
+                lambda: found.knobs.extend(pair_knobs(asked, _of_pair(asked, kept))),
+            )
         )
     if asked.scene.case.stiffness.face_positions is not None and asked.gear:
-        steps.append(("Knobs of the gear with its width", partial(_vary_width, found, quick=quick)))
+        steps.append(("Settings of 3D gears", partial(_vary_width, found, quick=quick)))
     return steps
 
 

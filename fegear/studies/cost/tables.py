@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.printed import percent
 from fegear.base.units import from_si
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
@@ -47,35 +48,39 @@ def cost_table(results: CostResults) -> Table:
 
     panels = [c.panels if isinstance(c := row.configuration, FlankConfiguration) else 0 for row in rows]
     columns = (
-        Column("quantity", words(lambda r: r.quantity), "", "what was computed"),
-        Column("configuration", words(lambda r: r.configuration.label), "", "with what"),
+        Column("quantity", words(lambda r: r.quantity), "", "computed quantity"),
+        Column("configuration", words(lambda r: r.configuration.label), "", "configuration"),
         Column("family", words(lambda r: r.configuration.family), "", "kind of configuration"),
-        Column("seconds", number(lambda r: r.seconds.cpu), "s", "of one core, from nothing to the answer"),
-        Column("seconds_wall", number(lambda r: r.seconds.wall), "s", "the same by the clock on the wall"),
-        Column("seconds_solving", number(lambda r: r.solve.cpu), "s", "of these for meshing and solving the gears"),
-        Column("seconds_fixed", number(lambda r: r.fixed.cpu), "s", "of these common to all, which are not compared"),
-        Column("error", number(results.shown_error), "", "largest relative error, no smaller than the reference's own"),
+        Column("seconds", number(lambda r: r.seconds.cpu), "s", "CPU time on one core, from scratch"),
+        Column("seconds_wall", number(lambda r: r.seconds.wall), "s", "wall-clock time"),
+        Column("seconds_solving", number(lambda r: r.solve.cpu), "s", "CPU time for meshing and solving the gears"),
+        Column("seconds_fixed", number(lambda r: r.fixed.cpu), "s", "CPU time common to all configurations (not "
+                                                                    "compared)"),
+        Column("error", number(results.shown_error), "", "maximum relative error, at least that of the reference"),
         Column("below_floor", number(lambda r: r.miss.largest <= results.floors[r.quantity]).astype(int), "",
-               "1 where the error is below what the reference itself knows: at most `error`"),
+               "1: error below that of the reference (at most `error`)"),
         Column("floor", number(lambda r: results.floors[r.quantity]), "", "estimated error of the reference"),
-        Column("error_where_answered", number(results.error_where_answered), "", "`error` over the positions answered"),
+        Column("error_where_answered", number(results.error_where_answered), "",
+            "`error` over the positions with a result"),
         Column("compliance_error", number(lambda r: r.compliance_error), "",
-               "of a pair's c_0 that the quantity stands on: what exceeds a tolerance by it is not its cheapest"),
-        Column("answered", number(lambda r: r.miss.answered), "", "share of the load positions with an answer"),
-        Column("on_front", np.array([int(id(r) in on_front) for r in rows]), "", "1: nothing is quicker and better"),
+               "error of c_0 of the pair used for the quantity; settings exceeding a tolerance in it are not selected"),
+        Column("answered", number(lambda r: r.miss.answered), "", "fraction of load positions with a result"),
+        Column("on_front", np.array([int(id(r) in on_front) for r in rows]), "", "1: Pareto optimal"),
         Column("value", number(lambda r: r.value * (from_si(unit[r.quantity]) if unit[r.quantity] else 1.0)), "",
-               "the answer; of many positions the largest"),
-        Column("unit", words(lambda r: unit[r.quantity]), "", "of value"),
-        Column("order", setting("order"), "", "of the elements"),
+               "result; maximum over several positions"),
+        Column("unit", words(lambda r: unit[r.quantity]), "", "unit of value"),
+        Column("order", setting("order"), "", "order of the elements"),
         Column("root_edge_length", setting("root_edge_length"), "", "[modules]"),
         Column("flank_edge_length", setting("flank_edge_length"), "", "[modules]"),
         Column("patch_half_width", setting("patch_half_width"), "", "[modules]"),
-        Column("teeth", np.array([r.configuration.teeth for r in rows]), "", "of a sector; 0 for the whole gear"),
-        Column("panels", np.array(panels, dtype=int), "", "along the face of a pair with its width; else 0"),
-        Column("case_line", words(lambda r: r.configuration.paste(results.asked.pair)), "", "asks a case for this"),
-        Column("reason", words(lambda r: r.reason), "", "why there is no answer"),
+        Column("teeth", np.array([r.configuration.teeth for r in rows]), "",
+            "number of teeth of a sector; 0: full gear"),
+        Column("panels", np.array(panels, dtype=int), "", "panels over the face width of a 3D pair; otherwise 0"),
+        Column("case_line", words(lambda r: r.configuration.paste(results.asked.pair)), "",
+               "case setting for this configuration"),
+        Column("reason", words(lambda r: r.reason), "", "reason for missing result"),
     )  # fmt: skip
-    return Table("cost", columns, "Error and seconds of every configuration")
+    return Table("cost", columns, "Error and CPU time of all configurations")
 
 
 def orders_table(results: CostResults) -> Table:
@@ -83,15 +88,20 @@ def orders_table(results: CostResults) -> Table:
     knobs = results.knobs
     columns = (
         Column("quantity", np.array([k.quantity for k in knobs], dtype=np.str_)),
-        Column("knob", np.array([k.name for k in knobs], dtype=np.str_), "", "the setting that was varied alone"),
+        Column("knob", np.array([k.name for k in knobs], dtype=np.str_), "", "setting varied"),
         Column("order", np.array([k.order.slope for k in knobs]), "", "p of error ~ step^p; blank: none"),
-        Column("configurations_used", np.array([k.order.used for k in knobs], dtype=int), "", "on the line"),
+        Column(
+            "configurations_used",
+            np.array([k.order.used for k in knobs], dtype=int),
+            "",
+            "number of configurations on the line",
+        ),
         Column("configurations", np.array([k.step.size for k in knobs], dtype=int), "", "tried"),
-        Column("scatter", np.array([k.order.scatter for k in knobs]), "", "largest factor off the line"),
+        Column("scatter", np.array([k.order.scatter for k in knobs]), "", "maximum factor from the line"),
         Column("rests_on", np.array([k.order.words for k in knobs], dtype=np.str_)),
-        Column("at", np.array([k.at for k in knobs], dtype=np.str_), "", "what the other settings were"),
+        Column("at", np.array([k.at for k in knobs], dtype=np.str_), "", "other settings"),
     )
-    return Table("cost_orders", columns, "Observed order of each knob")
+    return Table("cost_orders", columns, "Observed order of each setting")
 
 
 def knobs_table(results: CostResults) -> Table:
@@ -105,12 +115,12 @@ def knobs_table(results: CostResults) -> Table:
     columns = (
         Column("quantity", np.repeat(np.array([k.quantity for k in knobs], dtype=np.str_), count)),
         Column("knob", np.repeat(np.array([k.name for k in knobs], dtype=np.str_), count)),
-        Column("setting", joined("settings"), "", "its value: edges and patches in modules"),
-        Column("error", joined("error"), "", "relative, from this knob alone"),
-        Column("floor", np.repeat(np.array([k.floor for k in knobs]), count), "", "what the reference itself knows"),
-        Column("seconds", joined("seconds"), "s", "of one core; blank where it takes no time of its own"),
+        Column("setting", joined("settings"), "", "value of the setting: edges and patches in modules"),
+        Column("error", joined("error"), "", "relative error from this setting only"),
+        Column("floor", np.repeat(np.array([k.floor for k in knobs]), count), "", "error of the reference"),
+        Column("seconds", joined("seconds"), "s", "CPU time on one core; blank if negligible"),
     )
-    return Table("cost_knobs", columns, "Error over each knob")
+    return Table("cost_knobs", columns, "Error over each setting")
 
 
 def cheapest_table(results: CostResults) -> Table:
@@ -124,9 +134,10 @@ def cheapest_table(results: CostResults) -> Table:
         Column("quantity", np.array([name for name, _ in wanted], dtype=np.str_)),
         Column("tolerance", np.array([tolerance for _, tolerance in wanted]), "", "relative"),
         Column("configuration", np.array(labels, dtype=np.str_)),
-        Column("seconds", np.array([row.seconds.cpu if row else math.nan for row in found]), "s", "of one core"),
-        Column("error", np.array(error), "", "largest relative error"),
-        Column("case_line", np.array(lines, dtype=np.str_), "", "asks a case for it"),
+        Column("seconds", np.array([row.seconds.cpu if row else math.nan for row in found]), "s",
+            "CPU time on one core"),
+        Column("error", np.array(error), "", "maximum relative error"),
+        Column("case_line", np.array(lines, dtype=np.str_), "", "case setting for this configuration"),
     )  # fmt: skip
     return Table("cost_cheapest", columns, "Cheapest settings for a tolerance")
 
@@ -144,11 +155,11 @@ def tables(results: CostResults) -> tuple[Table, ...]:
 
 #: How quantities are called.
 NAMES = {
-    "c_0": "c_{0}, self compliance",
+    "c_0": "c_{0}, self-compliance",
     "c_1": "c_{1}, next tooth",
     "root-stress": "root stress",
     "te-peak-to-peak": "peak-to-peak transmission error",
-    "tooth-force": "largest tooth force",
+    "tooth-force": "maximum tooth force",
     "dynamic-factor": "dynamic factor",
     "te-harmonics": "harmonics of the transmission error",
     "stiffness-harmonics": "harmonics of the mesh stiffness",
@@ -166,7 +177,9 @@ _ROUND_OFF = 1e-16
 
 
 #: What tells alike marks of a pair with its width apart.
-_OF_FLANKS = " Edges shorten from one group of equal marks to the next on the right; within a group panels differ."
+_OF_FLANKS = (
+    " Edge lengths decrease from each group of equal marks to the next on the right; panels differ within a group."
+)
 
 
 _ORDERS = ((2, "sky", "circle"), (3, "blue", "square"), (4, "green", "diamond"))
@@ -181,8 +194,8 @@ def cost_figures(results: CostResults) -> tuple[Figure, ...]:
     alone = tuple(_quantity_figure(results, quantity) for quantity in results.quantities)
     more = _OF_FLANKS if results.asked.over_face else ""
     together = Figure(
-        "cost", "What accuracy costs",
-        f"Every configuration of the study; grey: below the reference's own error.{more}",
+        "cost", "Accuracy versus computing time",
+        f"All configurations; grey: below the error of the reference.{more}",
         tuple(_panel(results, q, title=NAMES.get(q.name, q.name), written=False) for q in results.quantities),
         columns=min(2, len(results.quantities)),
     )  # fmt: skip
@@ -195,8 +208,8 @@ def _quantity_figure(results: CostResults, quantity: Quantity) -> Figure:
     return Figure(
         f"cost_{quantity.name}",
         f"Cost of {name}",
-        f"{quantity.meaning[0].upper()}{quantity.meaning[1:]}: relative error against a converged solution over the "
-        f"seconds it takes. The grey band lies below the error of the reference itself ({floor:.0e})."
+        f"{quantity.meaning[0].upper()}{quantity.meaning[1:]}: relative error (reference: converged solution) over "
+        f"CPU time. Grey band: below the error of the reference ({floor:.0e})."
         + (_OF_FLANKS if results.asked.over_face else ""),
         (_panel(results, quantity, title="", written=True),),
     )
@@ -213,14 +226,14 @@ def _panel(results: CostResults, quantity: Quantity, *, title: str, written: boo
         (("sector",), "sector with free sides", "orange", "triangle-up"),
         (("compliance-formula", "stress-formula"), "closed form", "red", "x"),
         (("scikit-fem",), "ring, sector by scikit-fem", "green", "x"),
-        (("table",), "the case's table", "ink", "square"),
+        (("table",), "table of the case", "ink", "square"),
         (("thin-slices-alone",), "thin slices without neighbours", "orange", "x"),
         (("thin-slices",), "thin slices", "orange", "triangle-up"),
         (("coupled-slices-alone",), "coupled slices without neighbours", "green", "x"),
         (("coupled-slices",), "coupled slices", "green", "diamond"),
         (("solid-alone",), "solid without neighbours", "blue", "x"),
         (("solid",), "solid", "blue", "circle"),
-        (("tolerance",), "chosen for accuracy.tolerance, error estimate included", "purple", "star"),
+        (("tolerance",), "selected by accuracy.tolerance, including error estimation", "purple", "star"),
     ):
         here = [row for row in rows if row.configuration.family in families]
         items += _points(results, here, label, role, symbol, written=written and not results.asked.over_face)
@@ -230,8 +243,8 @@ def _panel(results: CostResults, quantity: Quantity, *, title: str, written: boo
         items.append(Curve(t, e, "Pareto front", "ink", dash="steps", width=1.0, markers=False))
     floor = results.floors[quantity.name]
     marks = (Zone("y", _BELOW * floor, floor), Mark("y", floor)) if floor > 0.0 else ()
-    x = Axis("processor seconds of one core, from nothing to the answer", log=True)
-    return Panel(x, Axis("largest relative error", log=True), tuple(items), marks, title, height=1.4)
+    x = Axis("CPU time [s], one core, from scratch", log=True)
+    return Panel(x, Axis("maximum relative error", log=True), tuple(items), marks, title, height=1.4)
 
 
 def _points(
@@ -251,7 +264,7 @@ def _points(
 def _note(row: Measured) -> str:
     configuration = row.configuration
     text = f"{configuration.teeth} teeth" if configuration.teeth else configuration.formula or configuration.label
-    return text + (f" ({row.miss.answered:.0%} of the flank)" if row.miss.answered < 1.0 else "")
+    return text + (f" ({percent(row.miss.answered)} of the flank)" if row.miss.answered < 1.0 else "")
 
 
 def _knobs_figure(results: CostResults) -> Figure:
@@ -266,11 +279,12 @@ def _knobs_figure(results: CostResults) -> Figure:
             curves.append(Curve(knob.settings[known], error, knob.quantity, role, width=1.2, markers=True))
             if not math.isnan(knob.order.slope):
                 orders.append(f"{knob.quantity} {knob.order.slope:.1f}")
-        title = f"order: {', '.join(orders)}" if orders else "no order seen"
+        title = f"order: {', '.join(orders)}" if orders else "no order observed"
         unit = "modules" if name.startswith(("edge", "patch")) else ""
         axes = Axis(name, unit, log=True), Axis("relative error", log=True)
         panels.append(Panel(*axes, tuple(curves), title=title))
     return Figure(
-        "cost_knobs", "What each setting does", "One setting varied at a time, all others fine.", tuple(panels),
+        "cost_knobs", "Influence of each setting", "One setting varied at a time, all others at the "
+                                                "finest level.", tuple(panels),
         columns=min(3, len(names)),
     )  # fmt: skip

@@ -41,7 +41,7 @@ __all__ = [
     "compiled",
 ]  # fmt: skip
 
-_LONG = "Compiling the equations of motion to machine code: about half a minute, once (the set-up does it beforehand)."
+_LONG = "Compiling the equations of motion: about half a minute, once (done in advance by the set-up)."
 #: Modules whose functions call each other as machine code.
 COMPILED = (polynomials, series, collocation, steps)
 

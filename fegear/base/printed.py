@@ -1,0 +1,71 @@
+"""Numbers in sentences that people read: shares in per cent, values with the digits of their errors."""
+
+from __future__ import annotations
+
+import math
+
+#: Significant digits of a value without an error; whole numbers are written out up to the limit.
+_DIGITS, _WHOLE = 6, 1e9
+#: Digits that a float holds; no error asks for more.
+_MOST = 10
+
+
+def percent(share: float, signed: bool = False, whole: bool = False) -> str:
+    """A share in per cent with two or three figures and a space before the sign.
+
+    Parameters
+    ----------
+    share : float
+    signed : bool
+        Write the sign of a positive share as well.
+    whole : bool
+        Round to whole per cent.
+
+    Returns
+    -------
+    str
+        ``"41 %"``, ``"-3.2 %"``, ``"0.32 %"``, ``"0.0041 %"``.
+    """
+    size = abs(share)
+    if not math.isfinite(share):
+        return f"{share} %"
+    if whole or size >= 0.1 or size == 0.0:
+        decimals = 0
+    elif size >= 0.01:
+        decimals = 1
+    else:
+        decimals = 2 if size >= 0.001 else 1 - math.floor(math.log10(100.0 * size))
+    return f"{100.0 * share:{'+' if signed else ''}.{decimals}f} %"
+
+
+def plain(value: float) -> str:
+    """A value without an error: six significant digits, whole numbers written out."""
+    if math.isfinite(value) and value == round(value) and abs(value) < _WHOLE:
+        return f"{value:.0f}"
+    return f"{value:.{_DIGITS}g}"
+
+
+def with_its_error(value: float, error: float) -> str:
+    """Value and error, both to the error's second significant digit: ``"7.6187 +- 0.0034"``.
+
+    Parameters
+    ----------
+    value : float
+    error : float
+        Positive.
+    """
+    if not (math.isfinite(value) and math.isfinite(error)):
+        return f"{value:.{_DIGITS}g} +- {error:.2g}"
+    size = max(abs(value), error)
+    if not 1e-4 <= size < 1e7:
+        decimals = math.floor(math.log10(size)) - math.floor(math.log10(error)) + 1
+        return f"{value:.{max(0, min(decimals, _MOST))}e} +- {error:.1e}"
+    decimals = 1 - math.floor(math.log10(error))
+    most = _MOST - math.floor(math.log10(size))
+    shown = f"{value:.{max(0, min(decimals, most))}f}"
+    if float(shown) == 0.0:
+        shown = shown.replace("-", "")
+    small = f"{error:.{decimals}f}" if 0 <= decimals <= _DIGITS else f"{error:.2g}"
+    if decimals < 0:
+        small = f"{float(small):.0f}"
+    return f"{shown} +- {small}"
