@@ -1,1 +1,1 @@
-"""Gear trains in motion: dynamic increments, spectra, tooth forces, and motion with contact loss."""
+"""Gear trains in motion: dynamic increments, spectra, tooth forces, and motion with loss of contact."""

@@ -1,1 +1,1 @@
-"""Exact gear geometry: rack, generated tooth, gear and pair, spur and helical alike."""
+"""Exact gear geometry: rack, generated tooth, gear and pair, spur and helical."""

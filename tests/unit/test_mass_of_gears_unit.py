@@ -36,7 +36,7 @@ def test_a_set_takes_the_inertia_of_its_teeth_or_the_given_one_and_says_so():
     own, given = of_set(), of_set(planet={"mass": "1531.0053989 kg", "inertia": "165.459102262 kg*m^2"})
     assert own["P.planet.inertia"].si == pytest.approx(165.4591, rel=1e-6)
     assert own["P.sun.inertia"].si == pytest.approx(229.6569, rel=1e-6)
-    assert own["P.planet.inertia"].meaning.endswith("of the teeth and the body of gear planet")
+    assert own["P.planet.inertia"].meaning.endswith("from teeth and body of gear planet")
     assert own["P.carrier.mass"].si == 20000.0
     assert own["P.carrier.mass"].meaning.endswith("from body.carrier")
     assert given["P.planet.mass"].meaning.endswith("from body.planet")

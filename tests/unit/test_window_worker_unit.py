@@ -77,7 +77,7 @@ def test_faults_are_said_in_a_sentence_and_what_may_be_half_done_is_forgotten(wo
     for problem, what, words, key, anew in (
         (Unwanted(), "dropped", None, None, 0), (MemoryError(), "refused", "Out of memory", "", 1),
         (InputError("gear.a", "1", "is wrong"), "refused", "gear.a = 1: is wrong", "gear.a", 1),
-        (ZeroDivisionError("x"), "refused", "A fault of fegear, not of the case (ZeroDivisionError: x)", "", 2),
+        (ZeroDivisionError("x"), "refused", "Internal error in fegear (ZeroDivisionError: x)", "", 2),
     ):  # fmt: skip
 
         def fail(job, problem=problem):

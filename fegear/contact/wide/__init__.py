@@ -1,4 +1,4 @@
-"""Loaded flanks of gears with a width: contact lines, compliance of both solid gears, contact solved over the face.
+"""Loaded flanks of 3D gears: contact lines, compliance of both solid gears, contact solved over the face.
 
     from fegear.contact.wide import FlankGaps, FlankPair
 

@@ -1,4 +1,4 @@
-"""Teeth with a width: influence functions of the whole solid gear, spur and helical, at the cost of one tooth.
+"""3D gears: influence functions of the whole solid gear, spur and helical, at the cost of one tooth.
 
     from fegear.fem.solid import bands, hats, solid_influence
 
