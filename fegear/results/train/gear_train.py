@@ -6,21 +6,23 @@ What several results of a train share: its meshes, the speeds that they need, an
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shown, shows
 from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.neglected_effects import percent
 from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
 from fegear.dynamics.train.gear_train import GearTrain, a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import loaded_pair
@@ -29,9 +31,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
+    from fegear.case.train import TrainMeshPart
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.train.gear_train import TrainMesh
     from fegear.dynamics.train.tooth_force import Pull
+    from fegear.dynamics.train.train import Mesh
+    from fegear.engine.sheet.seen import Seen
 
 
 #: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
@@ -122,8 +128,84 @@ def _doubt(data: LoadedWidePair) -> tuple[float, float]:
     return abs(other - fine), float(data.error.peak_to_peak[i])
 
 
-def _reference_remarks(data: GearTrain, asked: TrainInputs) -> list[str]:
+@dataclass(frozen=True)
+class MeshRow:
+    """One mesh of a train as its springs are.
+
+    Parameters
+    ----------
+    made : TrainMesh
+        With its excitation.
+    spring : Mesh
+        In the train.
+    part : TrainMeshPart
+        Of the case.
+    """
+
+    made: TrainMesh
+    spring: Mesh
+    part: TrainMeshPart
+
+    @property
+    @shows("N", "mean force along the axes, by the helix")
+    def axial_force(self) -> float | None:
+        """[N]; None for spur gears."""
+        helix = self.made.pair.driver.base_helix_angle
+        return self.made.force * math.tan(helix) if helix else None
+
+    @property
+    @shows("N", "along the line of action, from the torques")
+    def mean_force(self) -> float:
+        """[N]."""
+        return self.made.force
+
+    @property
+    @shows("N/um", "1 over the mean compliance")
+    def mean_stiffness(self) -> float:
+        """[N/m]."""
+        return self.spring.stiffness
+
+    @property
+    @shows("um", "under the mean force")
+    def static_te_peak_to_peak(self) -> float:
+        """[m]."""
+        return float(np.ptp(self.made.error(np.linspace(0.0, 1.0, 2001))))
+
+    @property
+    def doubt(self) -> tuple[float | None, float | None]:
+        """Estimated errors of both where they are known [N/m], [m]."""
+        return self.made.doubt or (None, None)
+
+    @property
+    def pitches(self) -> int:
+        """Base pitches after which its excitation repeats; 1 for teeth like those of another mesh."""
+        return self.made.error.pitches if self.part.like is None else 1
+
+
+@dataclass(frozen=True)
+class BodyRow:
+    """A body of a train with its moment of inertia [kg m^2]."""
+
+    sources: str
+    inertia: float = shown("kg.m^2")
+
+
+def _meshes(seen: Seen) -> dict[str, MeshRow]:
+    parts = zip(seen.data.meshes, seen.data.train.meshes, seen.asked.part.mesh.items(), strict=True)
+    return {name: MeshRow(made, spring, part) for made, spring, (name, part) in parts}
+
+
+def _bodies(seen: Seen) -> dict[str, BodyRow]:
+    found = {}
+    for name, body in seen.asked.part.body.items():
+        sources = [*(f"gear {gear}" for gear in body.gears or ()), *(["inertia"] if body.inertia else [])]
+        found[name] = BodyRow(" + ".join(sources), seen.asked.inertias[name])
+    return found
+
+
+def _whose_speeds(seen: Seen) -> list[str]:
     """Say whose speeds are meant, where bodies turn at different speeds and the order of tables alone tells."""
+    data, asked = seen.data, seen.asked
     ratios = np.abs(data.train.ratios)
     if not asked.assumed or float(np.ptp(ratios)) <= 1e-12 * float(ratios.max()):
         return []
@@ -135,44 +217,51 @@ def _reference_remarks(data: GearTrain, asked: TrainInputs) -> list[str]:
     return [said]
 
 
-def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
-    remarks = _reference_remarks(data, asked)
-    if asked.idle_ripple:
-        remarks.append("train.torque_ripple is given, but effects.torque_ripple is off: torques are constant.")
-    values: list[Value] = []
-    for (name, part), mesh, one in zip(asked.part.mesh.items(), data.train.meshes, data.meshes, strict=True):
-        if not one.a_drives:
-            remarks.append(
-                f"Mesh {name}: the torques make {part.driven} drive {part.driver}, so x counts toward the tip of the "
-                f"gear of {part.driven}."
-            )
-        if not one.excitation.slotted:
-            remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
-        if part.like is None and one.error.pitches > 1:
-            remarks.append(
-                f"Mesh {name}: its excitation repeats after {one.error.pitches} base pitches (spacing errors)."
-            )
-        helix = one.pair.driver.base_helix_angle
-        if helix:
-            axial = one.force * math.tan(helix)
-            remarks.append(
-                f"Mesh {name}: its axial force of {axial:.5g} N is carried by bearings taken as rigid; the train turns "
-                "only. Ask for transmissibility with mesh.pair for motion along the axis and tilting."
-            )
-            values.append(Value(f"{name}.axial_force", axial, "N", None, "mean force along the axes, by the helix"))
-        s = np.linspace(0.0, 1.0, 2001)
-        stiffness, swing = one.doubt or (None, None)
-        values += [
-            Value(f"{name}.mean_force", one.force, "N", None, "along the line of action, from the torques"),
-            Value(f"{name}.mean_stiffness", mesh.stiffness, "N/um", stiffness, "1 over the mean compliance"),
-            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(one.error(s))), "um", swing, "under the mean force"),
-        ]
-    for name, body in asked.part.body.items():
-        sources = [*(f"gear {gear}" for gear in body.gears or ()), *(["inertia"] if body.inertia else [])]
-        meaning = f"moment of inertia of body {name}: {' + '.join(sources)}"
-        values.append(Value(f"{name}.inertia", asked.inertias[name], "kg.m^2", None, meaning))
-    settings: dict[str, object] = {body.name: body.inertia for body in data.train.bodies}
-    return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
+def _on_axial_force(seen: Seen) -> str:
+    return (
+        f"Mesh {seen.key}: its axial force of {seen.one.axial_force:.5g} N is carried by bearings taken as rigid; the "
+        "train turns only. Ask for transmissibility with mesh.pair for motion along the axis and tilting."
+    )
+
+
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    values=(
+        Each(
+            _meshes,
+            Number("axial_force", owner="{key}"),
+            Number("mean_force", owner="{key}"),
+            Number("mean_stiffness", lambda seen: seen.one.doubt[0], owner="{key}"),
+            Number("static_te_peak_to_peak", lambda seen: seen.one.doubt[1], owner="{key}"),
+        ),
+        Number("inertia", each=_bodies, owner="{key}", meaning="moment of inertia of body {key}: {one.sources}"),
+    ),
+    remarks=(
+        _whose_speeds,
+        Remark(
+            "train.torque_ripple is given, but effects.torque_ripple is off: torques are constant.",
+            when=lambda seen: seen.asked.idle_ripple,
+        ),
+        Each(
+            _meshes,
+            Remark(
+                "Mesh {key}: the torques make {one.part.driven} drive {one.part.driver}, so x counts toward the tip of "
+                "the gear of {one.part.driven}.",
+                when=lambda seen: not seen.one.made.a_drives,
+            ),
+            Remark(
+                "Mesh {key}: coupled teeth and contacts off the path are linear about the mean load.",
+                when=lambda seen: not seen.one.made.excitation.slotted,
+            ),
+            Remark(
+                "Mesh {key}: its excitation repeats after {one.pitches} base pitches (spacing errors).",
+                when=lambda seen: seen.one.pitches > 1,
+            ),
+            Remark(_on_axial_force, when="axial_force"),
+        ),
+    ),
+    settings={"inertia": lambda seen: {body.name: body.inertia for body in seen.data.train.bodies}},
+)  # fmt: skip
 
 
 #: Seconds of the springs of the first mesh beside those of each: what integrates them is loaded and compiled once.
@@ -274,7 +363,7 @@ GEAR_TRAIN = Stage(
     needs=_needs,
     inputs=lambda scene, _subject: train_inputs(scene),
     compute=compute_train,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     answers=("transmission error",),
     cites=TRAIN_SOURCES,
