@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown
 from fegear.contact.unloaded.parting import parting
 from fegear.contact.unloaded.placement import Placement
 
@@ -34,10 +35,10 @@ class ContactEllipse:
         Approach of the bodies [m].
     """
 
-    long: Array
-    short: Array
-    pressure: Array
-    approach: Array
+    long: Array = shown("mm", "half the long axis")
+    short: Array = shown("mm", "half the short axis")
+    pressure: Array = shown("MPa", "largest pressure")
+    approach: Array = shown("um", "approach of the flanks")
 
 
 def contact_ellipse(large: ArrayLike, small: ArrayLike, load: float, modulus: float) -> ContactEllipse:

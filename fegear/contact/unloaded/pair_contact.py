@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.contact.unloaded.earliest import Earliest, earliest_contact
 from fegear.contact.unloaded.pair import HelicalPair
 from fegear.contact.unloaded.parting import parting, pinion_normal
@@ -64,19 +65,21 @@ class PairContact(ReadOnlyArrays):
         accurate there, the place of the contact point means little.
     """
 
-    phi_1: Array
-    error: Array
-    slope: Array
     bounds: NDArray[np.int8]
-    kind: NDArray[np.str_]
     s: Array
-    r1: Array
-    z1: Array
-    r2: Array
-    z2: Array
     point: Array
-    spread: Array
     ill_defined: NDArray[np.bool_]
+    phi_1: Array = shown("deg", "pinion angle", name="phi1")
+    error: Array = shown(
+        "arcsec", "transmission error phi2 - (N1/N2) phi1, positive where the gear runs ahead", name="te"
+    )
+    slope: Array = shown("", "derivative of the transmission error by phi1")
+    kind: NDArray[np.str_] = shown("", "surface, or the edge that touches", name="contact")
+    r1: Array = shown("mm", "radius of the contact point on the pinion")
+    z1: Array = shown("mm", "its height on the pinion")
+    r2: Array = shown("mm", "radius of the contact point on the gear")
+    z2: Array = shown("mm", "its height on the gear")
+    spread: Array = shown("mm", "length over which the flanks are within a nanometre")
 
 
 def pair_contact(pair: HelicalPair, phi_1: ArrayLike) -> PairContact:

@@ -30,6 +30,7 @@ class DrawnCurve:
     x: Array = shown("", "in the unit of the abscissa")
     y: Array = shown("", "in the unit of the ordinate")
     width: float = 1.8
+    dash: str = ""
 
     @classmethod
     def on_log(
@@ -51,7 +52,7 @@ class DrawnPanel:
 
 
 def _look(seen: Seen) -> dict[str, Any]:
-    return {"markers": False, "width": seen.one.width}
+    return {"markers": False, "width": seen.one.width, "dash": seen.one.dash}
 
 
 def drawn_panels(where: Where) -> Over:

@@ -12,44 +12,30 @@ from fegear.base.errors import InputError
 from fegear.case.part import at
 from fegear.contact.unloaded.manufacture import lead_angle_error_of_cut, lead_error_as_cut
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
-from fegear.results.helical.drawn_tooth_contact import tooth_contact_figures
+from fegear.results.helical.drawn_curves import drawn_panels
+from fegear.results.helical.drawn_tooth_contact import in_space
+from fegear.results.helical.tooth_contact_shown import PHI, ShownContact, ToothContactData
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.reading import Scene
     from fegear.contact.unloaded.contact_ellipse import Bearing
     from fegear.contact.unloaded.pair import HelicalPair
-    from fegear.contact.unloaded.pair_contact import PairContact
-    from fegear.contact.unloaded.predesign import Predesign
     from fegear.contact.unloaded.tooth_contact import ToothContact
 
 
+#: Kinds of contact that are drawn: all.
+_ALL = 100
 #: How far past an end of the face, over its width, an ellipse may reach without a remark.
 _NEGLIGIBLE = 0.01
-
-
-@dataclass(frozen=True, slots=True)
-class ToothContactData:
-    """The analysis of a pair.
-
-    Parameters
-    ----------
-    contact : ToothContact
-    bearing : Bearing or None
-        Contact ellipses, where load and surfaces give them.
-    design : Predesign or None
-        Modification that absorbs linear errors, where the case asks for it.
-    no_ellipses : str
-        Why there are none although a load is given.
-    """
-
-    contact: ToothContact
-    bearing: Bearing | None
-    design: Predesign | None = None
-    no_ellipses: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,110 +107,6 @@ def _check_data(scene: Scene) -> None:
         )  # fmt: skip
 
 
-def _contact_columns(contact: PairContact) -> tuple[Column, ...]:
-    return (
-        Column("contact", contact.kind, "", "surface, or the edge that touches"),
-        Column("r1", contact.r1, "mm", "radius of the contact point on the pinion"),
-        Column("z1", contact.z1, "mm", "its height on the pinion"),
-        Column("r2", contact.r2, "mm", "radius of the contact point on the gear"),
-        Column("z2", contact.z2, "mm", "its height on the gear"),
-    )
-
-
-def _tables(name: str, t: ToothContact, bearing: Bearing | None) -> tuple[Table, ...]:
-    error = "transmission error phi2 - (N1/N2) phi1, positive where the gear runs ahead"
-    spread = Column("spread", t.mesh.spread, "mm", "length over which the flanks are within a nanometre")
-    pieces = t.pieces()
-    reach = t.single.kind != "none"
-    tables = [
-        Table(
-            f"tooth_contact_{name}",
-            (
-                Column("phi1", t.phi_1, "deg", "pinion angle"),
-                Column("te", t.error, "arcsec", error),
-                *_contact_columns(t.mesh),
-                Column("pair", t.leader, "", "which tooth pair touches first"),
-                Column("slope", t.mesh.slope, "", "derivative of the transmission error by phi1"),
-                spread,
-            ),
-            f"Tooth contact of pair {name}, gear set over one cycle",
-        ),
-        Table(
-            f"tooth_contact_single_{name}",
-            (
-                Column("phi1", t.single.phi_1[reach], "deg", "pinion angle"),
-                Column("te", t.single.error[reach], "arcsec", error),
-                *(Column(c.name, c.si[reach], c.unit, c.meaning) for c in _contact_columns(t.single)),
-            ),
-            f"Tooth contact of pair {name}, one tooth pair alone",
-        ),
-        Table(
-            f"tooth_contact_pieces_{name}",
-            (
-                Column("phi1_first", np.array([p[0] for p in pieces]), "deg", "first pinion angle of the piece"),
-                Column("phi1_last", np.array([p[1] for p in pieces]), "deg", "last pinion angle of the piece"),
-                Column("pair", np.array([p[2] for p in pieces]), "", "tooth pair that leads"),
-                Column("contact", np.array([p[3] for p in pieces]), "", "kind of contact"),
-                Column("slope", np.array([p[4] for p in pieces]), "", "mean slope of the transmission error"),
-            ),
-            f"Pieces of the cycle of pair {name}",
-        ),
-    ]
-    tables.append(_kinds_table(name, t))
-    if bearing is not None:
-        tables.append(
-            Table(
-                f"contact_ellipses_{name}",
-                (
-                    Column("phi1", t.phi_1[bearing.index], "deg", "pinion angle"),
-                    Column("long", bearing.ellipse.long, "mm", "half the long axis"),
-                    Column("short", bearing.ellipse.short, "mm", "half the short axis"),
-                    Column("pressure", bearing.ellipse.pressure, "MPa", "largest pressure"),
-                    Column("approach", bearing.ellipse.approach, "um", "approach of the flanks"),
-                ),
-                f"Contact ellipses of pair {name}",
-            )
-        )
-    return tuple(tables)
-
-
-def _kinds_table(name: str, t: ToothContact) -> Table:
-    """Each kind of contact with its share of the cycle, and how fast and how evenly the gear runs ahead in it."""
-    kinds = np.unique(t.mesh.kind)
-    slopes, pitch = [t.mesh.slope[t.mesh.kind == kind] for kind in kinds], t.pair.pinion.angular_pitch
-    mean, spread = np.array([s.mean() for s in slopes]), np.array([np.ptp(s) for s in slopes])
-    return Table(
-        f"tooth_contact_kinds_{name}",
-        (
-            Column("contact", kinds, "", "kind of contact"),
-            Column("share", np.array([s.size / t.phi_1.size for s in slopes]), "", "of the cycle's positions"),
-            Column("slope", mean, "", "mean slope of the transmission error"),
-            Column("rise", mean * pitch, "arcsec", "mean slope times the pitch"),
-            Column("rise_spread", spread * pitch, "arcsec", "peak to peak of the slope, times the pitch"),
-        ),
-        f"Kinds of contact of pair {name}",
-    )
-
-
-def _surface_share(name: str, t: ToothContact) -> Value:
-    inside = t.mesh.kind == "surface"
-    changes = np.count_nonzero(inside != np.roll(inside, 1))
-    error = max(1, changes) / inside.size  # each change lies somewhere between two positions
-    return Value(f"{name}.surface_share", float(inside.mean()), "", error, "share of the cycle without edge contact")
-
-
-def _lead_values(name: str, pair: HelicalPair) -> tuple[Value, ...]:
-    """The pinion's lead error as an angle, and as the lead of the pinion that Appendix 2 makes of it."""
-    angle = pair.errors.lead_angle
-    if angle == 0.0 or angle >= pair.pinion.helix_angle:  # without an error, or without a finite lead of its hand
-        return ()
-    return (
-        Value(f"{name}.lead_angle_error", angle, "arcsec", 0.0, "on the pinion's pitch cylinder"),
-        Value(f"{name}.lead_error_as_cut", lead_error_as_cut(pair.pinion, angle), "mm", 0.0,
-              "of the pinion's lead H, pitch radius as cut"),
-    )  # fmt: skip
-
-
 def _lead_remark(name: str, asked: ToothContactInputs) -> tuple[str, ...]:
     if asked.lead is None:
         return ()
@@ -238,22 +120,6 @@ def _lead_remark(name: str, asked: ToothContactInputs) -> tuple[str, ...]:
         f'what is given with lead_angle = "{other * minutes:.8g} arcmin".'
     )
     return (remark,)
-
-
-def _values(name: str, t: ToothContact) -> tuple[Value, ...]:
-    error = t.maximum.error + t.minimum.error
-    pair = t.pair
-    return (
-        Value(f"{name}.unloaded_te_peak_to_peak", t.peak_to_peak, "arcsec", error,
-              "variation over a cycle of the gear set"),
-        Value(f"{name}.unloaded_te_max", t.maximum.value, "arcsec", t.maximum.error, "largest transmission error"),
-        Value(f"{name}.unloaded_te_min", t.minimum.value, "arcsec", t.minimum.error, "smallest transmission error"),
-        Value(f"{name}.transverse_contact_ratio", pair.transverse_contact_ratio, "", 0.0, "aligned drive"),
-        Value(f"{name}.common_overlap_ratio", pair.overlap_ratio, "", 0.0, "common face over axial pitch"),
-        Value(f"{name}.centre_distance_as_cut", pair.centre_distance, "mm", 0.0, "with the pinion as cut"),
-        _surface_share(name, t),
-        *_lead_values(name, pair),
-    )  # fmt: skip
 
 
 def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
@@ -338,39 +204,148 @@ def _compute(asked: ToothContactInputs, _upstream: Upstream, _work: Work) -> Too
     return ToothContactData(contact, bearing, design, problem)
 
 
-def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
-    name, contact, design = asked.name, data.contact, data.design
-    values, remarks = _values(name, contact), (*_remarks(name, contact), *_lead_remark(name, asked))
-    if design is not None:
-        pinion = design.pair.pinion
-        arm = pinion.base_radius * np.cos(pinion.base_helix_angle)
-        end = design.crown * arm * (0.5 * pinion.face_width) ** 2
-        values += (
-            Value(f"{name}.crown", end, "um", None, "material to remove at each end of the face, along the normal"),
-            Value(f"{name}.predesigned_te", design.peak_to_peak, "arcsec", None, "parabolic error it is designed for"),
-        )
-    settings: dict[str, object] = {"positions": asked.positions}
-    if asked.load is not None:
-        settings |= {"load": asked.load, "contact_modulus": asked.modulus}
+def _all_remarks(seen: Seen) -> Iterator[str]:
+    """What a reader should know of the contact, and what the analysis takes no account of."""
+    name, data, asked = seen.name, seen.data.data, seen.asked
+    yield from _remarks(name, data.contact)
+    yield from _lead_remark(name, asked)
     if data.bearing is not None:
-        remarks += _ellipse_remarks(name, contact, data.bearing)
+        yield from _ellipse_remarks(name, data.contact, data.bearing)
     if asked.relieved:
         of = " and ".join(f"gear {gear}" for gear in asked.relieved)
-        idle = (
+        yield (
             f"Pair {name}: relief, lead, bias and topography of {of} change nothing here: tooth contact analysis takes "
             "the flanks as cut, with the pair's own modification."
         )
-        remarks += (idle,)
     if asked.ignored:
-        idle = (
+        yield (
             f"Pair {name}: {asked.ignored} changes nothing in tooth contact analysis, which takes the flanks as rigid; "
             "tooth_contact.load gives contact ellipses."
         )
-        remarks += (idle,)
     if data.no_ellipses:
-        remarks += (f"Pair {name}: no contact ellipses: {data.no_ellipses}.",)
-    figures = tooth_contact_figures(name, contact, data.bearing, asked.load)
-    return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks, figures)
+        yield f"Pair {name}: no contact ellipses: {data.no_ellipses}."
+
+
+def _alone(key: str) -> Cell:
+    """A quantity of one tooth pair alone."""
+    return Cell(f"contact.single.{key}", lambda seen: seen.data.alone(key))
+
+
+def _half_axis(key: str, label: str, role: str) -> Line:
+    """A half axis of the ellipses, or their pressure."""
+    return Line(f"ellipse.{key}", label, role, x="phi", kind="points", look={"size": 4.0})
+
+
+def _pattern_caption(seen: Seen) -> str:
+    ellipses = " Ellipses: contact under the load of the case, cut at the ends of the flank."
+    vague = " The flanks touch along lines: the place of the point on them is arbitrary."
+    return (
+        f"Pair {seen.name}: where one tooth pair touches over its engagement, by kind of contact."
+        + (ellipses if seen.data.data.bearing is not None else "")
+        + (vague if seen.data.vague else "")
+    )
+
+
+def _under(seen: Seen) -> str:
+    """The load of contact ellipses, where there are any."""
+    return f"{seen.data.load:.4g} N" if seen.data.ellipses is not None and seen.data.load is not None else ""
+
+
+_POINT = ("kind", "r1", "z1", "r2", "z2")
+_TITLE = "Tooth contact of pair {name}"
+_SHEET = Sheet(
+    of=lambda data, asked: ShownContact(data, asked.load),
+    tables=(
+        Rows(
+            "tooth_contact_{name}", f"{_TITLE}, gear set over one cycle",
+            (
+                Cell("contact.mesh.phi_1", "contact.phi_1"), Cell("contact.mesh.error", "contact.error"),
+                *(f"contact.mesh.{key}" for key in _POINT), "leader",
+                "contact.mesh.slope", "contact.mesh.spread",
+            ),
+        ),
+        Rows(
+            "tooth_contact_single_{name}", f"{_TITLE}, one tooth pair alone",
+            tuple(_alone(key) for key in ("phi_1", "error", *_POINT)),
+        ),
+        Rows(
+            "tooth_contact_pieces_{name}", "Pieces of the cycle of pair {name}",
+            ("first", "last", "pair", "contact", "slope"), of="pieces",
+        ),
+        Rows(
+            "tooth_contact_kinds_{name}", "Kinds of contact of pair {name}",
+            ("contact", "share", "slope", "rise", "rise_spread"), of="kinds",
+        ),
+        Rows(
+            "contact_ellipses_{name}", "Contact ellipses of pair {name}",
+            ("phi", *(f"ellipse.{key}" for key in ("long", "short", "pressure", "approach"))), of="ellipses",
+        ),
+    ),
+    values=(
+        Number("peak_to_peak", "peak_to_peak_error"),
+        Number("maximum", "contact.maximum.error"),
+        Number("minimum", "contact.minimum.error"),
+        Number("transverse_contact_ratio", exact),
+        Number("common_overlap_ratio", exact),
+        Number("centre_distance_as_cut", exact),
+        Number("surface_share", "surface_share_error"),
+        Number("lead_angle_error", exact),
+        Number("lead_error_as_cut", exact),
+        "crown",
+        "predesigned_te",
+    ),
+    figures=(
+        Chart(
+            "unloaded_transmission_error_{name}", "Unloaded transmission error of pair {name}",
+            "Pair {name}: turn of the gear ahead of N1/N2 times the pinion's, over two cycles. The pair that touches "
+            "first leads. Peak to peak {d.peak_to_peak:.4g}.",
+            (drawn_panels("error_panels"),),
+        ),
+        Chart(
+            "unloaded_contact_pattern_{name}", "Unloaded contact pattern of pair {name}", _pattern_caption,
+            (
+                Over(
+                    lambda seen: Axis(f"height z on the {seen.one.which}", "mm"),
+                    (
+                        Line("r", role="ink", x="z", look={"width": 1.0, "markers": False}),
+                        Line(
+                            "r", x="z", kind="points", look=lambda seen: {"size": 4.5, "notes": seen.one.notes},
+                            each=Family("kinds", "{one.kind}", "{one.role}", most=_ALL),
+                        ),
+                        Line(
+                            "ellipses_r", "contact ellipses", "grey", x="ellipses_z",
+                            look={"width": 0.8, "markers": False},
+                        ),
+                    ),
+                    lambda seen: Axis(f"radius on the {seen.one.which}", "mm"), each="pattern",
+                ),
+            ),
+            columns=2, under=_under,
+        ),
+        Chart(
+            "contact_ellipses_{name}", "Contact ellipses of pair {name}",
+            "Pair {name}: contact ellipses where the flanks touch on their surfaces, one pair carrying {d.load:.4g} N.",
+            (
+                Over(
+                    PHI,
+                    (
+                        _half_axis("long", "long half axis", "blue"), _half_axis("short", "short half axis", "orange"),
+                    ),
+                    Axis("half axes", "mm", zero=True),
+                ),
+                Over(PHI, (_half_axis("pressure", "pressure", "red"),)),
+            ),
+            of="ellipses", when=lambda seen: seen.data.load is not None, under=_under,
+        ),
+        in_space,
+    ),
+    remarks=(_all_remarks,),
+    settings={
+        "positions": lambda seen: seen.asked.positions,
+        "load": lambda seen: seen.asked.load,
+        "contact_modulus": lambda seen: None if seen.asked.load is None else seen.asked.modulus,
+    },
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
@@ -383,7 +358,7 @@ TOOTH_CONTACT = Stage(
     subjects=_pairs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=check_misalignment,
     cites=citing(
         Citation("litvin", "surfaces, tooth contact analysis, edge contact", "Appendices 1 to 5"),
