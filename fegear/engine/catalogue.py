@@ -37,6 +37,8 @@ class Entry(NamedTuple):
         Effects that change what it computes.
     quantities : tuple of str
         Quantities that a study of cost takes for its results; empty where it knows none.
+    internal : bool
+        Whether it takes internal gears and pairs; a plan refuses those of other stages.
     """
 
     name: str
@@ -48,10 +50,12 @@ class Entry(NamedTuple):
     formerly: str = ""
     effects: tuple[str, ...] = ()
     quantities: tuple[str, ...] = ()
+    internal: bool = False
 
 
 def _entry(stage: Stage) -> Entry:
-    return Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects)
+    return Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects,
+                 internal=stage.internal)  # fmt: skip
 
 
 class Catalogue(Sequence[Stage]):
@@ -116,7 +120,7 @@ class Catalogue(Sequence[Stage]):
             found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
             named = replace(
                 found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra,
-                effects=entry.effects,
+                effects=entry.effects, internal=entry.internal,
             )  # fmt: skip
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)

@@ -173,7 +173,8 @@ class Stage:
     cites : callable
         ``cites(scene, subject)`` -> what the result rests on.
     internal : bool
-        Whether it takes internal gears and pairs; a plan refuses those of other stages.
+        Whether it takes internal gears and pairs; a plan refuses those of other stages. Given by the catalogue, by the
+        stage itself where another distribution adds it.
     why_external : str
         Why it does not.
     holds : tuple of str

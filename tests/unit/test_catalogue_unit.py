@@ -49,8 +49,8 @@ def test_every_entry_finds_a_stage_that_is_named_after_it():
     assert len(set(homes)) == len(homes) == len(STAGES) == len({entry.name for entry in STAGES.entries})
     for entry, stage in zip(STAGES.entries, STAGES, strict=True):
         assert isinstance(stage, Stage)
-        assert (stage.name, stage.title, stage.results, stage.about) == (
-            entry.name, entry.title, entry.results, entry.about,
+        assert (stage.name, stage.title, stage.results, stage.about, stage.internal) == (
+            entry.name, entry.title, entry.results, entry.about, entry.internal,
         )  # fmt: skip
         assert stage is STAGES.called(entry.name)
         # What serves other stages alone has no line in lists of results; whatever can be asked for has one.

@@ -324,5 +324,4 @@ GEOMETRY = Stage(
     present=_SHEET.present,
     cites=citing(INVOLUTE, Citation("iso-53", "standard basic racks", "Table 1")),
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
-    internal=True,
 )

@@ -404,5 +404,4 @@ MEASURED_FLANKS = Stage(
     present=_SHEET.present,
     cites=citing(Citation("iso-1328-1", "evaluation of profile and helix traces, tolerances")),
     forecast=lambda _scene, _name: forecasts.constant(0.05),
-    internal=True,
 )

@@ -164,5 +164,4 @@ ROOT_STRESS = Stage(
     present=_SHEET.present,
     cites=citing(*RING, Citation("iso-6336-3", "the 30 degree tangent that the place is compared with", "clause 6")),
     forecast=lambda _scene, _name: Forecast({}, 0.01),
-    internal=True,
 )

@@ -449,5 +449,4 @@ ROOT_STRESS_STUDY = Stage(
     check=_check,
     cites=citing(*ROOT_STRESS_FORMULAS, *RING),
     forecast=_forecast,
-    internal=True,
 )

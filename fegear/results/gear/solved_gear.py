@@ -144,7 +144,6 @@ def of_solved_gear(compute: Callable[[Influence, int], Any], reach: int, seconds
         present=lambda data, _inputs: Outcome(data),
         cites=citing(*RING),
         forecast=lambda _scene, _name: forecasts.constant(seconds),
-        internal=True,
     )
 
 
@@ -155,7 +154,6 @@ GEAR_SOLUTION = Stage(
     present=_present,
     cites=citing(*RING),
     forecast=_forecast,
-    internal=True,
 )
 
 
@@ -167,5 +165,4 @@ SOLID_SOLUTION = Stage(
     check=check_solid_gear,
     cites=citing(*RING),
     forecast=_forecast_solid,
-    internal=True,
 )

@@ -259,5 +259,4 @@ STIFFNESS = Stage(
     check=check_contacts_of,
     cites=citing(*RING, PATCH, HERTZ),
     forecast=_forecast,
-    internal=True,
 )

@@ -360,5 +360,4 @@ SOLID_STIFFNESS = Stage(
     check=_check,
     cites=citing(*RING, Citation("iso-21771", "the transverse section, turned along the face")),
     forecast=_forecast,
-    internal=True,
 )

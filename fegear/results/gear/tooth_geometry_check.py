@@ -203,5 +203,4 @@ TOOTH_GEOMETRY_CHECK = Stage(
     present=_SHEET.present,
     cites=citing(INVOLUTE),
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
-    internal=True,
 )

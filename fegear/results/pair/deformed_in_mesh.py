@@ -129,5 +129,4 @@ DEFORMED_IN_MESH = Stage(
     check=_check_compliance,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.05),
-    internal=True,
 )

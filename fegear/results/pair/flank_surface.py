@@ -204,5 +204,4 @@ FLANK_SURFACE = teeth_stage(
     check=_check,
     cites=_CITES,
     forecast=_forecast,
-    internal=True,
 )

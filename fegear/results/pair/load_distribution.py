@@ -262,7 +262,7 @@ def distributed_pairs(scene: Scene) -> tuple[str, ...]:
 
 
 #: Stage of a result that stands on a load distributed over the face.
-flank_stage = partial(Stage, subjects=distributed_pairs, needs=needs_flanks, internal=True)
+flank_stage = partial(Stage, subjects=distributed_pairs, needs=needs_flanks)
 
 
 def _check(scene: Scene, name: str) -> None:

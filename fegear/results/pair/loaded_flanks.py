@@ -309,5 +309,4 @@ LOADED_FLANKS = Stage(
     check=check_flanks_to_load,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
-    internal=True,
 )

@@ -151,5 +151,4 @@ LOADED_PAIR = Stage(
     check=check_pair,
     cites=_cites,
     forecast=_forecast,
-    internal=True,
 )

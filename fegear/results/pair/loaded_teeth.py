@@ -116,7 +116,7 @@ def effects_of_teeth(scene: Scene, name: str) -> tuple[str, ...]:
 #: Stage of a result that stands on loaded pairs of any kind.
 teeth_stage = partial(
     Stage, subjects=loaded_pairs, needs=needs_teeth, check=check_teeth,
-    effects_of=effects_of_teeth, internal=True,
+    effects_of=effects_of_teeth,
 )  # fmt: skip
 
 

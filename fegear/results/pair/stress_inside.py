@@ -113,5 +113,4 @@ STRESS_INSIDE = Stage(
     present=lambda data, _inputs: Outcome(data),
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.01),
-    internal=True,
 )

@@ -243,5 +243,4 @@ TOOTH_FRICTION = Stage(
     requires=(Need("friction", "it is what this result shows"),),
     cites=_cites,
     forecast=_forecast,
-    internal=True,
 )

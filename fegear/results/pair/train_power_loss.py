@@ -199,5 +199,4 @@ TRAIN_LOSS = Stage(
     present=_SHEET.present,
     check=_check_train,
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
-    internal=True,
 )

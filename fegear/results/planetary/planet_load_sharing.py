@@ -123,7 +123,7 @@ def _present_cycle(data: SetCycle, asked: SetInputs) -> Outcome:
 #: Stage of what the loaded teeth of a set's meshes are to its planets.
 _teeth_stage = partial(
     Stage, subjects=planetary_sets, inputs=set_inputs, needs=needs_teeth, check=_check,
-    effects_of=_effects, internal=True,
+    effects_of=_effects,
 )  # fmt: skip
 
 SET_CYCLE = _teeth_stage(
@@ -335,5 +335,4 @@ PLANET_LOAD_SHARING = Stage(
     present=_present,
     cites=citing(Citation("lin-parker", "bodies and springs of the set", "section 2")),
     forecast=_forecast,
-    internal=True,
 )

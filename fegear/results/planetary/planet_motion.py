@@ -171,5 +171,4 @@ PLANET_MOTION = Stage(
         Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24"),
     ),
     forecast=_forecast,
-    internal=True,
 )

@@ -246,5 +246,4 @@ PLANET_ROOT_STRESS = Stage(
     check=_check,
     cites=citing(Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")),
     forecast=lambda _scene, _name: forecasts.constant(0.4),
-    internal=True,
 )

@@ -212,5 +212,4 @@ PLANET_SET = Stage(
         Citation("mcfadden-smith", "sidebands of planets that pass a pick-up"),
     ),
     forecast=lambda _scene, _name: forecasts.constant(0.005),
-    internal=True,
 )

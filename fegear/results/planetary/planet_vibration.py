@@ -175,7 +175,6 @@ PLANET_MODES = Stage(
     check=check_masses,
     cites=citing(Citation("lin-parker", "model of the set and kinds of its modes")),
     forecast=lambda _scene, _name: forecasts.constant(0.3),
-    internal=True,
 )
 
 
@@ -274,5 +273,4 @@ PLANET_VIBRATION = Stage(
         Citation("lin-parker", "model of the set"), Citation("mark", "linear train with transmission errors", "2.9b")
     ),
     forecast=lambda _scene, _name: forecasts.constant(3.0),
-    internal=True,
 )

@@ -428,7 +428,6 @@ def _shown(one: Factor, asked: PairToRate) -> bool:
 
 RATING = Stage(
     subjects=rated_pairs,
-    internal=True,
     inputs=_inputs,
     compute=_compute,
     present=_present,

@@ -482,5 +482,4 @@ LOADING_SPECTRUM = Stage(
     check=_check,
     cites=citing(Citation("mark", "families of tooth loading functions and their spectra", "Eqs. 4.8 to 4.22")),
     forecast=_forecast,
-    internal=True,
 )

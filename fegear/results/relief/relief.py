@@ -94,7 +94,7 @@ def design_pairs(scene: Scene) -> tuple[str, ...]:
 
 
 #: Stage of a result about the reliefs that a case asks to design.
-relief_stage = partial(Stage, subjects=design_pairs, needs=needs_teeth, internal=True)
+relief_stage = partial(Stage, subjects=design_pairs, needs=needs_teeth)
 
 
 def _loading(part: DesignPart, p: GearPair) -> LoadingFunction:

@@ -169,5 +169,4 @@ LOADED_SHAFTS = Stage(
     effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else ("misalignment",),
     forecast=_forecast,
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
-    internal=True,
 )

@@ -164,5 +164,4 @@ MISALIGNMENT = Stage(
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     check=_check,
     forecast=lambda _scene, _name: forecasts.constant(0.01),
-    internal=True,
 )

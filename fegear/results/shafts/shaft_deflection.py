@@ -96,5 +96,4 @@ SHAFT_DEFLECTION = Stage(
     needs=lambda _scene, _name: (LOADED_SHAFTS_TASK,),
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     forecast=lambda _scene, _name: forecasts.constant(0.01),
-    internal=True,
 )

@@ -268,5 +268,4 @@ DYNAMIC_FACTOR = Stage(
     check=_check,
     cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
     forecast=_forecast,
-    internal=True,
 )

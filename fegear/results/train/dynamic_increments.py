@@ -256,5 +256,4 @@ DYNAMIC_INCREMENTS = Stage(
     present=_present,
     cites=citing(Citation("mark", "transmission-error dynamic increment functions", "Eqs. 2.57 to 2.66")),
     forecast=_forecast,
-    internal=True,
 )

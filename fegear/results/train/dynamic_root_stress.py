@@ -202,5 +202,4 @@ DYNAMIC_ROOT_STRESS = Stage(
     check=_check,
     cites=_cites,
     forecast=_forecast,
-    internal=True,
 )

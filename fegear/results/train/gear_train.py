@@ -368,5 +368,4 @@ GEAR_TRAIN = Stage(
     answers=("transmission error",),
     cites=TRAIN_SOURCES,
     forecast=_forecast,
-    internal=True,
 )

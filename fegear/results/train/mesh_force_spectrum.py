@@ -299,5 +299,4 @@ MESH_FORCE_SPECTRUM = Stage(
     check=needs_one_speed,
     cites=citing(Citation("mark", "spectra of the mesh force", "Eqs. 3.1 to 3.11")),
     forecast=_forecast,
-    internal=True,
 )

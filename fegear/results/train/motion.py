@@ -326,5 +326,4 @@ MOTION = Stage(
     check=check_motion,
     cites=_sources,
     forecast=_forecast,
-    internal=True,
 )

@@ -211,5 +211,4 @@ NATURAL_MODES = Stage(
     present=_present_modes,
     cites=TRAIN_SOURCES,
     forecast=lambda _scene, _subject: forecasts.constant(0.005),
-    internal=True,
 )

@@ -228,5 +228,4 @@ TOOTH_FORCE = Stage(
     check=needs_one_speed,
     cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.36")),
     forecast=_forecast,
-    internal=True,
 )

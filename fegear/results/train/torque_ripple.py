@@ -239,5 +239,4 @@ TORQUE_RIPPLE = Stage(
     requires=(Need("torque_ripple", "it shows what torques that fluctuate do"),),
     cites=citing(Citation("mark", "gear train of rotors, shafts and meshes, excited by a torque", "section 2")),
     forecast=_forecast,
-    internal=True,
 )
