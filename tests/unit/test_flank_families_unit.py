@@ -123,7 +123,7 @@ def test_the_largest_factor_is_kept_to_and_the_quick_way_may_err_by_a_twentieth(
     assert {most for _, _, most in calls.descents} == {1.2}
     # Loaded exactly, the first has too large a factor: the second is the best.
     assert search(rough, leaves, [1.21, 1.2, 1.1, 1.0], [1.2] * 4, most_factor=1.2)[0].on_grid.numbers[0] == 1
-    with pytest.raises(RangeError, match=r"none of the 4 combinations of lead: the least is about 1\.3"):
+    with pytest.raises(RangeError, match=r"4 combinations of lead.* about 1\.3"):
         search(rough, leaves, [1.5] * 4, [1.4, 1.3, 1.5, 1.6], most_factor=1.2)
 
 
