@@ -6,14 +6,16 @@ Range, mean and the ratio R of lowest to highest stress at one place of the fill
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.case.built.planetary import planetary_part, set_inputs
 from fegear.case.planetary import MESHES, Mesh, set_pair
 from fegear.case.reading import Scene
@@ -21,14 +23,13 @@ from fegear.contact.plane.both_flanks import AlternatingStress, FilletTrace
 from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_over, error_column, value_of
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Every, Off, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
-from fegear.engine.table import Column, Table
 from fegear.geometry.pair import Member
 from fegear.results import forecasts
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
@@ -189,52 +190,113 @@ _TEETH = {
 }
 
 
-def _present(data: PlanetStress, asked: PlanetStressInputs) -> Outcome:
-    name, found = asked.name, list(data.found.values())
-    columns = [Column("tooth", np.array(list(data.found)), "", "of the set, and which of its fillets")]
-    for key in _SHOWN:
-        column = column_over(found, key)
-        columns += [column, error_column(column, [getattr(one, f"{key}_error") for one in found])]
-    columns.append(column_over(found, "place"))
-    side = "at the most pulled place of the fillet below the flank that meets the"
-    history = (
-        Column("planet_angle", data.angle, "deg", "that the planet has turned in the carrier since the tooth met the "
-               "sun at the pitch point"),
-        Column("mesh", np.array(data.mesh), "", "in which the tooth is"),
-        Column("x", data.x, "mm", "position of the tooth's contact on the line of action of this mesh"),
-        Column("stress_sun_side", data.stress[0], "MPa", f"{side} sun"),
-        Column("stress_ring_side", data.stress[1], "MPa", f"{side} ring"),
-    )  # fmt: skip
-    tables = (
-        Table(f"planet_root_stress_{name}", tuple(columns), f"Root stress over a turn in set {name}", printed=True),
-        Table(f"root_stress_history_{name}_{asked.gears['planet']}", history,
-              f"Root stress of a tooth of planet {asked.gears['planet']} over a turn in the carrier"),
-    )  # fmt: skip
-    values = [
-        value_of(one, key, f"{name}.{tooth}", getattr(one, f"{key}_error"), meaning=f"{_TEETH[tooth]}: {said}")
-        for tooth, one in data.found.items()
-        for key, said in (("range", "highest less lowest stress"), ("mean", "mean stress"), ("ratio", "R"))
-    ]
-    ratios = ", ".join(f"{data.found[key].ratio:.3f} at the {key.split('_')[1]}'s side" for key in list(_TEETH)[:2])
-    bent = f"the planet's teeth are bent to either side, R = {ratios} (annex B of ISO 6336-3 takes -1.2 for idlers)"
-    alike = "root stresses are those of an equal share; but for Hertzian contact they grow with a planet's load"
-    said = (f"Set {name}: {bent}.", f"Set {name}: {alike}.")
-    return Outcome(data, tables, tuple(values), {}, said, (_figure(data, asked),))
+@dataclass(frozen=True)
+class Tooth:
+    """One fillet of a set, and what it is."""
+
+    found: AlternatingStress
+    what: str
+    tooth: str = shown("", "of the set, and which of its fillets")
 
 
-def _figure(data: PlanetStress, asked: PlanetStressInputs) -> Figure:
-    order = np.argsort(data.angle)
-    degrees = np.degrees(data.angle[order])
-    curves = tuple(
-        Curve(degrees, data.stress[row, order] * 1e-6, f"fillet on the {mesh}'s side", f"series:{row}", markers=False)
-        for row, mesh in enumerate(MESHES)
+@dataclass(frozen=True)
+class TurnOfPlanet:
+    """Stress of a planet's tooth at both places over a turn in the carrier, shape (Q,)."""
+
+    angle: Array = shown(
+        "deg", "that the planet has turned in the carrier since the tooth met the sun at the pitch point",
+        name="planet_angle", label="turn of the planet in the carrier", table="turn",
+    )  # fmt: skip
+    mesh: NDArray[np.str_] = shown("", "in which the tooth is", table="turn")
+    x: Array = shown("mm", "position of the tooth's contact on the line of action of this mesh", table="turn")
+    stress_sun_side: Array = shown(
+        "MPa", "at the most pulled place of the fillet below the flank that meets the sun", label="stress", table="turn"
     )
-    return Figure(
-        f"planet_root_stress_{asked.name}", f"Root stress of a planet's tooth in set {asked.name}",
-        f"Set {asked.name}: stress at the most pulled places of both fillets of a planet's tooth over a turn in the "
-        "carrier: it meets the sun at 0 deg and the ring half a turn later.",
-        (Panel(Axis("turn of the planet in the carrier", "deg"), Axis("stress", "MPa", zero=True), curves),),
+    stress_ring_side: Array = shown(
+        "MPa", "at the most pulled place of the fillet below the flank that meets the ring", table="turn"
+    )
+
+
+def _teeth(seen: Seen) -> dict[str, Tooth]:
+    return {key: Tooth(one, _TEETH[key], key) for key, one in seen.data.found.items()}
+
+
+def _turn(seen: Seen) -> TurnOfPlanet:
+    data: PlanetStress = seen.data
+    return TurnOfPlanet(data.angle, np.array(data.mesh), data.x, *data.stress)
+
+
+def _in_order(seen: Seen) -> TurnOfPlanet:
+    """By rising angle."""
+    turn = _turn(seen)
+    order = np.argsort(turn.angle)
+    return TurnOfPlanet(*(getattr(turn, one.name)[order] for one in fields(turn)))
+
+
+def _bent(seen: Seen) -> str:
+    sides = list(_TEETH)[:2]
+    ratios = ", ".join(f"{seen.data.found[key].ratio:.3f} at the {key.split('_')[1]}'s side" for key in sides)
+    return (
+        f"Set {seen.name}: the planet's teeth are bent to either side, R = {ratios} (annex B of ISO 6336-3 takes -1.2 "
+        "for idlers)."
+    )
+
+
+def _value(quantity: str, said: str) -> Number:
+    return Number(
+        quantity, f"found.{quantity}_error", "found", owner="{name}.{key}", meaning=f"{{one.what}}: {said}"
     )  # fmt: skip
+
+
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "planet_root_stress_{name}", "Root stress over a turn in set {name}",
+            (
+                Cell("tooth", of=lambda seen: list(_teeth(seen).values())),
+                *(column for key in _SHOWN for column in (key, Off(key, f"{key}_error"))),
+                "place",
+            ),
+            of=lambda seen: list(seen.data.found.values()), printed=True,
+        ),
+        Rows(
+            lambda seen: f"root_stress_history_{seen.name}_{seen.asked.gears['planet']}",
+            lambda seen: f"Root stress of a tooth of planet {seen.asked.gears['planet']} over a turn in the carrier",
+            (Every("turn"),), of=_turn,
+        ),
+    ),
+    values=(
+        Each(
+            _teeth, _value("range", "highest less lowest stress"), _value("mean", "mean stress"), _value("ratio", "R")
+        ),
+    ),
+    figures=(
+        Chart(
+            "planet_root_stress_{name}", "Root stress of a planet's tooth in set {name}",
+            "Set {name}: stress at the most pulled places of both fillets of a planet's tooth over a turn in the "
+            "carrier: it meets the sun at 0 deg and the ring half a turn later.",
+            (
+                Over(
+                    "angle",
+                    tuple(
+                        Line(f"stress_{mesh}_side", f"fillet on the {mesh}'s side", f"series:{row}",
+                             look={"markers": False})
+                        for row, mesh in enumerate(MESHES)
+                    ),
+                    options={"zero": True},
+                ),
+            ),
+            of=_in_order,
+        ),
+    ),
+    remarks=(
+        Remark(_bent),
+        Remark(
+            "Set {name}: root stresses are those of an equal share; but for Hertzian contact they grow with a planet's "
+            "load."
+        ),
+    ),
+)  # fmt: skip
 
 
 PLANET_ROOT_STRESS = Stage(
@@ -242,7 +304,7 @@ PLANET_ROOT_STRESS = Stage(
     needs=needs_planet_stress,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")),
     forecast=lambda _scene, _name: forecasts.constant(0.4),
