@@ -37,10 +37,6 @@ HARMONICS = 64
 POSITIONS = 200
 #: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
 MOST_CYCLES = 10_000
-#: Positions nearer to each other than this share of their usual distance are the two sides of a jump.
-_BESIDE_JUMP = 1e-3
-#: Of a pressure, what is left of its digits where nothing else is uncertain.
-_DIGITS = 1e-9
 #: What may change with an effect that is neglected.
 Answer = Literal["transmission error", "load on a tooth pair", "root tension", "mean transmission error", "K_Hbeta"]
 
@@ -212,12 +208,12 @@ class FlankLoad:
 
 
 class Largest(NamedTuple):
-    """Largest share of a tooth pair and largest pressure on it at the nominal load, whoever states them.
+    """Largest share of a tooth pair and largest pressure on it at the nominal load, between positions of tables, too.
 
     Parameters
     ----------
     share, share_error : float
-        Of the load, and its estimated error.
+        Of the load, and its estimated error; NaN where it is not known.
     pressure, pressure_error : float
         Of smooth flanks [Pa].
     place : str
@@ -249,7 +245,7 @@ class LoadHistory:
     positions : int
         At which it was asked for.
     largest : Largest or None
-        Largest share and pressure at the nominal load, where these are found by themselves.
+        Largest share and pressure at the nominal load; None of a pair that bears nothing.
     """
 
     found: PairHistory
@@ -261,108 +257,51 @@ class LoadHistory:
     largest: Largest | None = None
 
     @property
-    def most_loaded(self) -> int:
-        """Position of the largest load at the nominal one."""
-        return int(np.argmax(self.found.load[:, self.at]))
-
-    @property
-    def _smooth_pressure(self) -> Array:
-        """Pressure at the nominal load [Pa], zero at corners."""
-        pressure = self.found.hertz_pressure[:, self.at]
-        return pressure if self.corner is None else pressure * (1.0 - self.corner)
-
-    @property
-    def hardest_pressed(self) -> int:
-        """Position of the largest pressure of smooth flanks at the nominal load."""
-        return int(np.argmax(self._smooth_pressure))
-
-    @property
     @shows("N", "load on one tooth pair")
     def largest_load(self) -> float:
         """At the nominal load [N]."""
-        return float(self.found.load[self.most_loaded, self.at])
+        if not self.largest:
+            return 0.0
+        load, share = self.found.load[:, self.at], self.found.share[:, self.at]
+        most = int(np.argmax(load))
+        return float(load[most] / share[most]) * self.largest.share
 
     @property
     @shows("", "load of one tooth pair")
     def largest_share(self) -> float:
         """Of the nominal load."""
-        return self.largest.share if self.largest else float(self.found.share[self.most_loaded, self.at])
+        return self.largest.share if self.largest else 0.0
 
     @property
     @shows("MPa", "smooth flanks")
     def largest_hertz_pressure(self) -> float:
         """At the nominal load [Pa]."""
-        return self.largest.pressure if self.largest else float(self._smooth_pressure[self.hardest_pressed])
+        return self.largest.pressure if self.largest else 0.0
 
     @property
     def hardest_pressed_at(self) -> str:
         """Where that is, as the value's meaning has it."""
-        return self.largest.place if self.largest else f"at x = {self.found.x[self.hardest_pressed] * 1e3:.5g} mm"
+        return self.largest.place if self.largest else "nowhere"
 
     @property
     def largest_load_error(self) -> float | None:
-        """Estimated [N], that of the distance of the positions included; no pair bears more than the whole load."""
-        if self.largest:
-            return self.largest.share_error * self.largest_load / self.largest.share
-        if self.load_error is None:
-            return None
-        at, load = self.most_loaded, self.found.load[:, self.at]
-        whole = load[at] / self.found.share[at, self.at] if load[at] > 0.0 else 0.0
-        between = min(_between_positions(self.found.x, load, at), max(float(whole - load[at]), 0.0))
-        return float(self.load_error[at, self.at]) + between
+        """Estimated [N]."""
+        share = self.largest_share_error
+        return share and share * self.largest_load / self.largest_share
 
     @property
     def largest_share_error(self) -> float | None:
-        """Estimated: that of the largest load over it."""
-        if self.largest:
-            return self.largest.share_error
-        error = self.largest_load_error
-        return None if error is None else error / self.found.load[self.most_loaded, self.at]
+        """Estimated; None where it is not known."""
+        return _known(self.largest.share_error) if self.largest else None
 
     @property
     def largest_pressure_error(self) -> float | None:
-        """Estimated, by itself or by the load's and by the distance of the positions [Pa]; what Hertz neglects is not.
-
-        Where one pair carries the whole load, its load is exact, and only the positions are left.
-        """
-        if self.largest:
-            return self.largest.pressure_error
-        if self.load_error is None:
-            return None
-        at, pressure = self.hardest_pressed, self._smooth_pressure
-        load = self.found.load[at, self.at]
-        by_load = 0.5 * self.load_error[at, self.at] / load * pressure[at] if load > 0.0 else 0.0
-        between = _between_positions(self.found.x, pressure, at)
-        return float(max(by_load + between, _DIGITS * pressure[at]))
+        """Estimated [Pa], what Hertz neglects is not; None where it is not known."""
+        return _known(self.largest.pressure_error) if self.largest else None
 
 
-def _between_positions(x: Array, values: Array, at: int) -> float:
-    """How far a curve may rise above its largest value between the positions; nothing at a jump.
-
-    The parabola through the largest value and its neighbours, as far as it meets the next values too. It does not
-    where a relieved pair comes into contact, which is at no position: from both sides straight lines then lead to the
-    peak.
-    """
-    if not 0 < at < x.size - 1:
-        return 0.0
-    (a, b), (down, up) = np.diff(x[at - 1 : at + 2]), np.diff(values[at - 1 : at + 2])
-    if min(a, b) < _BESIDE_JUMP * max(a, b):  # both sides of a jump are positions
-        return 0.0
-    slope, bend = (down / a * b + up / b * a) / (a + b), (up / b - down / a) / (0.5 * (a + b))
-    smooth = 0.5 * slope**2 / -bend if bend < 0.0 else 0.0
-    missed = kink = 0.0
-    for step in (-1, 1):
-        beyond = at + 2 * step
-        if not 0 <= beyond < x.size or abs(x[beyond] - x[at + step]) < _BESIDE_JUMP * min(a, b):
-            continue
-        to = x[beyond] - x[at]
-        missed = max(missed, abs(float(values[at] + slope * to + 0.5 * bend * to**2 - values[beyond])))
-        cell, fall = abs(x[at + step] - x[at]), float(values[at] - values[at + step])
-        rise = float((values[at] - values[at - step]) / abs(x[at] - x[at - step]))
-        back = float((values[at + step] - values[beyond]) / abs(x[at + step] - x[beyond]))
-        if rise + back > 0.0:
-            kink = max(kink, rise * float(np.clip((back * cell - fall) / (rise + back), 0.0, cell)))
-    return float(max(smooth, min(kink, smooth + missed)))
+def _known(error: float) -> float | None:
+    return None if np.isnan(error) else error
 
 
 @dataclass(frozen=True)

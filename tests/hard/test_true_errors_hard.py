@@ -5,7 +5,7 @@ The truth has finer edges, narrower pressures and another growth of its edges (`
 
 import numpy as np
 import pytest
-from true_errors import TOLERANCES, answers, judged, possible, true_answers
+from true_errors import TOLERANCES, both_answers, judged, possible, true_answers
 
 #: Times the stated error that a true one may be.
 BEYOND = 1.5
@@ -19,7 +19,8 @@ def found(kind, seed, count):
     for case in possible(kind, count, seed):
         truth = true_answers(kind, case)
         for tolerance in TOLERANCES:
-            every[tolerance] += judged(answers(case, {"tolerance": tolerance}), truth)
+            found, elements = both_answers(case, {"tolerance": tolerance})
+            every[tolerance] += judged(found, truth, elements)
     return every
 
 

@@ -5,28 +5,34 @@ wide and whose edges grow in another way: what two levels of the ladder have in 
 teeth has shorter edges of order 4, more functions along the face and narrower bands than the finest tolerance takes,
 panels of half the length, and twice as many roll positions for what is stated of a whole base pitch. Largest loads and
 pressures of plane pairs are looked for at eight times as many positions: between those of a table none is seen.
+It knows nothing of what contacts that reach a tip's corner leave to a formula, for it uses that formula as well
+(`test_edge_law_closed_form.py` compares that part with solved contacts): how far stated errors are above the true ones
+is judged without it.
 
-Run by hand it prints a table of ratios:
+Run by hand it prints a table of ratios; what is solved is kept in a folder, if one is named, so that a run that was
+stopped goes on:
 
-python tests/helpers/true_errors.py KIND SEED COUNT [TOLERANCE ...]
+python tests/helpers/true_errors.py KIND SEED COUNT [TOLERANCE ...] [--keep FOLDER]
 """
 
 import argparse
 import math
+import pickle
 import sys
-import time
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
+from fegear.base.code_version import code_version
 from fegear.base.errors import FegearError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built import solid_influence
 from fegear.case.reading import build_scene
-from fegear.contact.plane import loaded_pair
+from fegear.contact.plane import loaded_pair, shifted_compliance
 from fegear.contact.wide import over_pitch
 from fegear.engine.least_errors import error_columns
 from fegear.engine.plan import make_plan
@@ -49,6 +55,10 @@ TOLERANCES = (1e-2, 1e-3, 1e-4)
 FINEST = {"tolerance": 3e-3}
 #: Of its largest value, what the truth is taken to be off at most.
 _ROUGH = 2e-5
+#: Of a value, what is stated where nothing but its digits is uncertain, at most.
+_DIGITS = 1e-7
+#: Places on either side of a crossing that belong to it, at least.
+_BESIDE = 2
 KINDS = ("gear", "ring", "pair", "internal pair", "body", "wide pair")
 EFFECTS = {"neighbour_coupling": True, "hertz": "load-dependent"}
 
@@ -179,9 +189,24 @@ def answers(case, accuracy, cache=None):
     return found
 
 
+def of_elements(case, accuracy):
+    """`answers` whose stated errors have no part of contacts at tips: that of finite elements is left."""
+    with patch.object(shifted_compliance, "_TIP", 1.0):
+        return answers(case, accuracy)
+
+
+def both_answers(case, accuracy):
+    """`answers`, and the same `of_elements`, which of gears by themselves is None: no tip touches."""
+    found = answers(case, accuracy)
+    return found, of_elements(case, accuracy) if case.get("pair") else None
+
+
 @dataclass
 class Judged:
-    """A quantity of one case: true and stated errors at the places that both solutions have."""
+    """A quantity of one case: true and stated errors at the places that both solutions have.
+
+    `of_elements` is what is stated without the part of contacts at tips.
+    """
 
     what: str
     name: str
@@ -189,12 +214,21 @@ class Judged:
     true: np.ndarray
     stated: np.ndarray
     rough: np.ndarray
+    of_elements: np.ndarray
 
     @property
     def worst(self):
         """Largest true error over the stated one, less what the truth itself may be off."""
-        known = np.isfinite(self.stated) & np.isfinite(self.true)
-        over = np.maximum(np.abs(self.true) - self.rough, 0.0)[known] / np.maximum(self.stated[known], 1e-300)
+        return self._worst(self.stated)
+
+    @property
+    def worst_of_elements(self):
+        """The same over what is stated of elements."""
+        return self._worst(self.of_elements)
+
+    def _worst(self, stated):
+        known = np.isfinite(stated) & np.isfinite(self.true)
+        over = np.maximum(np.abs(self.true) - self.rough, 0.0)[known] / np.maximum(stated[known], 1e-300)
         return float(over.max(initial=0.0))
 
     @property
@@ -206,23 +240,36 @@ class Judged:
 
     @property
     def generous(self):
-        """Stated over true error, the median over the places; not a number where the truth cannot tell."""
-        known = np.isfinite(self.stated) & (np.abs(self.true) > self.rough) & (self.stated > 0.0)
-        return float(np.median(self.stated[known] / np.abs(self.true[known]))) if known.any() else np.nan
+        """What is stated of elements over the true error: the median over the places; NaN where none is known."""
+        known = np.isfinite(self.of_elements) & (np.abs(self.true) > self.rough) & (self.of_elements > 0.0)
+        return float(np.median(self.of_elements[known] / np.abs(self.true[known]))) if known.any() else np.nan
 
     @property
     def generous_rms(self):
         """The same of both errors' root mean squares: no crossing enters."""
-        known = np.isfinite(self.stated) & np.isfinite(self.true)
+        known = np.isfinite(self.of_elements) & np.isfinite(self.true)
         if not known.any():
             return np.nan
         true = np.sqrt(np.mean(self.true[known] ** 2))
         rough = np.sqrt(np.mean(self.rough[known] ** 2))
-        return float(np.sqrt(np.mean(self.stated[known] ** 2)) / true) if true > rough else np.nan
+        return float(np.sqrt(np.mean(self.of_elements[known] ** 2)) / true) if true > rough else np.nan
+
+    @property
+    def far_above(self):
+        """Places at which the stated error is above 20 times the true one, and how many were judged.
+
+        True is the largest true error within a twentieth of the places on either side, for it passes through zero. Not
+        judged is what is exact but for its digits.
+        """
+        known = np.isfinite(self.stated) & np.isfinite(self.true)
+        beside = max(_BESIDE, known.size // 20)
+        true = maximum_filter1d(np.maximum(np.abs(np.nan_to_num(self.true)), self.rough), 2 * beside + 1)
+        looked_at = known & (self.of_elements > _DIGITS * self.size)
+        return int((looked_at & (self.of_elements > 20.0 * true)).sum()), int(looked_at.sum())
 
 
-def judged(found, truth):
-    """Every quantity of a solution beside the truth."""
+def judged(found, truth, elements=None):
+    """Every quantity of a solution beside the truth; `elements` has the errors of finite elements by themselves."""
     every = []
     for (what, name), (place, value, stated) in found.items():
         if (what, name) not in truth:
@@ -234,46 +281,74 @@ def judged(found, truth):
             continue
         # What the truth's own elements may be off: its error also has what no elements tell, of contacts beside tips.
         small = np.minimum(np.nan_to_num(rough[j], nan=0.0), _ROUGH * np.abs(exact).max(initial=0.0))
-        every.append(Judged(what, name, np.abs(exact[j]), value[i] - exact[j], stated[i], small))
+        own = (elements or found)[what, name][2][i]
+        every.append(Judged(what, name, np.abs(exact[j]), value[i] - exact[j], stated[i], small, own))
     return every
 
 
-def table(kind, seed, count, tolerances):
-    """Judge random cases of a kind, and print by quantity what is worst."""
-    seconds = {}
+def kept(folder, name, make):
+    """What was made before under a name, or what is made now; None where fegear refuses."""
+    at = None if folder is None else folder / f"{name}.pickle"
+    if at is not None and at.exists():
+        return pickle.loads(at.read_bytes())  # noqa: S301 - of this program
+    try:
+        made = make()
+    except FegearError as why:
+        print(f"{name}: {why}", file=sys.stderr)
+        made = None
+    if at is not None:
+        at.parent.mkdir(parents=True, exist_ok=True)
+        part = at.with_suffix(".part")
+        part.write_bytes(pickle.dumps(made))
+        part.rename(at)
+    return made
+
+
+def table(kind, seed, count, tolerances, folder=None):
+    """Judge random cases of a kind, and print by quantity what is worst.
+
+    With a folder truths are kept in it, which know no changes of the code, and answers by the code that gave them.
+    """
     every = {tolerance: [] for tolerance in tolerances}
+    code = code_version()[:12]
     for number, case in enumerate(possible(kind, count, seed)):
-        began = time.process_time()
-        try:
-            truth = true_answers(kind, case)
-        except FegearError as why:
-            print(f"case {number}: {why}", file=sys.stderr)
+        name = f"{kind.replace(' ', '_')}-{seed}-{number}"
+        truth = kept(folder, name, lambda case=case: true_answers(kind, case))
+        if truth is None:
             continue
-        seconds["truth"] = seconds.get("truth", 0.0) + time.process_time() - began
         for tolerance in tolerances:
-            began = time.process_time()
-            every[tolerance].append((number, judged(answers(case, {"tolerance": tolerance}), truth)))
-            seconds[tolerance] = seconds.get(tolerance, 0.0) + time.process_time() - began
-    print({key: round(value, 1) for key, value in seconds.items()})
+            found = kept(
+                folder,
+                f"{code}/{name}-{tolerance:g}",
+                lambda case=case, to=tolerance: both_answers(case, {"tolerance": to}),
+            )
+            if found is not None:
+                every[tolerance].append((number, judged(found[0], truth, found[1])))
     for tolerance, cases in every.items():
-        print(f"-- {kind}, seed {seed}, tolerance {tolerance:g}")
+        print(f"-- {kind}, seed {seed}, tolerance {tolerance:g}, {len(cases)} cases")
         by = {}
         for number, several in cases:
             for one in several:
                 by.setdefault(one.what, []).append((number, one))
-        heads = ("worst", "case", "beyond", "median", "rms", "most", "lacking")
-        print(f"{'quantity':36}" + "".join(f"{head:>8}" for head in heads))
+        heads = ("worst", "case", "bare", "beyond", "median", "rms", "most", "above 20", "lacking")
+        print(f"{'quantity':36}" + "".join(f"{head:>9}" for head in heads))
         for what, several in sorted(by.items()):
-            worst = max(several, key=lambda one: one[1].worst)
-            beyond = np.mean([one.beyond for _, one in several])
-            generous = np.array([one.generous for _, one in several])
-            rms = np.array([one.generous_rms for _, one in several])
-            lacking = sum(not np.isfinite(one.stated).any() for _, one in several)
-            ratios = [np.nan] * 3
-            if np.isfinite(rms).any():
-                ratios = [np.nanmedian(generous), np.nanmedian(rms), np.nanmax(rms)]
-            numbers = (worst[1].worst, worst[0], beyond, *ratios, lacking)
-            print(f"{what:36}" + "".join(f"{number:8.3g}" for number in numbers))
+            print(f"{what:36}" + "".join(f"{number:9.3g}" for number in row_of(several)))
+
+
+def row_of(several):
+    """Numbers of the table for one quantity of several cases."""
+    worst = max(several, key=lambda one: one[1].worst)
+    beyond = np.mean([one.beyond for _, one in several])
+    generous = np.array([one.generous for _, one in several])
+    rms = np.array([one.generous_rms for _, one in several])
+    lacking = sum(not np.isfinite(one.stated).any() for _, one in several)
+    above, places = np.sum([one.far_above for _, one in several], axis=0)
+    ratios = [np.nan] * 3
+    if np.isfinite(rms).any():
+        ratios = [np.nanmedian(generous), np.nanmedian(rms), np.nanmax(rms)]
+    bare = max(one.worst_of_elements for _, one in several)
+    return worst[1].worst, worst[0], bare, beyond, *ratios, above / max(places, 1), lacking
 
 
 def fine_solid(_accuracy):
@@ -310,5 +385,6 @@ if __name__ == "__main__":
     options.add_argument("seed", type=int)
     options.add_argument("count", type=int)
     options.add_argument("tolerances", type=float, nargs="*", default=TOLERANCES)
+    options.add_argument("--keep", type=Path)
     given = options.parse_args()
-    table(given.kind, given.seed, given.count, tuple(given.tolerances))
+    table(given.kind, given.seed, given.count, tuple(given.tolerances), given.keep)

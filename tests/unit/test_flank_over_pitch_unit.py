@@ -3,6 +3,7 @@
 import functools
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.over_pitch import likely_peaks, over_pitch
 from fegear.contact.wide.spots import missed_of_spots
 from fegear.contact.wide.tip_edges import usual_gap
@@ -72,6 +74,22 @@ def stated(flanks, bodies, beta, gaps, loads=(LOAD,)):
     found = flanks.solve(loads, gaps, flanks.compliance(LOAD))
     over = over_pitch(flanks, found, gaps, LOAD)
     return over.stated, flank_error(flanks, found, bodies(beta, "coarse"), gaps, over, LOAD), over
+
+
+def test_the_largest_share_is_that_of_the_whole_base_pitch_and_its_error_what_half_of_the_positions_miss():
+    """It was that of the positions of a table, which may be four, and its error that of each of them."""
+    x = np.arange(8.0)
+    share = np.stack([0.9 - 0.01 * (x - 5.0) ** 2, 0.1 + 0.01 * (x - 5.0) ** 2])[:, :, None]
+    lines = SimpleNamespace(x=np.zeros((8, 1)), z=np.zeros((8, 1)))
+    over = SimpleNamespace(
+        found=SimpleNamespace(share=share, smooth_pressure=np.ones((8, 1, 1)), lines=lines),
+        points=SimpleNamespace(x=x, breaks=np.array([8.0])),
+    )
+    error = SimpleNamespace(share=np.full((2, 4, 1), 0.003), largest_pressure=np.zeros(1))
+    pair = SimpleNamespace(at=0, over=over, found=SimpleNamespace(share=share[:, ::2]), error=error)
+    found = LoadedWidePair.largest.func(pair)
+    assert found.share == pytest.approx(0.9)
+    assert found.share_error == pytest.approx(0.003 + 0.01)
 
 
 @pytest.mark.dear

@@ -24,6 +24,7 @@ from fegear.contact.plane.base_pitch import mean_secant_stiffness, roll_position
 from fegear.contact.plane.compliance import RootStressInfluence
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
+from fegear.contact.plane.largest_on_pair import largest_on_pair
 from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
 from fegear.contact.plane.shifted_loads import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
@@ -100,7 +101,8 @@ class LoadedPair:
         shifts = [load_shift(found, pair_history(other, self.loads, POSITIONS)) for other in self.shifted]
         error = np.maximum(np.sum(shifts, axis=0), apart) if shifts else None
         where = ", corner contact outside it" if e.corner_contact else ""
-        return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS)
+        largest = largest_on_pair(e, self.shifted, self.nominal, found, self._at)
+        return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS, largest)
 
     def _off_path(self, found: PairHistory) -> Array:
         return np.where((found.x < self.pair.x_start) | (found.x > self.pair.x_end), 1.0, 0.0)

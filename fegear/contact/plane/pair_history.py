@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,8 @@ from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.contact.plane.base_pitch import BESIDE
 from fegear.contact.plane.engagement import Engagement, Loaded
+
+_LOADS: Callable[[Loaded], Array] = attrgetter("loads")
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, 
     cycle : int
         Which pair, when there are spacing errors: the one that is pair 0 in that base pitch.
     """
-    return pair_history_with(engagement, load, positions, cycle, lambda state: state.loads)[0]
+    return pair_history_with(engagement, load, positions, cycle, _LOADS)[0]
 
 
 def pair_history_with(
@@ -79,6 +82,19 @@ def pair_history_with(
     more : callable
         ``more(loaded)`` -> that of all pairs at the roll positions of a state, shape (n, P, L).
     """
+    found, further = followed(engagement, load, path_positions(engagement, positions), cycle, more)
+    touched = np.flatnonzero((found.load > 0.0).any(axis=1))
+    keep = slice(max(touched[0] - 1, 0), touched[-1] + 2) if touched.size else slice(0, 0)
+    if not engagement.corner_contact:
+        keep = slice(0, found.x.size)
+    return PairHistory(*(getattr(found, one.name)[keep] for one in fields(found))), further[keep]
+
+
+def path_positions(engagement: Engagement, positions: int) -> Array:
+    """Positions of a pair on its path, spread evenly, and two more on either side of every jump, ascending [m].
+
+    Where tip corners may touch they begin before the path and end after it.
+    """
     pair, pitch = engagement.pair, engagement.pair.base_pitch
     before, after = 0.0, 0.0
     if engagement.corner_contact:
@@ -87,9 +103,32 @@ def pair_history_with(
     places = [b + k * pitch for b in engagement.breaks for k in range(-2, 6)]
     near = BESIDE * pitch
     beside = [b + side for b in places if first + near < b < last - near for side in (-near, near)]
-    x = np.unique(np.concatenate([np.linspace(first, last, positions), beside]))
+    return np.unique(np.concatenate([np.linspace(first, last, positions), beside]))
+
+
+def followed(
+    engagement: Engagement,
+    load: ArrayLike,
+    x: Array,
+    cycle: int = 0,
+    more: Callable[[Loaded], Array] = _LOADS,
+    *,
+    again: bool = True,
+) -> tuple[PairHistory, Array]:
+    """One tooth pair at positions of its own, shape (P,) [m], and what else is known of its loads, shape (P, L).
+
+    Parameters
+    ----------
+    engagement, load, cycle, more
+        As for `pair_history_with`.
+    x : ndarray, shape (P,)
+        On the path or where a tip corner may touch [m].
+    again : bool
+        Whether the same positions may be asked for again.
+    """
+    pair, pitch = engagement.pair, engagement.pair.base_pitch
     number = np.floor((x - pair.x_start) / pitch).astype(int)
-    grid = engagement.grid(x - number * pitch)
+    grid = engagement.grid(x - number * pitch, again=again)
     index = np.clip(number - grid.contacts.number[0], 0, grid.contacts.number.size - 1)
     here = (index, np.arange(x.size))
     loads = np.atleast_1d(np.asarray(load, dtype=float))
@@ -99,7 +138,7 @@ def pair_history_with(
         # Pair j is on teeth cycle - j: this pair keeps its own teeth while the base pitches pass.
         rows = number == k if uneven else np.ones(x.size, dtype=bool)
         part = engagement.solve(
-            grid if rows.all() else engagement.grid((x - number * pitch)[rows]), loads, cycle + int(k)
+            grid if rows.all() else engagement.grid((x - number * pitch)[rows], again=again), loads, cycle + int(k)
         )
         picked.append((np.flatnonzero(rows), part, index[rows]))
     shape = (x.size, loads.size)
@@ -110,10 +149,4 @@ def pair_history_with(
         te[rows] = part.transmission_error
         further[rows] = more(part)[which, at]
     pressure = engagement.compliance.pressure(w, grid.contacts.relative_radius[here][:, None])
-    touched = np.flatnonzero((w > 0.0).any(axis=1))
-    keep = slice(max(touched[0] - 1, 0), touched[-1] + 2) if touched.size else slice(0, 0)
-    if not engagement.corner_contact:
-        keep = slice(0, x.size)
-    roll = grid.contacts.roll_driver[here]
-    found = PairHistory(x[keep], roll[keep], w[keep], (w / loads)[keep], u[keep], pressure[keep], te[keep])
-    return found, further[keep]
+    return PairHistory(x, grid.contacts.roll_driver[here], w, w / loads, u, pressure, te), further

@@ -321,15 +321,11 @@ def _sizes(
 ) -> dict[int, tuple[Array, Array]]:
     """Stress per unit line load on a tooth at a few radii, and its error, by how far its tooth is from that one."""
     found: dict[int, tuple[Array, Array]] = {}
-    share: float | Array = 0.0
     for k in sorted(range(-reach, reach + 1), key=abs):
         kernel = stress.root_stress(loaded + k, loaded, few, side)
         if kernel is not None:
             curve = stress.fillet_curve(loaded + k, side)
             # a tooth's own below the contact: at it stress is what the contact itself leaves
             size = np.abs(largest_stress(curve, kernel, side, few)) if k == 0 else np.abs(kernel).max(axis=0)
-            error = stress.root_stress_error(loaded + k, loaded, few, side)
-            share = share if k else error.max() / size.max()
-            # nothing is more exact of a neighbour than of the tooth itself, should their differences vanish by chance
-            found[k] = size, np.maximum(error, share * size if k else 0.0)
+            found[k] = size, stress.root_stress_error(loaded + k, loaded, few, side)
     return found

@@ -27,7 +27,7 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.error import FlankError
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-from fegear.contact.wide.over_pitch import OverPitch, Stated
+from fegear.contact.wide.over_pitch import OverPitch, Stated, every_second
 from fegear.contact.wide.root_stress import RootedLines, StressOverFace
 from fegear.contact.wide.transmission_error import (
     FlankTransmissionError,
@@ -135,10 +135,12 @@ class LoadedWidePair:
     def largest(self) -> Largest:
         """Largest share and pressure at the nominal load, for every result that states them.
 
-        The share is that of the roll positions of `found`; pressures stand between these, and are looked for at those
-        of the whole base pitch.
+        Both stand between the roll positions of `found`, and are looked for at those of the whole base pitch; what half
+        of these miss of the share counts as an error of it.
         """
         i, lines = self.at, self.over.found.lines
+        share = self.over.found.share[:, :, i].max(axis=0)
+        missed = float(share.max() - share[every_second(self.over.points)].max())
         inner = self.over.found.smooth_pressure[:, :, i]
         p, s = np.unravel_index(int(first_of_largest(inner)), inner.shape)
         place = (
@@ -146,7 +148,7 @@ class LoadedWidePair:
             f"{lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
         )
         return Largest(
-            float(self.found.share[:, :, i].max()), float(self.error.share[:, :, i].max()), float(inner.max()),
+            float(share.max()), float(self.error.share[:, :, i].max()) + missed, float(inner.max()),
             float(self.error.largest_pressure[i]), place,
         )  # fmt: skip
 

@@ -31,9 +31,12 @@ _NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 2.5
 #: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
 #: other, for both orders have the edges' own curves. Elements of lower orders were not looked at, and count twice.
 _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.23, 2.0
-#: A neighbour's stress is smooth, and its error that of the edges' own curves, which both orders have: so many times
-#: the part of a tooth's own and no less than the other part; relatively no less than so many times a tooth's own error.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 4.0
+#: Compression, which is largest nearer to the root land where edges are graded, has so much more of the part.
+_COMPRESSED = 1.15
+#: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
+#: which both orders have: so many times the part of a tooth's own and no less than the other part. A neighbour's other
+#: fillets are smooth. Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs.
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 0.65
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
@@ -176,10 +179,14 @@ class Estimate:
             # Stress of a neighbour passes through zero along the flank and on one of its fillets nearly vanishes; its
             # error does neither.
             usual = {one: _root_mean_square(off[:_SAMPLES]) for one, (_, off) in self._stress_at_samples(k).items()}
-            beside = _USUAL * max(usual[side], _OTHER_FILLET * max(usual.values()))
-            error = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS) * np.maximum(difference, beside)
-            return np.asarray(np.maximum(error, _OF_OWN_STRESS * share * least * np.abs(value)))
+            beside = max(usual[side], _OTHER_FILLET * max(usual.values()))
+            if k > 0 and side == "compression":
+                share, beside = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS), _USUAL * beside
+            error = share * np.maximum(difference, beside)
+            return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
         size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
+        if side == "compression":
+            share *= _COMPRESSED
         return np.asarray(share * np.maximum(difference, least * size))
 
     @cached_property

@@ -22,7 +22,7 @@ from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.pair.loaded_teeth import OVER_LOADS, loaded_teeth, teeth_stage
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
-_HISTORY, _HISTORY_CORNERS, _WIDE = 0.006, 0.02, 0.05
+_HISTORY, _HISTORY_CORNERS, _WIDE = 0.035, 0.03, 0.05
 
 
 @dataclass(frozen=True)
