@@ -129,7 +129,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
     "step": Format(
         "flanks", "solid of the gear", "fegear.output.step:written_step", "*.step",
         "CAD, printing: the solid gear, spur or helical, with its bore and its relief, as a disc (a `body` is "
-        "neglected, which a remark says), mm; the axis is z, the middle of the face z = 0",
+        "neglected, with a note), mm; the axis is z, the middle of the face z = 0",
         seconds="fegear.output.step:seconds_of",
     ),
     "relief": Format(
