@@ -16,7 +16,7 @@ from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
 from fegear.engine.sheet.seen import Seen
-from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.engine.sheet.sheet import UNSHOWN, Remark, Sheet
 
 
 @dataclass(frozen=True)
@@ -284,6 +284,11 @@ def test_elements_are_repeated_together() -> None:
     assert list(Each("nothing", Remark("Never.")).sentences(SEEN)) == []
     outcome = Sheet(tables=(tables,), remarks=(Each("parts", Remark("{key}.")),)).present(DATA, SEEN)
     assert (len(outcome.tables), outcome.remarks) == (4, ("a.", "b."))
+
+
+def test_what_is_not_shown_hands_on_its_data() -> None:
+    outcome = UNSHOWN.present(DATA, None)
+    assert (outcome.data, outcome.tables, outcome.values, outcome.figures, outcome.remarks) == (DATA, (), (), (), ())
 
 
 def test_a_sheet_is_presented_in_its_order_and_lacks_what_is_not_there() -> None:

@@ -82,6 +82,10 @@ class Sheet:
         )
 
 
+#: Of a result for the stages after it: nothing of it is shown.
+UNSHOWN = Sheet(name=lambda _asked: "")
+
+
 def _values(one: Number | Each | str | Callable[[Seen], Iterable[Value]], seen: Seen) -> Iterable[Value]:
     if isinstance(one, str):
         one = Number(one)

@@ -14,7 +14,7 @@ from fegear.case.built.loaded_pair import check_relief
 from fegear.case.reading import Scene
 from fegear.contact.plane.moved_outlines import MovedOutline
 from fegear.engine.citation import citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.sheet import UNSHOWN
 from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.outline_motion import OutlineMotion
@@ -125,7 +125,7 @@ DEFORMED_IN_MESH = Stage(
     needs=_needs_motion,
     inputs=mesh_inputs,
     compute=_deformed,
-    present=lambda data, _inputs: Outcome(data),
+    present=UNSHOWN.present,
     check=_check_compliance,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.05),

@@ -16,7 +16,8 @@ from fegear.case.built.shafts import on_shafts
 from fegear.case.effects import GAPS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import Change, Neglected
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.plausible_flanks import heavy_load
@@ -25,7 +26,7 @@ from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution
 from fegear.results.pair.loaded_teeth import wide_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from fegear.base.solution_cache import SolutionCache
     from fegear.case.reading import Scene
@@ -206,23 +207,27 @@ def _with(
     )
 
 
-def _present(data: LoadedWidePair, asked: FlanksToLoad) -> Outcome:
-    found = data.found
-    settings = {
+def _remarks(seen: Seen) -> Iterator[str]:
+    """What was assumed, what is neglected, and where the model ends."""
+    name, data, asked = seen.name, seen.data, seen.asked
+    yield from table_notes(asked)
+    yield from _heavy(name, data)
+    yield from _sliced(name, data)
+    yield from neglected_remarks(name, data.neglected, asked.effects, asked.tolerance, asked.nominal)
+    yield from _beside(name, data)
+    yield from _short(name, data)
+
+
+def _settings(seen: Seen) -> dict[str, object]:
+    asked, found = seen.asked, seen.data.found
+    return {
         "width": asked.width, "positions": asked.positions, "panels": asked.panels,
         "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
         "hertz": asked.effects.hertz, "neighbour_coupling": asked.effects.neighbour_coupling,
         "base_pitch": asked.base_pitch, "nominal_load": asked.nominal, "loads": list(asked.loads),
-        "positions_of_stated": data.over.found.lines.roll.size,
+        "positions_of_stated": seen.data.over.found.lines.roll.size,
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
-    name = asked.name
-    said = (
-        *table_notes(asked), *_heavy(name, data), *_sliced(name, data),
-        *neglected_remarks(name, data.neglected, asked.effects, asked.tolerance, asked.nominal), *_beside(name, data),
-        *_short(name, data),
-    )  # fmt: skip
-    return Outcome(data, settings=settings, remarks=said)
 
 
 def _heavy(name: str, data: LoadedWidePair) -> tuple[str, ...]:
@@ -287,6 +292,9 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     return Forecast({"positions": asked.positions, "panels": asked.panels}, seconds)
 
 
+_SHEET = Sheet(remarks=(_remarks,), settings=_settings)
+
+
 class _Solves:
     """Progress over several solves, each of which reports from its own beginning to its end."""
 
@@ -304,7 +312,7 @@ LOADED_FLANKS = Stage(
     subjects=wide_pairs,
     inputs=flanks_to_load,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     needs=_needs,
     check=check_flanks_to_load,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),

@@ -16,7 +16,8 @@ from fegear.case.built.loaded_pair import (
 from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks, whole_ratio_remarks
 from fegear.case.built.pair_inputs import PairInputs, pair_inputs
 from fegear.case.effects import AT_REST, EffectsPart
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
 from fegear.results.gear.solved_gear import needs_solution, solution_of
@@ -106,18 +107,26 @@ def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> Loaded
     return replace(pair, neglected=neglected_effects(asked, pair, inputs.answers, inputs.loads))
 
 
-def _present(pair: LoadedPair, inputs: LoadedPairInputs) -> Outcome:
-    asked = inputs.asked
-    settings: dict[str, object] = {
+def _remarks(seen: Seen) -> Iterator[str]:
+    """What was assumed, and what is neglected."""
+    pair, inputs = seen.data, seen.asked
+    yield from inputs.asked.assumed
+    yield from whole_ratio_remarks(seen.name, pair.engagement, inputs.effects)
+    yield from neglected_remarks(seen.name, pair.neglected, inputs.effects, inputs.tolerance, pair.nominal)
+
+
+def _settings(seen: Seen) -> dict[str, object]:
+    pair, effects = seen.data, seen.asked.asked.effects
+    return {
         "compliance": "; ".join(pair.sources),
-        **{effect: getattr(asked.effects, effect) for effect in AT_REST},
+        **{effect: getattr(effects, effect) for effect in AT_REST},
         "face_width": pair.engagement.compliance.face_width,
         "nominal_load": pair.nominal,
         "loads": list(pair.loads),
     }
-    neglected = neglected_remarks(asked.name, pair.neglected, inputs.effects, inputs.tolerance, pair.nominal)
-    whole = whole_ratio_remarks(asked.name, pair.engagement, inputs.effects)
-    return Outcome(pair, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *whole, *neglected))))
+
+
+_SHEET = Sheet(name=lambda inputs: inputs.asked.name, remarks=(_remarks,), settings=_settings)
 
 
 #: Seconds of a loaded pair on finite elements, with the square of the pairs that share the load; by a formula.
@@ -147,7 +156,7 @@ LOADED_PAIR = Stage(
     inputs=_inputs,
     for_readers=_for_readers,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=check_pair,
     cites=_cites,
     forecast=_forecast,

@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
-
 from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.contact.error_over_pitch import ErrorOverPitch
-from fegear.engine.declared import column_of, stacked
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, few, ramp
 from fegear.engine.stage import Stage, Task, Upstream
@@ -32,7 +29,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.loaded_teeth import LoadedTeeth as LoadedTeeth  # noqa: PLC0414  (for the window)
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.engine.table import Column
 
 #: What declares the column of loads of a table for every load.
 OVER_LOADS = (ErrorOverPitch, "total_load")
@@ -149,20 +145,6 @@ def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -
     chosen = few(len(loads), (near,))
     labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
     return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
-
-
-def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tuple[Column, ...]:
-    """Columns of one load each, joined below each other behind a column of the load."""
-    rows = [len(part[0]) for part in parts]
-    return (
-        column_of(ErrorOverPitch, "total_load", np.repeat(loads, rows)),
-        *stacked(parts),
-    )
-
-
-def under_load(loads: Sequence[float]) -> str:
-    """The load that a figure holds for, where the pair has one only; else its legend names them."""
-    return f"{loads[0]:.5g} N" if len(loads) == 1 else ""
 
 
 def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:

@@ -18,7 +18,7 @@ from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, root_stress_source
 from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.sheet import UNSHOWN
 from fegear.engine.stage import Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results import forecasts
@@ -337,7 +337,7 @@ STRESS_IN_MESH = teeth_stage(
     needs=needs_gears,
     inputs=mesh_inputs,
     compute=_compute,
-    present=lambda data, _inputs: Outcome(data),
+    present=UNSHOWN.present,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.15),
 )
