@@ -582,9 +582,13 @@ def test_a_value_that_nobody_moves_any_more_stands_still_though_nobody_said_so(t
         bench._loop = asyncio.get_running_loop()
         for load in ("6 kN", "7 kN"):
             bench.move_load("I", "load", load, moving=True)
-        await asyncio.sleep(0.05)
+        for _ in range(1000):  # how soon depends on how busy the machine is
+            await asyncio.sleep(0.01)
+            if len(asked) == 3:
+                break
 
     monkeypatch.setattr("fegear.window.bench._HELD", 0.01)
+    monkeypatch.setattr("fegear.window.bench._PAUSE", 0.0)  # the second move is shown before the first is let go
     bench, asked = Bench(None), []
     bench.lay(Desk(TWO, "c", tmp_path))
     bench._computing = Quiet()
