@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import tomllib
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -607,3 +608,29 @@ def test_a_long_message_is_put_together_from_its_pieces(client, monkeypatch):
     piece(0, "x" * 11, name="m0")
     assert len(refused) == 6
     assert acted == [whole] * 2
+
+
+def test_files_of_the_page_are_asked_for_anew_and_served_once(monkeypatch):
+    """A browser that kept an old script would show a page that half works."""
+    from fegear.window import page as pages
+
+    served, ends = {}, []
+    app = SimpleNamespace(
+        routes=[], on_shutdown=ends.append,
+        add_static_file=lambda **how: served.update({how.pop("url_path"): how}),
+    )  # fmt: skip
+    messages = SimpleNamespace(install=lambda: ends.append("installed"), end="messages end")
+    monkeypatch.setattr(pages, "app", app)
+    monkeypatch.setattr(pages, "Messages", lambda: messages)
+    pages._serve_files(SimpleNamespace(end="bench end"))
+    assert ends == ["installed", "messages end", "bench end"]
+    own = {f"/fegear/{script}.js" for script in pages._SCRIPTS}
+    assert set(served) == own | {f"/fegear/{name}" for name in ("plotly.js", "figure.js", "page.css", "window.css")}
+    assert all(Path(how["local_file"]).is_file() for how in served.values())
+    assert {name: how.get("max_cache_age") for name, how in served.items() if how.get("max_cache_age") != 0} == {
+        "/fegear/plotly.js": None
+    }
+    app.routes = [SimpleNamespace(path=path) for path in ("/", *served)]
+    served.clear()
+    pages._serve_files(SimpleNamespace(end="bench end"))
+    assert (served, len(ends)) == ({}, 3)
