@@ -95,7 +95,7 @@ def test_series_converges_to_the_reciprocal_and_says_where_it_does_not():
     s = pair_stiffness(engagement(), LOAD)
     found = reciprocal_series(s.points, s.mesh, 64, [3, 10, 40, 200])
     assert found.converges
-    error, cut = found.error(found.pointwise), found.error(found.convolved)
+    error, cut = found.pointwise_error, found.convolved_error
     assert np.all(error <= 2.0 * found.bound + 1e-15)
     assert error[0] == pytest.approx(5.8e-3, rel=0.02)
     assert np.all(np.diff(error[:3]) < 0.0)
