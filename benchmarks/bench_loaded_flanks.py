@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from fegear.base.one_thread import one_thread
-from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import read_scene
 from fegear.contact.wide.error import flank_error
@@ -41,15 +41,15 @@ class Clock:
 def main() -> None:
     """Print seconds of every stretch, then a line for every body."""
     scene = read_scene(Path(sys.argv[1]) if len(sys.argv) > 1 else CASE)
-    asked = flanks_to_load(scene, next(iter(scene.pairs)))
-    gaps = asked.gaps(relief=asked.effects.relief, misalignment=asked.effects.misalignment)
+    asked = pair_spec(scene, next(iter(scene.pairs)))
+    gaps = asked.gaps(relief=asked.relief, misalignment=asked.misalignment)
     settings, rows = solid_settings_of(scene, asked.gears[0]), []
     for body, name in BODIES.items():
         clock = Clock()
         gears = solve_bodies(scene, asked.name, body, settings)
         gear_seconds = clock.lap()
         for coupling in (False, True):
-            flanks = FlankPair(asked.pair, gears, coupling, asked.effects.hertz, asked.panel, asked.positions)
+            flanks = FlankPair(asked.placed, gears, coupling, asked.hertz, asked.panel, asked.positions)
             clock.lap()
             known = flanks.compliance(asked.nominal)
             assembly = clock.lap()

@@ -16,9 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.fe_compliance import finite_element_compliance
-from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.pair_spec import PairSpec
+from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
@@ -164,8 +163,8 @@ def main(z1, z2, shift1, shift2, x_mm, corner=True):
         gears.append(Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE))
     pair = GearPair(*gears)
     x = np.array([x_mm * 1e-3])
-    sources = [finite_element_compliance(solve_gear(g, reach=2)) for g in gears]
-    engagement = Engagement(PairCompliance(pair, *sources), corner_contact=corner)
+    spec = PairSpec(pair, (LOAD,), corner_contact=corner)
+    engagement = load_plane(spec, [solve_gear(g, reach=2) for g in gears]).engagement
     loaded = engagement.solve(engagement.grid(x), np.array([LOAD]))
     delta = float(np.ravel(loaded.transmission_error)[0])
     print(f"x = {x_mm} mm in {pair.x_start * 1e3:.3f} .. {pair.x_end * 1e3:.3f} mm")

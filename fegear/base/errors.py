@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import errno
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 #: What the system says of a disk that takes no more: full, over a quota or a limit, failing, read-only.
 NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO})
@@ -63,6 +67,19 @@ class InputError(FegearError):
         # Names and values are the user's: whatever they are, the sentence stays one, on one line.
         said = f"{_one_line(key, PATH)} = {_one_line(str(value), _LONGEST)}: {_one_line(rule, _LONGEST)}"
         super().__init__(said + (f"; {remedy}" if remedy else "") + ".")
+
+    def under(self, prefix: str, names: Mapping[str, str] | None = None) -> InputError:
+        """The same error of a part, under the key of the whole that the part belongs to.
+
+        Parameters
+        ----------
+        prefix : str
+            Where the part stands (``gear.a``); without one nothing changes but names.
+        names : mapping of str to str, optional
+            Keys that have another name there.
+        """
+        key = (names or {}).get(self.key, self.key)
+        return type(self)(".".join(filter(None, (prefix, key))), self.value, self.rule, self.remedy)
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, str]]:
         """Rebuild from the four parts, so that the error crosses process boundaries."""

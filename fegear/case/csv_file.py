@@ -94,3 +94,21 @@ def _entry(text: str, path: Path, key: str, where: str) -> float:
     if not math.isfinite(value):
         raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
     return value
+
+
+def one_column(columns: Mapping[str, NDArray[np.float64]], names: tuple[str, ...], key: str, file: str | None) -> str:
+    """The one name of several of which a file has a column.
+
+    Raises
+    ------
+    InputError
+        If it has none of them, or two that may contradict each other.
+    """
+    found = [name for name in names if name in columns]
+    if not found:
+        raise InputError(key, f'"{file}"', f"requires a column {' or '.join(names)}")
+    if len(found) > 1:
+        raise InputError(
+            key, f'"{file}"', f"must have only one of the columns {' and '.join(found)}", f"remove column {found[1]}"
+        )
+    return found[0]

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import Field
 
 from fegear.case.part import Part
+from fegear.contact.effects import GAPS
 
 
 class Described(NamedTuple):
@@ -51,11 +52,6 @@ class Effect:
         Kernels of `fegear.base.tally.KERNELS` that run only with it, in scenes where nothing else calls for them.
     called : callable
         Whether a pair calls for it where effects start as described.
-    of : {"teeth", "flanks", "motion"}
-        Whether it is about how teeth give way and touch, about modifications and errors that their flanks have, or
-        about how a train moves.
-    plane : bool
-        Whether plane teeth know it, as those with a width do.
     on : bool or str
         Value that switches it on.
     words : str
@@ -65,8 +61,6 @@ class Effect:
     needs: str
     kernels: tuple[str, ...]
     called: Callable[[Described], bool]
-    of: Literal["teeth", "flanks", "motion"] = "teeth"
-    plane: bool = True
     on: bool | str = True
     words: str = ""
 
@@ -116,33 +110,32 @@ class EffectsPart(Part):
             "`relief` on a gear; for 3D pairs also `lead`, `bias`, `topography`, and `modification` of the pair",
             ("reliefs",),
             lambda pair: pair.has("relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())),
-            of="flanks",
         ),
     ] = Field(default=False, description="Include profile and flank line modifications.")
     spacing_errors: Annotated[
         bool,
-        Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors"), of="flanks"),
+        Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors")),
     ] = Field(default=False, description="Include pitch deviations (`spacing_errors`).")
-    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _moving, of="motion")] = Field(
+    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _moving)] = Field(
         default=False, description="Loss of contact, backlash and impacts in the time domain."
     )
     friction: Annotated[
         bool,
         Effect(
             "`parametric` where it moves, no `neighbour_coupling`, no `corner_contact`", ("friction fits",),
-            lambda _pair: False, of="motion",
+            lambda _pair: False,
         ),
     ] = Field(default=False, description="Sliding friction between the teeth.")  # fmt: skip
     parametric: Annotated[
         bool,
         Effect(
-            "results in time", ("springs in time",), _moving, of="motion", words="time-varying stiffness"
+            "results in time", ("springs in time",), _moving, words="time-varying stiffness"
         ),
     ] = Field(default=False, description="Include the time-varying mesh stiffness (parametric "
                                          "excitation).")  # fmt: skip
     torque_ripple: Annotated[
         bool,
-        Effect("`train.torque_ripple`", ("ripple lines",), lambda pair: pair.rippling, of="motion"),
+        Effect("`train.torque_ripple`", ("ripple lines",), lambda pair: pair.rippling),
     ] = Field(default=False, description="Torque ripple of the train, in addition to mesh excitation.")
     misalignment: Annotated[
         bool,
@@ -150,8 +143,6 @@ class EffectsPart(Part):
             "`misalignment` of a helical or 3D pair, `line_error` of a 3D pair, or shafts for both gears",
             ("misaligned flanks",),
             lambda pair: pair.wide and (pair.carried or pair.has("misalignment", "line_error")),
-            of="flanks",
-            plane=False,
         ),
     ] = Field(default=False, description="Include misalignment and line errors of pairs.")
 
@@ -185,15 +176,6 @@ EFFECTS: dict[str, Effect] = {
 }
 
 
-#: Effects that change loaded pairs: those with a width, and those of plane teeth.
-WIDE_EFFECTS = tuple(name for name, effect in EFFECTS.items() if effect.of != "motion")
-PLANE_EFFECTS = tuple(name for name in WIDE_EFFECTS if EFFECTS[name].plane)
-#: Those of plane teeth that a pair without modifications and errors has.
-AT_REST = tuple(name for name in PLANE_EFFECTS if EFFECTS[name].of == "teeth")
-#: Those of wide pairs by which their flanks leave gaps.
-GAPS = tuple(name for name in WIDE_EFFECTS if EFFECTS[name].of == "flanks")
-
-
 def started(effects: EffectsPart, pairs: Sequence[Described]) -> EffectsPart:
     """Effects of a case with those that its pairs call for, where they start as described; named ones stay as they are.
 
@@ -204,7 +186,7 @@ def started(effects: EffectsPart, pairs: Sequence[Described]) -> EffectsPart:
     on = {
         name: effect.on for name, effect in EFFECTS.items()
         if name not in effects.model_fields_set
-        and (any if effect.of == "flanks" else all)(effect.called(pair) for pair in pairs)
+        and (any if name in GAPS else all)(effect.called(pair) for pair in pairs)
     }  # fmt: skip
     # Not `model_copy`, which would take them for named ones.
     return EffectsPart.model_construct(effects.model_fields_set, **{**dict(effects), **on})

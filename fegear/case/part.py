@@ -251,5 +251,4 @@ def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> F
     names : dict, optional
         Keys of the lower layer that have another name in case files.
     """
-    key = (names or {}).get(error.key, error.key)
-    return type(error)(f"{prefix}.{key}" if key else prefix, error.value, error.rule, error.remedy)
+    return error.under(prefix, names)

@@ -15,7 +15,7 @@ import numpy as np
 from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -88,6 +88,10 @@ class Neglected:
     wrong: Mapping[str, InputError] = field(default_factory=dict)
 
 
+def silent(_fraction: float) -> None:
+    """Report no progress."""
+
+
 class LoadedTeeth(Protocol):
     """A pair of gears under every load of its case."""
 
@@ -109,12 +113,23 @@ class LoadedTeeth(Protocol):
 
     @property
     def neglected(self) -> Neglected:
-        """What the effects that are off would change."""
+        """What the effects that are off would change, as far as it has been asked for."""
+
+    def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:
+        """What each effect that is off would change.
+
+        Parameters
+        ----------
+        answers : sequence of str
+            What is looked at; teeth with a width look at mean transmission error and K_Hbeta whatever is asked.
+        loads : sequence of float
+            [N]; teeth with a width take the nominal one.
+        """
 
     def history(self) -> LoadHistory:
         """One tooth pair over the path of contact under every load."""
 
-    def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
+    def transmission_error(self, progress: Callable[[float], None] = silent) -> ErrorOverPitch:
         """Transmission error and mesh stiffness over one base pitch under every load.
 
         Parameters
@@ -146,7 +161,7 @@ class LoadedTeeth(Protocol):
     def root_stress(
         self,
         sources: Mapping[Member, Mapping[str, Any]],
-        progress: Callable[[float], None],
+        progress: Callable[[float], None] = silent,
         *,
         estimates: bool = True,
     ) -> RootStressInMesh:

@@ -12,6 +12,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.flanks import welbourn_amount
 from fegear.design.relief_bench import bench
 from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import Shape, roll_of_radius
@@ -136,30 +137,6 @@ def relief_chart(
     metrics = table.errors(flat, np.broadcast_to(w, (a.size, b.size, w.size)).ravel())
     shape3 = (a.size, b.size, w.size)
     return ReliefChart(a, b, w, unit, metrics.effective_error.reshape(shape3), metrics.peak_to_peak.reshape(shape3))
-
-
-def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: float = 0.0) -> float:
-    """Delta of TM-89901 after Welbourn [m]: combined tooth deflection at the HPSTC plus twice the spacing error.
-
-    The HPSTC is the driver's: where the gears differ, so does Delta when the other one drives.
-
-    Parameters
-    ----------
-    engagement : Engagement
-        Its reliefs and spacing errors do not count; its contact ratio lies between 1 and 2.
-    load : float
-        Design load [N].
-    largest_spacing_error : float
-        [m].
-    """
-    pair = engagement.pair
-    if not 1.0 <= pair.contact_ratio < 2.0:
-        raise InputError(
-            "relief.amount", f"contact ratio {pair.contact_ratio:.4f}", "has no highest point of single tooth contact"
-        )
-    perfect = Engagement(engagement.compliance)
-    at = pair.x_hpstc - 1e-9 * pair.base_pitch
-    return float(perfect.solve(perfect.grid([at]), [load]).transmission_error[0, 0]) + 2.0 * largest_spacing_error
 
 
 def meaning_of_unit(pair: GearPair) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.case.built.flank_modifications import described_relief
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.members import gear_name
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS, active_profile
 from fegear.geometry.relief import Relief, chart_points, roll_of_radius

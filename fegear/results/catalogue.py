@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
+from fegear.contact.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage
 

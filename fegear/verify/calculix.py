@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -30,9 +31,8 @@ _FLANKS = f"{_WHOLE}: 18/18 teeth, 12 deg of helix, 42,000 nodes and more"
 # ---- plane pairs ------------------------------------------------------------------------------------------------
 @cache
 def _plane_pair(corner: bool) -> Engagement:
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.fe_compliance import finite_element_compliance
-    from fegear.contact.plane.pair_compliance import PairCompliance
+    from fegear.contact.pair_spec import PairSpec
+    from fegear.contact.plane.maker import load_plane
     from fegear.fem.plane.solution import solve_gear
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
@@ -42,11 +42,10 @@ def _plane_pair(corner: bool) -> Engagement:
     tooth, module = Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3
     gear = Gear(tooth, module, tooth.root_radius * module / 2.0, 1e-3)
     if corner:
-        compliance = _plane_pair(False).compliance
-    else:
-        source = finite_element_compliance(solve_gear(gear, reach=3, estimate_error=False))
-        compliance = PairCompliance(GearPair(gear, gear), source, source)
-    return Engagement(compliance, corner_contact=corner)
+        return replace(_plane_pair(False), corner_contact=True)
+    solved = solve_gear(gear, reach=3, estimate_error=False)
+    spec = PairSpec(GearPair(gear, gear), (350.0,), corner_contact=False)
+    return load_plane(spec, (solved, solved)).engagement
 
 
 def _at(place: float, corner: bool = False) -> Loaded:
@@ -100,10 +99,9 @@ def calculix_root_tension() -> Iterator[Compared]:
 # ---- a planet in its ring ---------------------------------------------------------------------------------------
 @cache
 def _planet_and_ring() -> Engagement:
+    from fegear.case.built.pair_spec import pair_spec
     from fegear.case.reading import build_scene
-    from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.fe_compliance import finite_element_compliance
-    from fegear.contact.plane.pair_compliance import PairCompliance
+    from fegear.contact.plane.maker import load_plane
     from fegear.fem.plane.solution import solve_gear
 
     gears = {
@@ -119,13 +117,11 @@ def _planet_and_ring() -> Engagement:
         "results": ["load-sharing"],
         "gear": {name: gear | common for name, gear in gears.items()},
         "pair": {"I": {"driver": "planet", "driven": "ring", "torque": "500 N*m"}},
+        "effects": {"corner_contact": True, "neighbour_coupling": True, "hertz": "load-dependent"},
     }
-    pair = build_scene(case, "case", Path()).pairs["I"]
-    planet, ring = (
-        finite_element_compliance(solve_gear(gear, reach=3, estimate_error=False))
-        for gear in (pair.driver, pair.driven)
-    )
-    return Engagement(PairCompliance(pair, planet, ring), corner_contact=True)
+    spec = pair_spec(build_scene(case, "case", Path()), "I")
+    solved = [solve_gear(gear, reach=3, estimate_error=False) for gear in (spec.pair.driver, spec.pair.driven)]
+    return load_plane(spec, solved).engagement
 
 
 def _ring_state(position: str) -> tuple[dict[str, Any], Loaded]:

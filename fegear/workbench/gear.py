@@ -11,12 +11,14 @@ from typing import Any
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.gear import GearPart
 from fegear.case.reading import Scene, build_scene
 from fegear.geometry import gear as geometry
 from fegear.workbench.given import name_of, table, taken, working_folder
 from fegear.workbench.quantities import Length, brief
 from fegear.workbench.results import Results
 from fegear.workbench.run import run_scene
+from fegear.workbench.signature import takes_keys_of
 
 
 class Described:
@@ -54,6 +56,7 @@ class Described:
         return run_scene(self._scene, progress=False)
 
 
+@takes_keys_of(GearPart)
 class Gear(Described):
     """A gear by the keys of ``[gear.NAME]`` of a case file; it never changes.
 
@@ -67,8 +70,8 @@ class Gear(Described):
     name : str
         In names of results.
     **keys
-        ``pressure_angle``, ``profile_shift``, ``rack``, ``bore_radius``, ``face_width``, ``relief``, ... as in a case
-        file: see `fegear.case.gear.GearPart`.
+        All others of a case file, as there: ``pressure_angle``, ``profile_shift``, ``rack``, ``bore_radius``,
+        ``face_width``, ``relief``, ...; the signature of ``fegear.Gear`` has each, ``help(fegear.Gear)`` what it is.
 
     Attributes
     ----------

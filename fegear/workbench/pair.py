@@ -6,25 +6,30 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.pair import PairPart
+from fegear.case.reading import build_scene
 from fegear.results.pair.root_stress_history import table_names
 from fegear.workbench.gear import Described, Gear
-from fegear.workbench.given import name_of, table, taken
+from fegear.workbench.given import name_of, table, taken, working_folder
 from fegear.workbench.quantities import Length, brief
 from fegear.workbench.results import Results
+from fegear.workbench.signature import takes_keys_of
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
     from pathlib import Path
 
+    from fegear.contact.pair_spec import PairSpec
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.geometry.pair import GearPair, Member
 
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
 
 
+@takes_keys_of(PairPart)
 class Pair(Described):
-    """Two gears in mesh by the keys of ``[pair.NAME]`` of a case file, without their load; it never changes.
+    """Two gears in mesh by the keys of ``[pair.NAME]`` of a case file, every one of them; it never changes.
 
     Parameters
     ----------
@@ -41,8 +46,8 @@ class Pair(Described):
         How finely its flanks are divided where it is loaded with its width, as the table ``[load_distribution]`` of a
         case file: ``{"positions": 24, "panels": 16}``.
     **keys
-        ``iso_6336``, ``misalignment``, ``modification``, ``axial_offset``, ... as in a case file: see
-        `fegear.case.pair.PairPart`.
+        All others of a case file, as there: ``width``, ``root_stress``, ``misalignment``, ``axial_offset``,
+        ``iso_6336``, ``lubricant``, ...; the signature of ``fegear.Pair`` has each, ``help(fegear.Pair)`` what it is.
 
     Attributes
     ----------
@@ -95,6 +100,21 @@ class Pair(Described):
             del pair["compliance"]  # gears with a width are solved so, and know no other source
         divided = {"load_distribution": self._divided} if self._divided else {}
         return {"gear": gears, "pair": {self.name: pair}, **divided}
+
+    def spec(self, **keys: Any) -> PairSpec:
+        """What the mechanics takes of it, with the effects that its description calls for.
+
+        `fegear.contact.load.load` makes a loaded pair of it and of both gears solved.
+
+        Parameters
+        ----------
+        **keys
+            Its load, and whatever else of ``[pair.NAME]``: ``torque="90 N*m"``.
+        """
+        from fegear.case.built.pair_spec import pair_spec
+
+        document = {"results": ["geometry"], "effects": {"start": "described"}, **self.document(**keys)}
+        return pair_spec(build_scene(document, self.name, working_folder(), bare_si=True), self.name)
 
     @property
     def is_spur(self) -> bool:

@@ -11,12 +11,12 @@ import pytest
 
 from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import build_scene, read_scene
+from fegear.contact.wide.maker import load_flanks
 from fegear.fem.solid.slices import solve_slices
 from fegear.output.cost import write_cost
-from fegear.results.pair.loaded_flanks import load_flanks
 from fegear.studies.cost import knobs
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.ladder import ALONE, BODIES, FlankConfiguration, flank_ladder
@@ -83,7 +83,7 @@ def test_its_values_are_those_of_a_run(results):
     assert isinstance(one, FlankConfiguration)
     scene = read_scene(CASE, [*NARROW, f"load_distribution.panels={one.panels}"])
     bodies = solve_bodies(scene, "I", "coupled-slices", one.solid)
-    found = load_flanks(flanks_to_load(scene, "I"), bodies, SolutionCache())[2]
+    found = load_flanks(pair_spec(scene, "I"), bodies, SolutionCache())[2]
     assert rows["te-mean"].value == pytest.approx(found.mean_transmission_error[0], rel=1e-12)
     assert rows["te-peak-to-peak"].value == pytest.approx(np.ptp(found.transmission_error), rel=1e-12)
     assert rows["face-load-factor"].value == pytest.approx(found.face_load_factor[0], rel=1e-12)
@@ -115,10 +115,10 @@ def test_what_can_be_pasted_asks_a_case_for_it():
         if not lines:
             continue
         scene = build_scene(document, "pasted", CASE.parent)
-        settings, wanted = solid_settings_of(scene, "pinion"), flanks_to_load(scene, "I")
+        settings, wanted = solid_settings_of(scene, "pinion"), pair_spec(scene, "I")
         assert settings.source == ("slices" if one.body == "coupled-slices" else "solid")
         assert settings.section == one.solid.section
-        assert (wanted.panels, wanted.effects.neighbour_coupling) == (one.panels, one.neighbours)
+        assert (wanted.panels, wanted.neighbour_coupling) == (one.panels, one.neighbours)
         pasted += 1
     assert pasted == 8
 

@@ -9,7 +9,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.reading import read_scene
 from fegear.contact.wide.gaps import FlankGaps
@@ -109,12 +109,13 @@ def test_a_table_over_the_face_is_the_same_as_its_key(cache, outcome, tmp_path):
 
 def gaps(*overrides):
     """What the case says of the gaps on a few contact lines, without its profile relief; the pair; what it knows."""
-    asked = flanks_to_load(read_scene(CASE, [*COARSE, *overrides]), "I")
-    lines = contact_lines(asked.pair, asked.pair.x_start + asked.pair.base_pitch * np.array([0.2, 0.7]), 1e-3)
+    asked = pair_spec(read_scene(CASE, [*COARSE, *overrides]), "I")
+    pair = asked.placed
+    lines = contact_lines(pair, pair.x_start + pair.base_pitch * np.array([0.2, 0.7]), 1e-3)
     plain = asked.gaps(relief=True, misalignment=False)
-    found = asked.gaps(relief=True, misalignment=asked.effects.misalignment)
+    found = asked.gaps(relief=True, misalignment=asked.misalignment)
     bare = FlankGaps(plain.driver_relief, plain.driven_relief)
-    return (found.at(asked.pair, lines) - bare.at(asked.pair, lines))[lines.present], lines, asked
+    return (found.at(pair, lines) - bare.at(pair, lines))[lines.present], lines, asked
 
 
 def test_lead_modifications_of_either_gear_count_as_line_errors_do(tmp_path):
@@ -177,7 +178,7 @@ def test_the_pinion_s_cutting_counts_along_the_line_of_action():
     absorbed, _, _ = gaps(none, 'pair.I.modification={parabola="1 / m", absorb=true}',
                           'pair.I.misalignment={shaft_angle="1 arcmin"}', "effects.misalignment=true")  # fmt: skip
     assert np.isfinite(absorbed).all()
-    pair = gaps(none, 'pair.I.misalignment={centre_distance="0.1 mm"}')[2].pair
+    pair = gaps(none, 'pair.I.misalignment={centre_distance="0.1 mm"}')[2].misaligned
     assert pair.centre_distance - asked.pair.centre_distance == pytest.approx(1e-4)
     assert pair.contact_ratio < asked.pair.contact_ratio
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from solved_once import CACHE
 
-from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks
-from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.reading import build_scene, read_scene
 from fegear.contact.plane.pair_history import pair_history
 from fegear.contact.plane.root_stress_history import root_stress_history
@@ -133,7 +131,7 @@ def test_the_reported_size_is_that_of_the_run_with_the_effect_on(name, effect, a
     inputs = inputs_of(before)
     compared = 0
     for load in (pair.loads[0], pair.nominal, pair.loads[-1]):
-        found = neglected_effects(inputs.asked, pair, inputs.answers, [load])
+        found = pair.neglects(inputs.answers, [load])
         assert not found.wrong
         for change in found.changes[effect]:
             if change.answer == "root tension" and load != pair.nominal:
@@ -165,8 +163,7 @@ def test_it_is_reported_above_the_tolerance_and_not_below(effect):
 
     def remarks_at(tolerance: float) -> list[str]:
         scene = before.scene
-        one_load = replace(pair, loads=(load,), nominal=load)
-        found = neglected_effects(pair_inputs(scene, "I"), one_load, ("transmission error",), [load])
+        found = pair.neglects(("transmission error",), [load])
         return [r for r in neglected_remarks("I", found, scene.case.effects, tolerance, load) if effect in r]
 
     assert len(remarks_at(share / 2.2)) == 1
@@ -250,7 +247,7 @@ def test_sizes_of_root_tension_of_random_pairs(seed):
         before = made("root-stress-history", **{name: value for name, value in WHOLE.items() if name != effect})
         inputs = inputs_of(before)
         pair = before.outcomes[Task("loaded-pair", "I")].data
-        (change,) = neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]
+        (change,) = pair.neglects(inputs.answers, [load]).changes[effect]
         true = stress - largest_tension(before, load)
         if abs(true) < 3e-4 * change.scale:
             assert change.share < 6e-4
@@ -270,7 +267,7 @@ def test_sizes_of_random_pairs_and_loads(seed):
         before = made(*results, **{name: value for name, value in WHOLE.items() if name != effect})
         inputs = inputs_of(before)
         pair = before.outcomes[Task("loaded-pair", "I")].data
-        for change in neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]:
+        for change in pair.neglects(inputs.answers, [load]).changes[effect]:
             if change.answer == "load on a tooth pair":
                 true = true_load_change(before, after, load)
             else:

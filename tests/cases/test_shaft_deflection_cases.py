@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.case.built.loaded_flanks import check_flanks_to_load
+from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
@@ -168,9 +168,9 @@ def test_gears_that_stand_askew_on_their_shafts_are_refused_where_flanks_are_loa
     case["effects"] = {"misalignment": True}
     case["shaft"]["mid"]["gears"][0]["at"] = "43 mm"
     with pytest.raises(InputError, match=r"pair.I.axial_offset.*offset by 3 mm.*set axial_offset = \"3 mm\""):
-        check_flanks_to_load(build_scene(case, "box", Path()), "I")
+        check_wide_pair(build_scene(case, "box", Path()), "I")
     case["pair"]["I"]["axial_offset"] = "3 mm"
-    check_flanks_to_load(build_scene(case, "box", Path()), "I")
+    check_wide_pair(build_scene(case, "box", Path()), "I")
 
 
 def test_method_c_takes_the_misalignment_of_computed_shafts():

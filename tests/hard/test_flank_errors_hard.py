@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_gear_to_solve, solve_solid_influence
 from fegear.case.reading import read_scene
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.over_pitch import over_pitch
 from fegear.geometry.pair import MEMBERS
-from fegear.results.pair.loaded_flanks import load_flanks
 from tests.helpers.solved_once import CACHE
 
 pytestmark = pytest.mark.last_bit
@@ -39,7 +39,7 @@ def loaded(case, tolerance, scene, panels, positions):
         f"effects.corner_contact={str(edges).lower()}", f"effects.relief={str(relief).lower()}",
         f"pair.I.loads={[f'{load} N' for load in (*loads, 3600)]}",
     ])  # fmt: skip
-    asked = replace(flanks_to_load(part, "I"), panels=panels, positions=positions)
+    asked = replace(pair_spec(part, "I"), panels=panels, positions=positions)
     solved = [solve_solid_influence(solid_gear_to_solve(part, gear), CACHE) for gear in asked.gears]
     fine, coarse = (
         {m: getattr(one, key) for m, one in zip(MEMBERS, solved, strict=True)} for key in ("fine", "coarse")

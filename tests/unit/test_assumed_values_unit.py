@@ -6,7 +6,7 @@ import copy
 
 import pytest
 
-from fegear.case.built.pair_inputs import effect_remarks
+from fegear.case.built.pair_notes import effect_notes
 from fegear.case.reading import build_scene
 
 CASE = {
@@ -17,7 +17,7 @@ CASE = {
 
 
 def said(case: dict, tmp_path) -> tuple[str, ...]:
-    return effect_remarks(build_scene(case, "case", tmp_path), "I")
+    return effect_notes(build_scene(case, "case", tmp_path), "I")
 
 
 @pytest.mark.parametrize(

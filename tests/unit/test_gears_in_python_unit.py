@@ -10,6 +10,9 @@ import pytest
 
 import fegear
 from fegear.base.errors import FegearError, InputError
+from fegear.case.gear import GearPart
+from fegear.case.pair import PairPart
+from fegear.contact.load import load
 
 PINION = {"teeth": 23, "module": "3 mm", "profile_shift": 0.3, "bore_radius": "15 mm", "face_width": "10 mm"}
 WHEEL = {"teeth": 57, "module": "3 mm", "profile_shift": -0.1, "bore_radius": "40 mm", "face_width": "10 mm"}
@@ -338,3 +341,39 @@ def test_a_rating_is_the_case_s():
         fegear.rating(pair, speed="1480 rpm")
     with pytest.raises(fegear.InputError, match=r"must be a fegear\.Pair"):
         fegear.rating(one, torque="1 N*m")
+
+
+@pytest.mark.parametrize(("kind", "part"), [(fegear.Gear, GearPart), (fegear.Pair, PairPart)])
+def test_signature_and_help_have_every_key_of_a_case(kind, part):
+    parameters = inspect.signature(kind).parameters
+    assert set(part.model_fields) <= set(parameters) - {"keys"}
+    assert list(parameters)[:2] in (["teeth", "module"], ["driver", "driven"])
+    for key in set(part.model_fields) - set(inspect.signature(kind.__init__).parameters):
+        assert f"\n{key}\n    {part.model_fields[key].description}" in kind.__doc__
+
+
+def test_every_key_of_a_pair_reaches_the_case():
+    gear = fegear.Gear(20, "2 mm", bore_radius="10 mm", face_width="10 mm")
+    for key in set(PairPart.model_fields) - {"driver", "driven", "centre_distance", "compliance"}:
+        with pytest.raises(fegear.InputError, match=rf"pair\.I\.{key}"):
+            fegear.Pair(gear, gear, **{key: "no such thing"})
+
+
+def test_a_pair_has_a_spec_that_the_mechanics_loads():
+    first, second = (
+        fegear.Gear(20, "2 mm", bore_radius="10 mm", face_width="10 mm"),
+        fegear.Gear(31, "2 mm", face_width="10 mm"),
+    )
+    pair = fegear.Pair(first, second, compliance="weber-banaschek")
+    spec = pair.spec(torque="20 N*m")
+    assert spec.pair == pair.geometry
+    assert spec.nominal == pytest.approx(20.0 / pair.geometry.driver.base_radius, rel=1e-14)
+    assert (spec.corner_contact, spec.hertz, spec.neighbour_coupling, spec.relief) == (
+        True,
+        "load-dependent",
+        False,
+        False,
+    )
+    found = load(spec).transmission_error()
+    asked = fegear.transmission_error(pair, torque="20 N*m")
+    assert found.te_peak_to_peak[0] == pytest.approx(asked.values["I.te_peak_to_peak"].si, rel=1e-12)

@@ -10,9 +10,8 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.built.flank_modifications import gear_face
-from fegear.case.built.loaded_pair import build_relief
+from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.built.measured_flanks import measured_gear
-from fegear.case.built.pair_inputs import gear_flanks
 from fegear.case.reading import build_scene, read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -110,15 +109,15 @@ def test_traces_of_a_drawn_relief_and_lead_load_the_pair_as_they_do(tmp_path):
     drawn = scene_of(tmp_path, None, relief=relief, lead={"crowning": "4 um", "slope": "6 um"})
     pair = drawn.pairs["I"]
     roll, *_ = flank(drawn)
-    want = build_relief(pair, "driver", gear_flanks(drawn, "a"), math.nan).removal(roll)
+    want = gear_flanks(drawn, "a").profile(pair, "driver").removal(roll)
     z = np.linspace(-6e-3, 6e-3, 97)
-    over = sum(part.removal(0.3, z) for part in gear_face(drawn, "a").parts)
+    over = sum(part.removal(0.3, z) for part in gear_face(drawn, "a"))
     write(tmp_path / "p.csv", ["roll_angle [deg]", "deviation [um]"], np.degrees(roll), -want * 1e6 + 3.0)
     write(tmp_path / "l.csv", ["z [mm]", "deviation [um]"], z * 1e3, -over * 1e6 - 7.0)
     scene = scene_of(tmp_path, {"profile": "p.csv", "lead": "l.csv", "filter": False})
-    found = build_relief(pair, "driver", gear_flanks(scene, "a"), math.nan).removal(roll)
+    found = gear_flanks(scene, "a").profile(pair, "driver").removal(roll)
     assert np.abs(found - want).max() < 0.2e-6  # its kink lies between places
-    (table,) = gear_face(scene, "a").parts
+    (table,) = gear_face(scene, "a")
     assert np.abs(table.removal(0.3, z) - (over - over.min())).max() < 0.05e-6
     # With the drawn flank as the design nothing deviates from it.
     both = scene_of(tmp_path, {"profile": "p.csv", "lead": "l.csv"}, relief=relief,
@@ -179,7 +178,7 @@ def test_a_topography_holds_its_own_traces(tmp_path):
           np.degrees(t).ravel(), h.ravel(), y.ravel())  # fmt: skip
     scene = scene_of(tmp_path, {"topography": "t.csv"}, lead={"crowning": "9 um"})
     found = measured_gear(scene, "a")
-    (part,) = gear_face(scene, "a").parts
+    (part,) = gear_face(scene, "a")
     assert part.removal(roll[5], 2e-3) == pytest.approx((y.max() - np.interp(2.0, z, y[5])) * 1e-6, rel=1e-9)
     share = (found.helix.ends[1] - found.helix.ends[0]) / 12e-3
     middle = 0.5 * sum(found.profile.ends) / scene.gears["a"].base_radius

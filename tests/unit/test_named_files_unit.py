@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.built.pair_notes import pair_notes
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.csv_file import read_columns
 from fegear.case.reading import read_scene
 from fegear.case.text_file import read_file, write_file
@@ -118,16 +119,21 @@ def test_tables_in_other_encodings_are_refused(folder, encoding):
         columns(folder, "radius [mm],relief [µm]\n31,1\n".encode(encoding))
 
 
+def notes_of(folder):
+    scene = read_scene(folder / "case.toml")
+    return pair_notes(scene, pair_spec(scene, "I"))
+
+
 def test_a_relief_table_that_ends_early_is_held_and_the_result_says_so(folder):
-    assert not any("used beyond it" in remark for remark in pair_inputs(read_scene(folder / "case.toml"), "I").assumed)
+    assert not any("used beyond it" in remark for remark in notes_of(folder))
     (folder / "relief.csv").write_text("radius [mm],relief [um]\n43,0\n44,5\n", encoding="utf-8")
-    asked = pair_inputs(read_scene(folder / "case.toml"), "I")
-    remarks = [remark for remark in asked.assumed if "used beyond it" in remark]
+    asked = pair_spec(read_scene(folder / "case.toml"), "I")
+    remarks = [remark for remark in notes_of(folder) if "used beyond it" in remark]
     # toward the root nothing is removed any more, which needs no words
     assert len(remarks) == 1
     assert "ends at radius 44 mm, before the tip end of the active profile at 45" in remarks[0]
     assert "last value 5 um used beyond it" in remarks[0]
-    table, tip = asked.flanks[0].tables[0], asked.pair.roll_angle(asked.pair.x_end, "driver")
+    table, tip = asked.driver.relief.tables[0], asked.pair.roll_angle(asked.pair.x_end, "driver")
     assert table.removal(float(tip)) == pytest.approx(5e-6, rel=1e-14)
 
 

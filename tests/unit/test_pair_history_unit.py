@@ -6,9 +6,9 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.flanks import welbourn_amount
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.pair_history import pair_history
-from fegear.design.charts import welbourn_amount
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack

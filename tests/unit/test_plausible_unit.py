@@ -13,7 +13,8 @@ from helical_gears import helical_gear
 from pydantic import ValidationError
 
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.built.pair_notes import pair_notes
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import mesh_places
 from fegear.case.reading import apply_override, build_scene
 from fegear.case.train import ShaftPart
@@ -55,7 +56,7 @@ def plan(*overrides: str):
 
 def test_the_case_itself_is_plausible():
     scene, _ = plan()
-    assert not any("metal" in remark for remark in pair_inputs(scene, "I").assumed)
+    assert not any("metal" in remark for remark in pair_notes(scene, pair_spec(scene, "I")))
 
 
 @pytest.mark.parametrize(
@@ -129,10 +130,10 @@ def test_absurd_sizes_are_refused_before_solving(override, words):
 
 def test_a_load_that_no_metal_carries_is_remarked_on():
     scene, _ = plan("pair.I.load=100 kN")
-    (remark,) = [remark for remark in pair_inputs(scene, "I").assumed if "metal" in remark]
+    (remark,) = [remark for remark in pair_notes(scene, pair_spec(scene, "I")) if "metal" in remark]
     assert remark.startswith("Pair I: line load 1e+04 N/mm: F/(b m) = 3333 MPa")
     soft, _ = plan("pair.I.load=1 kN", "gear.a.material.young_modulus=2.5 GPa")  # a plastic at .013 of its modulus
-    assert not any("metal" in remark for remark in pair_inputs(soft, "I").assumed)
+    assert not any("metal" in remark for remark in pair_notes(soft, pair_spec(soft, "I")))
 
 
 def test_a_geometry_run_remarks_on_a_contact_ratio_below_one():

@@ -127,7 +127,8 @@ def test_lead_tables_and_topographies_cover_the_face(tmp_path):
 
 def notes_of(tmp_path, text, **gear):
     """Notes on tables that end early, of a case whose flanks are loaded over the face."""
-    from fegear.case.built.loaded_flanks import flanks_to_load, table_notes
+    from fegear.case.built.pair_spec import pair_spec
+    from fegear.case.built.table_ends import table_end_notes
 
     (tmp_path / "t.csv").write_text(text)
     shared = {"teeth": 28, "module": "3 mm", "face_width": "20 mm"}
@@ -137,7 +138,7 @@ def notes_of(tmp_path, text, **gear):
         "pair": {"I": {"driver": "a", "driven": "b", "load": "5 kN", "width": "slices"}},
         "effects": {"relief": True},
     }
-    return [note for note in table_notes(flanks_to_load(build_scene(case, "case", tmp_path), "I")) if "ends at" in note]
+    return [note for note in table_end_notes(pair_spec(build_scene(case, "case", tmp_path), "I")) if "ends at" in note]
 
 
 def test_tables_that_end_before_the_flank_does_say_where_and_what_is_held(tmp_path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +11,9 @@ from fegear.base.errors import InputError
 from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.csv_file import read_columns
 from fegear.case.part import at
-from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
-from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
+from fegear.contact.pair_spec import Misalignment
+from fegear.contact.wide.shaft_gaps import RIGID
+from fegear.geometry.shaft_tilt import ShaftTilt
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -24,40 +24,7 @@ if TYPE_CHECKING:
 _POINTS = 1025
 
 
-@dataclass(frozen=True)
-class FlankErrors:
-    """Errors of a pair that the effect `misalignment` counts.
-
-    Parameters
-    ----------
-    face_position, line_gap : ndarray, shape (n,)
-        `line_error` [m]; empty for none.
-    tilt : ShaftTilt
-        Deviation of the axes.
-    cutting : tuple of FlankModification
-        Errors of the pinion's profile and lead angle.
-    apart : float
-        Error of the centre distance [m].
-    shafts : ShaftGaps
-        What the shafts of the case open under loads that are spread evenly over the faces, where the effect
-        `misalignment` is off.
-    """
-
-    face_position: Array = field(default_factory=lambda: np.empty(0))
-    line_gap: Array = field(default_factory=lambda: np.empty(0))
-    tilt: ShaftTilt = PARALLEL
-    cutting: tuple[FlankModification, ...] = ()
-    apart: float = 0.0
-    shafts: ShaftGaps = RIGID
-
-    @property
-    def given(self) -> bool:
-        """Whether there are any."""
-        own = bool(self.line_gap.size or self.cutting or self.apart or self.tilt != PARALLEL)
-        return own or self.shafts.given
-
-
-def flank_errors(scene: Scene, name: str) -> FlankErrors:
+def flank_errors(scene: Scene, name: str) -> Misalignment:
     """Collect the errors of a pair.
 
     Raises
@@ -75,7 +42,7 @@ def flank_errors(scene: Scene, name: str) -> FlankErrors:
 
         shafts = gaps_of_even_loads(gearbox_of(scene), name)
     if part is None:
-        return FlankErrors(z, gap, shafts=shafts)
+        return Misalignment(z, gap, shafts=shafts)
     prefix = f"pair.{name}.misalignment"
     try:
         tilt = ShaftTilt(*part.deviation(pair))
@@ -89,7 +56,7 @@ def flank_errors(scene: Scene, name: str) -> FlankErrors:
     except InputError as error:
         names = {"in_plane": "driven.in_plane", "out_of_plane": "driven.out_of_plane"}
         raise at(prefix, error, names if part.driver or part.driven else {"out_of_plane": "shaft_angle"}) from None
-    return FlankErrors(z, gap, tilt, cutting, part.centre_distance, shafts)
+    return Misalignment(z, gap, tilt, cutting, part.centre_distance, shafts)
 
 
 def cutter_modification(scene: Scene, name: str) -> tuple[FlankModification, ...]:

@@ -5,21 +5,19 @@ The relief that a case gives a gear, for drawings: whether or not the effect `re
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.case.built.loaded_pair import build_relief
-from fegear.case.built.pair_inputs import gear_flanks, gear_name, one_column
-from fegear.case.csv_file import read_columns
-from fegear.case.part import at
+from fegear.case.built.gear_flanks import gear_flanks
+from fegear.case.built.members import gear_name
+from fegear.case.csv_file import one_column, read_columns
 from fegear.case.reading import Scene
-from fegear.case.relief import BiasPart, LeadPart, TopographyPart
+from fegear.case.relief import LeadPart, TopographyPart
+from fegear.contact.pair_spec import FlankSpec
 from fegear.geometry.flank_modification import (
-    Bias,
     FlankModification,
     HelixSlope,
     LeadCrowning,
@@ -28,87 +26,21 @@ from fegear.geometry.flank_modification import (
     Topography,
 )
 from fegear.geometry.gear import Gear
-from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import Relief, roll_of_radius
+from fegear.geometry.relief_spec import BiasSpec
 
 #: Part of the face that a table over it may leave out at either end.
 _LEFT_OUT = 0.2
 
 
-@dataclass(frozen=True)
-class FaceModifications:
-    """What a case gives a gear over its face.
-
-    Parameters
-    ----------
-    parts : tuple of FlankModification
-        Lead modifications and topography.
-    bias : BiasPart or None
-        Its ends may be those of the active profile, which only the pair knows.
-    gear : str
-        Name of the gear, for messages.
-    """
-
-    parts: tuple[FlankModification, ...] = ()
-    bias: BiasPart | None = None
-    gear: str = field(default="", compare=False)
-
-    @property
-    def given(self) -> bool:
-        """Whether there are any."""
-        return bool(self.parts) or self.bias is not None
-
-    def built(self, pair: GearPair, member: Member) -> tuple[FlankModification, ...]:
-        """All of them for one gear of a pair.
-
-        Raises
-        ------
-        InputError
-            If they take more than the tooth has.
-        """
-        found, gear = self.parts, pair.gear(member)
-        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
-        if self.bias is not None:
-            radii = self.bias.start_radius, self.bias.end_radius
-            key = f"gear.{self.gear}.bias"
-            start, end = (
-                end if radius is None else float(_rolls(gear, np.array(radius), key))
-                for radius, end in zip(radii, (low, high), strict=True)
-            )
-            if not end > start:
-                raise InputError(key, "start_radius and end_radius", "must ascend")
-            found = (*found, Bias(self.bias.amount, start, end, gear.face_width))
-        for part in found:
-            if isinstance(part, Topography) and (part.roll[0] >= high or part.roll[-1] <= low):
-                raise InputError(
-                    f"gear.{self.gear}.topography",
-                    f"from roll angle {math.degrees(part.roll[0]):.5g} to {math.degrees(part.roll[-1]):.5g} deg",
-                    f"lies outside the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
-                    "check the units of its radii and angles",
-                )  # fmt: skip
-        half = 0.5 * gear.face_width
-        kinks = [k for part in found for k in part.face_kinks]
-        z = np.union1d(np.linspace(-half, half, 65), np.clip(kinks, -half, half))
-        roll = np.linspace(low, high, 33)[:, None]
-        total = np.abs(sum((part.removal(roll, z) for part in found), np.zeros((33, z.size))))
-        if total.max() > DEEPEST_RELIEF * gear.module:
-            raise InputError(
-                f"gear.{self.gear}", f"lead, bias and topography of {total.max() * 1e6:.4g} um",
-                f"equal {total.max() / gear.module:.3g} modules, more than the maximum of {DEEPEST_RELIEF:g} modules",
-                "check the unit: modifications are some tens of micrometres",
-            )  # fmt: skip
-        return found
-
-
-def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> FaceModifications:
-    """Read what a case gives a gear over its face.
+def with_face(scene: Scene, flank: FlankSpec, *, drawn: bool = False) -> FlankSpec:
+    """The flanks of a gear with what a case gives them over its face.
 
     Parameters
     ----------
     scene : Scene
-    name : str
-        Of the gear.
+    flank : FlankSpec
     drawn : bool
         Whether that is wanted which is drawn, where another one is measured.
 
@@ -117,21 +49,39 @@ def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> FaceModificati
     InputError
         If a file is missing or has not what it is named for, or a part does not fit the face.
     """
+    part, whole = scene.case.gear[flank.gear], _whole_flank(scene, flank.gear, drawn=drawn)
+    if whole:
+        return replace(flank, face=whole)
+    bias = None if part.bias is None else BiasSpec(part.bias.amount, part.bias.start_radius, part.bias.end_radius)
+    return replace(flank, face=gear_face(scene, flank.gear, drawn=drawn), bias=bias)
+
+
+def _whole_flank(scene: Scene, name: str, *, drawn: bool) -> tuple[FlankModification, ...]:
+    """The measured topography of a gear, which stands for all that is drawn."""
+    if scene.case.gear[name].measured is None or drawn:
+        return ()
+    from fegear.case.built.measured_flanks import measured_gear
+
+    found = measured_gear(scene, name).topography
+    return () if found is None else (found,)
+
+
+def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> tuple[FlankModification, ...]:
+    """Lead modifications and topography of a gear; see `with_face`."""
     part, gear = scene.case.gear[name], scene.gears[name]
+    if whole := _whole_flank(scene, name, drawn=drawn):
+        return whole
     found: list[FlankModification] = []
     if part.measured is not None and not drawn:
         from fegear.case.built.measured_flanks import measured_gear
 
-        measured = measured_gear(scene, name)
-        if measured.topography is not None:
-            return FaceModifications((measured.topography,), None, name)
-        if measured.lead is not None:
-            found.append(measured.lead)
+        lead = measured_gear(scene, name).lead
+        found += [] if lead is None else [lead]
     if part.lead is not None and not found:
         found += _lead(scene, name, part.lead, gear.face_width)
     if part.topography is not None:
         found.append(_topography(scene, name, part.topography))
-    return FaceModifications(tuple(found), part.bias, name)
+    return tuple(found)
 
 
 def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankModification]:
@@ -238,10 +188,7 @@ def described_relief(scene: Scene, gear: str) -> DescribedRelief:
     for name, pair in scene.pairs.items():
         for member in MEMBERS:
             if gear_name(scene, name, member) == gear and name not in built:
-                try:
-                    built[name] = build_relief(pair, member, flanks, math.nan)
-                except InputError as error:
-                    raise at(f"gear.{gear}", error) from None
+                built[name] = flanks.profile(pair, member)
     if not built:
         return DescribedRelief(left_out="start and end depend on the path of contact, and the gear belongs to no pair")
     (first, relief), *others = built.items()

@@ -7,20 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.errors import InputError
 from fegear.base.printed import percent
 from fegear.base.tally import note
-from fegear.case.built.loaded_pair import relieved, spaced
-from fegear.case.effects import AT_REST, PLANE_EFFECTS, EffectsPart
+from fegear.case.effects import EffectsPart
+from fegear.contact.effects import AT_REST
 from fegear.contact.loaded_teeth import Answer, Change, Neglected
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
-    from fegear.case.built.pair_inputs import PairInputs
+    from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.engagement import Engagement
-    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.relief_design import DesignTask
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.geometry.relief import Shape
@@ -36,8 +34,6 @@ _SAID: dict[Answer, tuple[str, float, str]] = {
 }
 
 
-#: The kernel that counts effects whose size is estimated; what an estimate runs counts as what it is.
-_COUNTED = "neglected effects"
 #: Tip reliefs that leave so little more than the best are as good.
 _EQUALLY_GOOD = 0.01
 #: Contact ratios nearer to a whole number than this leave transmission error a spike of almost no width.
@@ -59,81 +55,6 @@ def remedy(effects: EffectsPart, effect: str) -> str:
     if effect in ("corner_contact", "neighbour_coupling") and effects.friction:
         return f"{line} and switch friction off: friction requires uncoupled tooth pairs."
     return f"{line}."
-
-
-def with_effect(asked: PairInputs, engagement: Engagement, effect: str) -> Engagement | None:
-    """The engagement with one effect more; None where there is nothing that it could change.
-
-    Raises
-    ------
-    InputError
-        If the data of the effect are wrong.
-    """
-    for flank in asked.flanks:
-        if effect in flank.wrong:
-            raise flank.wrong[effect]
-    compliance = engagement.compliance
-    sources = (compliance.driver, compliance.driven)
-    if effect == "relief":
-        return relieved(asked, engagement) if any(flank.relief for flank in asked.flanks) else None
-    if effect == "corner_contact":
-        other = replace(engagement, corner_contact=True)
-        changes_something = any(corner.exists for corner in other.meshing.corners)
-    elif effect == "neighbour_coupling":
-        other = replace(engagement, compliance=replace(compliance, coupling=True))
-        changes_something = any(source.reach > 0 for source in sources)
-    elif effect == "hertz":
-        other = replace(engagement, compliance=replace(compliance, hertz="load-dependent"))
-        changes_something = any(source.log_slope > 0.0 or source.power > 0.0 for source in sources)
-    else:
-        changes_something = any(flank.spacing.size for flank in asked.flanks)
-        other = spaced(asked, engagement) if changes_something else engagement
-    if not changes_something:
-        return None
-    # An amount of relief that counts in deflections changes with them.
-    again = asked.effects.relief and any(flank.wants_delta for flank in asked.flanks)
-    return relieved(asked, other) if again else other
-
-
-def _off(effects: EffectsPart, known: Sequence[str]) -> list[str]:
-    """Effects that are off, and contacts whose stiffness is assumed to be that under the nominal load."""
-    found = [effect for effect in known if not effects.is_on(effect)]
-    return [*found, "hertz"] if effects.hertz == "linear" else found
-
-
-def neglected_effects(
-    asked: PairInputs, pair: LoadedPair, answers: Sequence[Answer], loads: Sequence[float]
-) -> Neglected:
-    """What each effect of load sharing that the case neglects would change.
-
-    Parameters
-    ----------
-    asked : PairInputs
-    pair : LoadedPair
-    answers : sequence of str
-        What is looked at.
-    loads : sequence of float
-        [N].
-    """
-    from fegear.contact.plane.neglected_effects import changes
-
-    if not answers:
-        return Neglected()
-    others: dict[str, Engagement] = {}
-    wrong: dict[str, InputError] = {}
-    for effect in _off(asked.effects, PLANE_EFFECTS):
-        try:
-            other = with_effect(asked, pair.engagement, effect)
-        except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
-            wrong[effect] = error
-            continue
-        if other is not None:
-            others[effect] = other
-    if not others:
-        return Neglected({}, wrong)
-    note(_COUNTED, len(others))
-    cycle = _uneven(others["spacing_errors"]) if "spacing_errors" in others else 0
-    return Neglected(changes(pair.engagement, others, loads, answers, cycle), wrong)
 
 
 def neglected_remarks(
@@ -168,7 +89,7 @@ def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart)
 
 
 def neglected_in_design(
-    asked: PairInputs,
+    spec: PairSpec,
     designed: Engagement,
     ground: tuple[Shape, TipReliefPair] | None,
     task: DesignTask,
@@ -184,17 +105,17 @@ def neglected_in_design(
     dict of str to tuple of str
         By the effect, its sizes in words.
     """
-    from fegear.contact.plane.neglected_effects import changes
+    from fegear.contact.plane.neglected_effects import COUNTED, changes, effects_off, with_effect
     from fegear.design.excitation_relief import MinimumExcitationRelief
     from fegear.design.tip_relief.grindable import grindable
 
     load = task.load
     found: dict[str, tuple[str, ...]] = {}
-    for effect in _off(asked.effects, AT_REST):
-        other = with_effect(asked, designed, effect)
+    for effect in effects_off(spec, AT_REST):
+        other = with_effect(spec, designed, effect)
         if other is None:
             continue
-        note(_COUNTED)
+        note(COUNTED)
         sizes = []
         if effect == "corner_contact":
             change = changes(designed, {effect: other}, [load], ("transmission error",))[effect][0]
@@ -247,14 +168,3 @@ def _size(change: Change, nominal: float) -> str:
     where = "" if np.isnan(change.x) else f", at x = {change.x * 1e3:.4g} mm"
     load = "" if change.load == nominal else f" under {change.load:.5g} N"
     return f"{what} by {change.size * factor:+.3g}{unit} ({percent(change.share)} of {scale}{where}{load})"
-
-
-def _uneven(engagement: Engagement) -> int:
-    """The base pitch in which the pair that comes into contact has the largest spacing error."""
-    sizes = [errors.size for errors in (engagement.driver_spacing, engagement.driven_spacing) if errors.size]
-    cycles = np.arange(max(sizes))
-    total = np.zeros(cycles.size)
-    for errors in (engagement.driver_spacing, engagement.driven_spacing):
-        if errors.size:
-            total += errors[cycles % errors.size]
-    return int(np.argmax(np.abs(total - np.median(total))))

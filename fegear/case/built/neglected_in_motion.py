@@ -10,8 +10,9 @@ import numpy as np
 
 from fegear.base.errors import FegearError
 from fegear.base.tally import note
-from fegear.case.built.neglected_effects import _COUNTED, percent, remark
+from fegear.case.built.neglected_effects import percent, remark
 from fegear.case.effects import EffectsPart
+from fegear.contact.plane.neglected_effects import COUNTED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -139,7 +140,7 @@ def neglected_in_motion(asked: MotionInputs, data: GearTrain, states: Sequence[S
         if not off[effect] or not states:
             continue
         try:
-            note(_COUNTED)
+            note(COUNTED)
             changes[effect] = tuple(estimate(asked, data, states))
         except FegearError as error:
             failed[effect] = str(error)

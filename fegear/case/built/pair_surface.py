@@ -397,8 +397,8 @@ def _flank_steel(scene: Scene, gear: str) -> str:
 
 def tip_reliefs(scene: Scene, name: str) -> tuple[float, float]:
     """C_a, removal at the end of the involute of driver and driven gear [m]; 0 where relief is off or in Delta."""
-    from fegear.case.built.loaded_pair import build_relief
-    from fegear.case.built.pair_inputs import gear_flanks, gear_name
+    from fegear.case.built.gear_flanks import gear_flanks
+    from fegear.case.built.members import gear_name
 
     if not scene.case.effects.relief:
         return (0.0, 0.0)
@@ -410,6 +410,6 @@ def tip_reliefs(scene: Scene, name: str) -> tuple[float, float]:
             found.append(0.0)
             continue
         end = pair.x_end if member == "driver" else pair.x_start
-        relief = build_relief(pair, member, flank, 0.0)
+        relief = flank.profile(pair, member, 0.0)
         found.append(max(0.0, float(relief.removal(pair.roll_angle(end, member)))))
     return found[0], found[1]

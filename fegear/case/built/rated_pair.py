@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from fegear.base.errors import InputError
 from fegear.case.built.gear_quality import gear_quality
 from fegear.case.built.gear_strength import gear_strength
+from fegear.case.built.members import gear_name
 from fegear.case.built.pair_alignment import pair_alignment
-from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.rated_body import gear_body
 from fegear.case.built.rated_duty import (
     Level,

@@ -7,55 +7,48 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.geometry.flank_modification import LeadTable, Topography
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from fegear.base.arrays import Array
-    from fegear.geometry.flank_modification import FlankModification
+    from fegear.contact.pair_spec import FlankSpec, PairSpec
     from fegear.geometry.pair import GearPair, Member
-    from fegear.geometry.relief import TabulatedRelief
 
 #: Share of the active profile or face that a table may leave out without a note: what rounding its places takes.
 _UNCOVERED = 1e-3
 
 
-def relief_table_notes(
-    pair: GearPair, member: Member, name: str, tables: tuple[TabulatedRelief, ...], *, measured: bool = False
-) -> tuple[str, ...]:
-    """Name each end of a gear's relief tables that lies before that of its active profile, and what is held beyond.
+def table_end_notes(spec: PairSpec) -> tuple[str, ...]:
+    """Name each end of a table that lies before the end of the active flank, and what is held beyond.
 
-    Parameters
-    ----------
-    pair : GearPair
-    member : {"driver", "driven"}
-    name : str
-        Of the gear.
-    tables : tuple of TabulatedRelief
-    measured : bool
-        Whether they are traces of a measured flank.
+    Of profiles, and for teeth with a width of topographies and leads too, if the effect `relief` counts them.
     """
-    what = "measured profile" if measured else "relief table"
-    return tuple(
-        said
-        for table in tables
-        for said in _ends_of_profile(pair, member, name, what, table.roll, (table.values[0], table.values[-1]))
+    if not spec.relief:
+        return ()
+    found = (
+        note
+        for member, flank in zip(MEMBERS, spec.both, strict=True)
+        for note in (*_profile_notes(spec.placed, member, flank), *_face_notes(spec.placed, member, flank))
     )
+    return tuple(dict.fromkeys(found))
 
 
-def face_table_notes(
-    pair: GearPair, member: Member, name: str, parts: tuple[FlankModification, ...]
-) -> tuple[str, ...]:
-    """Do the same for a gear's topographies, over profile and face, and for its lead tables."""
-    notes: list[str] = []
-    for part in parts:
+def _profile_notes(pair: GearPair, member: Member, flank: FlankSpec) -> Iterator[str]:
+    what = "measured profile" if flank.measured else "relief table"
+    for table in flank.relief.tables if flank.relief else ():
+        yield from _ends_of_profile(pair, member, flank.gear, what, table.roll, (table.values[0], table.values[-1]))
+
+
+def _face_notes(pair: GearPair, member: Member, flank: FlankSpec) -> Iterator[str]:
+    for part in flank.face:
         if isinstance(part, Topography):
             ends = part.values.mean(axis=1)
-            notes += _ends_of_profile(pair, member, name, "topography", part.roll, (ends[0], ends[-1]))
-            notes += _ends_of_face(pair, member, name, "topography", part.z)
+            yield from _ends_of_profile(pair, member, flank.gear, "topography", part.roll, (ends[0], ends[-1]))
+            yield from _ends_of_face(pair, member, flank.gear, "topography", part.z)
         elif isinstance(part, LeadTable):
-            notes += _ends_of_face(pair, member, name, "lead table", part.z)
-    return tuple(notes)
+            yield from _ends_of_face(pair, member, flank.gear, "lead table", part.z)
 
 
 def _ends_of_profile(

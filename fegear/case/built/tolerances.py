@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.built.gear_deviations import Deviation, gear_deviations, own_deviation
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.members import gear_name
 from fegear.case.part import at
 from fegear.geometry.pair import MEMBERS, GearPair
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,16 +15,20 @@ from fegear.contact.loaded_teeth import (
     HARMONICS,
     MOST_CYCLES,
     POSITIONS,
+    Answer,
     FlankLoad,
     LoadHistory,
     Neglected,
     RootStressInMesh,
+    silent,
 )
+from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.base_pitch import mean_secant_stiffness, roll_positions, secant_stiffness
 from fegear.contact.plane.compliance import RootStressInfluence
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.largest_on_pair import largest_on_pair
+from fegear.contact.plane.neglected_effects import neglected_effects
 from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
 from fegear.contact.plane.shifted_loads import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
@@ -53,10 +57,8 @@ class LoadedPair:
         With the effects of its case.
     shifted : tuple of Engagement
         The same with one compliance each off by its estimated error; empty where the source states none.
-    loads : tuple of float
-        Every load of the case [N], ascending.
-    nominal : float
-        The load that the contract's tables are for [N].
+    spec : PairSpec
+        What it was made of: loads, effects, flanks.
     sources : tuple of str
         How the compliance sources describe themselves.
     neglected : Neglected
@@ -67,8 +69,7 @@ class LoadedPair:
 
     engagement: Engagement
     shifted: tuple[Engagement, ...]
-    loads: tuple[float, ...]
-    nominal: float
+    spec: PairSpec
     sources: tuple[str, ...]
     neglected: Neglected = field(default_factory=Neglected, compare=False)
     exact: bool = True
@@ -77,6 +78,20 @@ class LoadedPair:
     def pair(self) -> GearPair:
         """Both gears in mesh."""
         return self.engagement.pair
+
+    @property
+    def loads(self) -> tuple[float, ...]:
+        """All of them, ascending [N]."""
+        return self.spec.loads
+
+    @property
+    def nominal(self) -> float:
+        """The one that single numbers are for [N]."""
+        return self.spec.nominal
+
+    def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:
+        """See `LoadedTeeth`."""
+        return neglected_effects(self.spec, self.engagement, answers, loads)
 
     @property
     def about(self) -> str:
@@ -107,7 +122,7 @@ class LoadedPair:
     def _off_path(self, found: PairHistory) -> Array:
         return np.where((found.x < self.pair.x_start) | (found.x > self.pair.x_end), 1.0, 0.0)
 
-    def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
+    def transmission_error(self, progress: Callable[[float], None] = silent) -> ErrorOverPitch:
         """See `LoadedTeeth`; integrated exactly between its jumps."""
         e, i = self.engagement, self._at
         exact = [] if self.exact else quick_transmission_errors(e, self.loads, HARMONICS)
@@ -160,7 +175,7 @@ class LoadedPair:
     def root_stress(
         self,
         sources: Mapping[Member, Mapping[str, RootStressInfluence]],
-        progress: Callable[[float], None],
+        progress: Callable[[float], None] = silent,
         *,
         estimates: bool = True,
     ) -> RootStressInMesh:

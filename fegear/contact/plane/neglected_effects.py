@@ -10,14 +10,20 @@ positions would differ by what both miss.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.contact.loaded_teeth import Answer, Change
+from fegear.base.errors import InputError
+from fegear.base.tally import note
+from fegear.contact.effects import PLANE_EFFECTS
+from fegear.contact.loaded_teeth import Answer, Change, Neglected
+from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.flanks import relieved, spaced
 from fegear.contact.plane.peaks import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
@@ -29,6 +35,94 @@ _SPREAD = 32
 _NARROW = (1.0, 6, 2)
 #: Distances from a jump at which both sides of it are looked at [base pitches]: corners take over within hundredths.
 _BESIDE = (1e-7, *(float(d) for d in np.geomspace(1e-3, 6e-2, 13)))
+
+#: The kernel that counts effects whose size is estimated; what an estimate runs counts as what it is.
+COUNTED = "neglected effects"
+
+
+def effects_off(spec: PairSpec, known: Sequence[str]) -> list[str]:
+    """Effects that are off, and contacts whose stiffness is assumed to be that under the nominal load."""
+    found = [effect for effect in known if not spec.is_on(effect)]
+    return [*found, "hertz"] if spec.hertz == "linear" else found
+
+
+def with_effect(spec: PairSpec, engagement: Engagement, effect: str) -> Engagement | None:
+    """The engagement with one effect more; None where there is nothing that it could change.
+
+    Raises
+    ------
+    InputError
+        If the data of the effect are wrong.
+    """
+    for flank in spec.both:
+        if effect in flank.wrong:
+            raise flank.wrong[effect]
+    compliance = engagement.compliance
+    sources = (compliance.driver, compliance.driven)
+    if effect == "relief":
+        return relieved(spec, engagement) if any(flank.relief for flank in spec.both) else None
+    if effect == "corner_contact":
+        other = replace(engagement, corner_contact=True)
+        changes_something = any(corner.exists for corner in other.meshing.corners)
+    elif effect == "neighbour_coupling":
+        other = replace(engagement, compliance=replace(compliance, coupling=True))
+        changes_something = any(source.reach > 0 for source in sources)
+    elif effect == "hertz":
+        other = replace(engagement, compliance=replace(compliance, hertz="load-dependent"))
+        changes_something = any(source.log_slope > 0.0 or source.power > 0.0 for source in sources)
+    else:
+        changes_something = any(flank.spacing.size for flank in spec.both)
+        other = spaced(spec, engagement) if changes_something else engagement
+    if not changes_something:
+        return None
+    # An amount of relief that counts in deflections changes with them.
+    again = spec.relief and any(flank.wants_delta for flank in spec.both)
+    return relieved(spec, other) if again else other
+
+
+def neglected_effects(
+    spec: PairSpec, engagement: Engagement, answers: Sequence[Answer], loads: Sequence[float]
+) -> Neglected:
+    """What each effect of load sharing that is off would change.
+
+    Parameters
+    ----------
+    spec : PairSpec
+    engagement : Engagement
+        Made of it.
+    answers : sequence of str
+        What is looked at.
+    loads : sequence of float
+        [N].
+    """
+    if not answers:
+        return Neglected()
+    others: dict[str, Engagement] = {}
+    wrong: dict[str, InputError] = {}
+    for effect in effects_off(spec, PLANE_EFFECTS):
+        try:
+            other = with_effect(spec, engagement, effect)
+        except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
+            wrong[effect] = error
+            continue
+        if other is not None:
+            others[effect] = other
+    if not others:
+        return Neglected({}, wrong)
+    note(COUNTED, len(others))
+    cycle = _uneven(others["spacing_errors"]) if "spacing_errors" in others else 0
+    return Neglected(changes(engagement, others, loads, answers, cycle), wrong)
+
+
+def _uneven(engagement: Engagement) -> int:
+    """The base pitch in which the pair that comes into contact has the largest spacing error."""
+    sizes = [errors.size for errors in (engagement.driver_spacing, engagement.driven_spacing) if errors.size]
+    cycles = np.arange(max(sizes))
+    total = np.zeros(cycles.size)
+    for errors in (engagement.driver_spacing, engagement.driven_spacing):
+        if errors.size:
+            total += errors[cycles % errors.size]
+    return int(np.argmax(np.abs(total - np.median(total))))
 
 
 def few_positions(engagements: Sequence[Engagement]) -> Array:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -14,12 +14,15 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, first_of_largest
 from fegear.contact.error_over_pitch import ErrorOverPitch, TransmissionErrorShift
 from fegear.contact.loaded_teeth import (
+    Answer,
     FlankLoad,
     Largest,
     LoadHistory,
     Neglected,
     RootStressInMesh,
+    silent,
 )
+from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.tooth_stress import ToothStress
 from fegear.contact.surface import FrictionLaw
 from fegear.contact.tooth_loss import ToothLoss
@@ -27,6 +30,7 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.error import FlankError
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.neglected_effects import neglected_effects
 from fegear.contact.wide.over_pitch import OverPitch, Stated, every_second
 from fegear.contact.wide.root_stress import RootedLines, StressOverFace
 from fegear.contact.wide.transmission_error import (
@@ -57,22 +61,18 @@ class LoadedWidePair:
     ----------
     flanks : FlankPair
         The pair, ready to be loaded again under other gaps and loads.
-    loads : tuple of float
-        Every load of the case [N], ascending.
-    nominal : float
-        [N].
+    spec : PairSpec
+        What it was made of: loads, effects, flanks.
     known : FlankCompliance
         Its compliances at all roll positions, made for the nominal load.
-    gaps, unrelieved : FlankGaps
-        What keeps the flanks apart, of the effects that are on; and of these what is no relief and no spacing error.
+    gaps : FlankGaps
+        What keeps the flanks apart, of the effects that are on.
     found : LoadedFlanks
         Under every load.
     over : OverPitch
         What is stated of the whole base pitch under every load, at as many roll positions as that needs.
     error : FlankError
         Estimated errors of `found`, and of what is stated.
-    neglected : Neglected
-        What the effects that are off would change of mean transmission error and K_Hbeta at the nominal load.
     unloaded : ndarray, shape (P,)
         Transmission error of the rigid flanks at the roll positions of `found` [m]; NaN where no error is estimated.
     beside : float
@@ -80,26 +80,45 @@ class LoadedWidePair:
         no error is estimated.
     missed : float
         Share by which compliances of slices are known to be off; 0 for solids.
+    neglected : Neglected
+        What the effects that are off would change, where it was asked for; see `neglects`.
     """
 
     flanks: FlankPair
-    loads: tuple[float, ...]
-    nominal: float
+    spec: PairSpec
     known: FlankCompliance
     gaps: FlankGaps
-    unrelieved: FlankGaps
     found: LoadedFlanks
     over: OverPitch
     error: FlankError
-    neglected: Neglected
     unloaded: Array
     beside: float
     missed: float
+    neglected: Neglected = field(default_factory=Neglected)
 
     @property
     def pair(self) -> GearPair:
         """Both gears in mesh."""
         return self.found.pair
+
+    @property
+    def loads(self) -> tuple[float, ...]:
+        """All of them, ascending [N]."""
+        return self.spec.loads
+
+    @property
+    def nominal(self) -> float:
+        """The one that single numbers are for [N]."""
+        return self.spec.nominal
+
+    @property
+    def unrelieved(self) -> FlankGaps:
+        """What keeps the flanks apart of the effects that are on, without reliefs and spacing errors."""
+        return self.spec.gaps(relief=False, misalignment=self.spec.misalignment)
+
+    def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:  # noqa: ARG002
+        """See `LoadedTeeth`: of mean transmission error and K_Hbeta, at the nominal load."""
+        return neglected_effects(self.spec, self.flanks, self.gaps, self.over)
 
     @property
     def at(self) -> int:
@@ -174,7 +193,7 @@ class LoadedWidePair:
         )
         return LoadHistory(found, self.at, error, None, where, found.x.size, self.largest)
 
-    def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
+    def transmission_error(self, progress: Callable[[float], None] = silent) -> ErrorOverPitch:
         """See `LoadedTeeth`; numbers of the base pitch are of more roll positions than the curves, where these need."""
         over, i, found = self.over, self.at, self.found
         each = [
@@ -234,7 +253,7 @@ class LoadedWidePair:
     def root_stress(
         self,
         sources: Mapping[Member, Mapping[str, SolidInfluence]],
-        progress: Callable[[float], None],
+        progress: Callable[[float], None] = silent,
         *,
         estimates: bool = True,  # noqa: ARG002  (as in the plane; here errors cost next to nothing)
     ) -> RootStressInMesh:

@@ -76,7 +76,7 @@ def _inputs(scene: Scene, name: str) -> FlanksToEvaluate:
         roll = measured.profile.x / gear.base_radius
         design["profile"] = np.zeros(roll.size) if drawn.relief is None else -drawn.relief.removal(roll)
     if measured.helix is not None:
-        over = gear_face(scene, name, drawn=True).parts
+        over = gear_face(scene, name, drawn=True)
         middle = 0.5 * (gear.tooth.involute.start + gear.tooth.involute.end)
         z = measured.helix.x
         design["helix"] = -sum((part.removal(middle, z) for part in over), np.zeros(z.size))

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_checks import check_relief
 from fegear.case.reading import Scene
 from fegear.contact.plane.moved_outlines import MovedOutline
 from fegear.engine.citation import citing

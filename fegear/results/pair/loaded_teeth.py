@@ -6,14 +6,15 @@ and effects from here and knows no kind.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
-from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.members import gear_name
+from fegear.case.built.neglected_effects import neglected_remarks
+from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
-from fegear.case.effects import PLANE_EFFECTS, WIDE_EFFECTS
+from fegear.contact.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, few, ramp
@@ -26,14 +27,63 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from fegear.base.arrays import Array
+    from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
+    from fegear.contact.loaded_teeth import Answer
     from fegear.contact.loaded_teeth import LoadedTeeth as LoadedTeeth  # noqa: PLC0414  (for the window)
+    from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.loaded_pair import LoadedPair
 
 #: What declares the column of loads of a table for every load.
 OVER_LOADS = (ErrorOverPitch, "total_load")
 #: Abscissa of figures over one base pitch.
 BASE_PITCH = Axis("roll position over one base pitch", "mm")
+
+
+@dataclass(frozen=True)
+class AskedOfTeeth:
+    """A pair that is to be loaded, and what is asked about it besides.
+
+    Parameters
+    ----------
+    spec : PairSpec
+    estimates, neglected : bool
+        Whether errors and neglected effects are estimated.
+    effects : EffectsPart
+        All of the case, for remedies.
+    tolerance : float
+        That the sizes of neglected effects are compared with.
+    notes : tuple of str
+        What is assumed of it.
+    answers : tuple of str
+        What the results stand on that read the pair: these sizes are of it.
+    loads : tuple of float
+        For which they are estimated [N].
+    """
+
+    spec: PairSpec
+    estimates: bool
+    neglected: bool
+    effects: EffectsPart = field(compare=False)
+    tolerance: float = field(compare=False)
+    notes: tuple[str, ...] = field(compare=False)
+    answers: tuple[Answer, ...] = ()
+    loads: tuple[float, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Of the pair."""
+        return self.spec.name
+
+    @classmethod
+    def of(cls, scene: Scene, spec: PairSpec, notes: tuple[str, ...]) -> AskedOfTeeth:
+        """What a scene asks."""
+        case = scene.case
+        return cls(spec, scene.estimates, scene.sizes_neglected, case.effects, case.accuracy.tolerance, notes)
+
+    def neglected_notes(self, teeth: LoadedTeeth) -> tuple[str, ...]:
+        """Effects that are off and change the answers by more than the tolerance."""
+        return neglected_remarks(self.spec.name, teeth.neglected, self.effects, self.tolerance, teeth.nominal)
 
 
 def plane_pairs(scene: Scene) -> tuple[str, ...]:

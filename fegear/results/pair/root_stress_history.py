@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
+from fegear.case.built.members import gear_name
+from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Map, Over

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS, root_stress_source
+from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, root_stress_source
 from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import citing
 from fegear.engine.sheet.sheet import UNSHOWN

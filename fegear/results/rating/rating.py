@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.built.loaded_flanks import check_flanks_to_load
+from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
@@ -81,7 +81,7 @@ def _check(scene: Scene, name: str) -> None:
 
     check_pair_to_rate(scene, name)
     if "computed" in scene.case.rating.beside and _wide(scene, name):
-        check_flanks_to_load(scene, name)
+        check_wide_pair(scene, name)
     if len(rated_pairs(scene)) == 1:
         check_formulas(scene, name)
 

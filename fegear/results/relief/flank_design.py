@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.loaded_flanks import flanks_to_load
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.members import gear_name
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.flank_design import FlankDesignPart
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
@@ -209,13 +209,13 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 def _forecast(scene: Scene, name: str) -> Forecast:
     from fegear.design.flanks.grid import usual_grid
 
-    part, asked = _part(scene), flanks_to_load(scene, name)
-    pair = asked.pair
+    part, asked = _part(scene), pair_spec(scene, name)
+    pair = asked.placed
     grid = _grid(part) or usual_grid(1.0, pair.path_length, pair.face_width, pair.base_pitch)
     counts = [len(grid.combinations(family)) for family in part.families]
     levels = part.scatter.levels if part.scatter else 0
     combinations = (sum(counts) + levels * max(counts)) * len(part.loads or (1.0,))
-    stations = asked.panels * (1.0 + pair.contact_ratio)
+    stations = asked.panel_count * (1.0 + pair.contact_ratio)
     lines = part.positions * (1.0 + pair.total_contact_ratio)
     exact = _FAMILY * (len(counts) + levels) * (stations / 34.0) ** 1.5 * len(part.loads or (1.0,))
     seconds = _LINE * lines + _COMBINATION * combinations * part.positions / 24.0 + exact

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
-from fegear.case.built.pair_inputs import gear_name, pair_inputs
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.design import DesignPart
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
@@ -134,7 +135,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     case = scene.case
     return ReliefInputs(
-        design_part(scene), pair_inputs(scene, name), case.accuracy.tolerance, case.effects,
+        design_part(scene), pair_spec(scene, name), case.accuracy.tolerance, case.effects,
         scene.sizes_neglected, table_names(scene, name), gears,
     )  # fmt: skip
 

@@ -85,7 +85,7 @@ def _check(scene: Scene, name: str) -> None:
 
 
 def _compute(inputs: Reads[ChartPart], upstream: Upstream, work: Work) -> ReliefCurvesData:
-    from fegear.design.charts import welbourn_amount
+    from fegear.contact.plane.flanks import welbourn_amount
     from fegear.geometry.relief import normalised_tip_relief
 
     pair: LoadedPair

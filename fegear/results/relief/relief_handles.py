@@ -11,7 +11,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.flank_modifications import described_relief
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.members import gear_name
 from fegear.case.reading import Scene
 from fegear.case.relief import STARTS as STARTS  # noqa: PLC0414  (for the window)
 from fegear.engine.figure.axis import Axis
@@ -22,7 +22,7 @@ from fegear.geometry.pair import MEMBERS, Member, active_profile
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, Relief
 from fegear.results.gear.drawing import roll_marks
 
-#: Parts of a relief that can be moved, in the order in which `build_relief` takes them.
+#: Parts of a relief that can be moved, in the order in which `ReliefSpec.built` takes them.
 ENDS: tuple[Literal["tip"], Literal["root"], Literal["crowning"]] = ("tip", "root", "crowning")
 #: Places at which the curve is drawn, and the least height of its axis [um].
 _PLACES, _LEAST = 201, 20.0

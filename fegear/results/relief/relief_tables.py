@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.case.built.pair_inputs import PairInputs
 from fegear.case.design import DesignPart
 from fegear.case.effects import EffectsPart
 from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth
+from fegear.contact.pair_spec import PairSpec
 from fegear.engine.declared import column_of, column_over, columns_of, error_column, value_of
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
@@ -45,7 +45,7 @@ class ReliefInputs:
     Parameters
     ----------
     part : DesignPart
-    asked : PairInputs
+    asked : PairSpec
     tolerance : float
         That neglected effects are compared with.
     effects : EffectsPart
@@ -57,7 +57,7 @@ class ReliefInputs:
     """
 
     part: DesignPart
-    asked: PairInputs
+    asked: PairSpec
     tolerance: float
     effects: EffectsPart = field(compare=False)
     neglected: bool

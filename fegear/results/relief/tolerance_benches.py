@@ -9,15 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.loaded_flanks import FlanksToLoad, flanks_to_load
-from fegear.case.built.pair_inputs import (
-    FINITE_ELEMENTS,
-    PairInputs,
-    check_formulas,
-    gear_name,
-    pair_inputs,
-    root_stress_source,
-)
+from fegear.case.built.members import gear_name
+from fegear.case.built.pair_spec import pair_spec
+from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.built.tolerances import (
     chosen_pair,
@@ -38,6 +32,7 @@ from fegear.results.pair.root_stress_history import needs_sources, stress_source
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.studies import TolerancePart
+    from fegear.contact.pair_spec import PairSpec
     from fegear.design.robustness.deviated_flanks import FlankBench
     from fegear.design.robustness.deviated_pair import Bench, DrawBench
     from fegear.design.robustness.tolerance_draws import Kind, Limits
@@ -61,8 +56,8 @@ class DrawInputs:
     Parameters
     ----------
     part : TolerancePart
-    teeth : PairInputs or FlanksToLoad
-        The pair of plane teeth, or with its width.
+    teeth : PairSpec
+        The pair, plane or with its width.
     limits : Limits
     source : str
         Of root stress.
@@ -78,7 +73,7 @@ class DrawInputs:
     """
 
     part: TolerancePart
-    teeth: PairInputs | FlanksToLoad
+    teeth: PairSpec
     limits: Limits
     source: str
     solved: tuple[object, ...]
@@ -95,7 +90,7 @@ class DrawInputs:
     @property
     def own_spacing(self) -> bool:
         """Whether the case has spacing errors, which draws replace."""
-        return self.teeth.effects.spacing_errors
+        return self.teeth.spacing_errors
 
     @property
     def chunk(self) -> int:
@@ -131,7 +126,7 @@ def check_draws(scene: Scene, name: str) -> None:
             f'leave it out, or give pair.{name} width = "solid"',
         )  # fmt: skip
     refuse_no_tolerance(scene, name, limits)
-    refuse_jammed(flanks_to_load(scene, name).pair if wide else scene.pairs[name], name, limits)
+    refuse_jammed(pair_spec(scene, name).placed if wide else scene.pairs[name], name, limits)
     check_teeth(scene, name)
     if not wide:
         check_formulas(scene, name, tips=scene.case.effects.corner_contact)
@@ -148,13 +143,13 @@ def draw_inputs(scene: Scene, name: str) -> DrawInputs:
     """Collect what a case says of the draws of a pair."""
     wide, kinds = name in scene.wide_pairs, _kinds(scene, name)
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
-    teeth: PairInputs | FlanksToLoad
+    teeth = pair_spec(scene, name)
     if wide:
-        teeth, source = flanks_to_load(scene, name), FINITE_ELEMENTS
+        source = FINITE_ELEMENTS
         solved: tuple[object, ...] = tuple(solid_gear_to_solve(scene, gear) for gear in dict.fromkeys(gears))
     else:
-        teeth, source = pair_inputs(scene, name), stress_sources(scene, name)[0]
-        behind = teeth.gears if FINITE_ELEMENTS in (source, teeth.compliance.source) else ()
+        source = stress_sources(scene, name)[0]
+        behind = teeth.gears if FINITE_ELEMENTS in (source, teeth.compliance) else ()
         solved = tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(behind))
     return DrawInputs(
         tolerance_part(scene), teeth, limits_of(scene, name, kinds), source, solved, name, gears,
@@ -216,9 +211,9 @@ def forecast_draws(scene: Scene, name: str) -> Forecast:
     """Draws of every state of relief, and the search for the best; for teeth with a width their roots besides."""
     part = tolerance_part(scene)
     if name in scene.wide_pairs:
-        asked = flanks_to_load(scene, name)
+        asked = pair_spec(scene, name)
         chunks = math.ceil(part.draws / _WIDE_CHUNK)
-        roots, draws = asked.positions * asked.panels**2 * _ROOTS, part.draws * asked.positions * _AT_A_POSITION
+        roots, draws = asked.positions * asked.panel_count**2 * _ROOTS, part.draws * asked.positions * _AT_A_POSITION
         if limits_of(scene, name, _OVER_FACE).centre_distance:  # three centre distances, a draw stands between two
             roots, draws = 3.0 * roots, 2.0 * draws
         return Forecast({"draws": part.draws, "chunks": chunks}, roots + draws)

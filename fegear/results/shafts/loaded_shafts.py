@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.built.loaded_flanks import check_flanks_to_load, flanks_to_load
-from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.members import gear_name
+from fegear.case.built.pair_checks import check_wide_pair
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bodies
-from fegear.case.effects import WIDE_EFFECTS
+from fegear.contact.effects import WIDE_EFFECTS
+from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
 from fegear.engine.citation import Citation, citing
@@ -16,12 +18,11 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
-from fegear.results.pair.loaded_flanks import load_flanks
 from fegear.shafts.rolling_bearing import RollingBearing
 
 if TYPE_CHECKING:
-    from fegear.case.built.loaded_flanks import FlanksToLoad
     from fegear.case.reading import Scene
+    from fegear.contact.pair_spec import PairSpec
     from fegear.contact.wide.on_shafts import MeshForces
     from fegear.engine.stage import Upstream, Work
     from fegear.shafts.gearbox import Gearbox
@@ -37,7 +38,7 @@ class LoadedShaftsInputs:
     Parameters
     ----------
     gearbox : Gearbox
-    flanks : tuple of FlanksToLoad or None
+    flanks : tuple of PairSpec or None
         Of every mesh whose flanks are loaded with it; None where the load stays even over the face.
     scales : tuple of float
         Loads over the nominal ones, ascending.
@@ -46,7 +47,7 @@ class LoadedShaftsInputs:
     """
 
     gearbox: Gearbox
-    flanks: tuple[FlanksToLoad | None, ...]
+    flanks: tuple[PairSpec | None, ...]
     scales: tuple[float, ...]
     said: tuple[str, ...]
 
@@ -83,7 +84,7 @@ def _scales(scene: Scene, pair: str) -> set[float]:
 
 def _inputs(scene: Scene, _name: str) -> LoadedShaftsInputs:
     box = gearbox_of(scene)
-    flanks = tuple(flanks_to_load(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
+    flanks = tuple(pair_spec(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
     scales = {1.0}.union(*(_scales(scene, mesh.pair) for mesh in box.meshes))
     return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), said_of_bodies(scene))
 
@@ -152,7 +153,7 @@ def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
 def _check(scene: Scene, _name: str) -> None:
     gearbox_of(scene)
     for pair in _fed(scene):
-        check_flanks_to_load(scene, pair)
+        check_wide_pair(scene, pair)
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:

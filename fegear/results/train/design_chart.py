@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError, InputError
-from fegear.case.built.pair_inputs import PairInputs, pair_inputs
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.tooth_influence import GearToSolve, gear_to_solve
 from fegear.case.built.train import (
     MotionInputs,
@@ -23,6 +23,7 @@ from fegear.case.built.train import (
 )
 from fegear.case.dynamics import DesignChartPart
 from fegear.case.reading import Scene
+from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.engagement import Engagement
 from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 from fegear.dynamics.train.gear_train import GearTrain
@@ -65,7 +66,7 @@ class ChartInputs:
         That is relieved and looked at.
     train : TrainInputs
     motion : MotionInputs
-    teeth : PairInputs
+    teeth : PairSpec
         Of that mesh.
     gears : tuple of GearToSolve
         Whose influence functions its compliances come from; empty for closed forms and tables.
@@ -78,7 +79,7 @@ class ChartInputs:
     mesh: str
     train: TrainInputs
     motion: MotionInputs
-    teeth: PairInputs
+    teeth: PairSpec
     gears: tuple[GearToSolve, ...]
 
 
@@ -173,8 +174,8 @@ def _check(scene: Scene, subject: str) -> None:
 def _inputs(scene: Scene, _subject: str) -> ChartInputs:
     part, mesh = _chart(scene), _mesh(scene)
     pair = train_part(scene).loaded_pair_of(mesh)
-    teeth = pair_inputs(scene, pair)
-    solved = teeth.gears if teeth.compliance.source == "fe" else ()
+    teeth = pair_spec(scene, pair)
+    solved = teeth.gears if teeth.compliance == "fe" else ()
     return ChartInputs(
         np.unique(part.amounts), np.unique(part.lengths), tuple((u.driver, u.driven, u.length) for u in part.unequal),
         part.shape, mesh, train_inputs(scene), motion_inputs(scene),
@@ -183,7 +184,7 @@ def _inputs(scene: Scene, _subject: str) -> ChartInputs:
 
 
 def _compute(asked: ChartInputs, upstream: Upstream, work: Work) -> DesignChartData:
-    from fegear.design.charts import welbourn_amount
+    from fegear.contact.plane.flanks import welbourn_amount
     from fegear.engine.executor import map_points
     from fegear.engine.processes import Failure
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
+from fegear.case.built.members import gear_name
+from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.case.built.train import train_part
 from fegear.case.reading import Scene
 from fegear.dynamics.train.single_tooth import ToothRootStress

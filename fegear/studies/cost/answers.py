@@ -13,11 +13,12 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.loaded_pair import build_loaded_pair, engagement_at_rest
-from fegear.case.built.pair_inputs import gear_name, pair_compliance_table, pair_inputs
+from fegear.case.built.members import gear_name
+from fegear.case.built.pair_spec import pair_compliance_table, pair_spec
 from fegear.case.built.train import motion_inputs, motion_model, steady_motion, train_inputs
 from fegear.contact.plane.closed_form_compliance import ConstantCompliance, closed_form_compliance
 from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.table_compliance import table_sources
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.dynamics.train.single_tooth import force_history
@@ -53,9 +54,8 @@ HARMONICS, FORCE_HARMONICS = 64, 256
 
 def loaded(asked: Asked, source: Source, name: str) -> LoadedPair:
     """A pair with the compliances of a source."""
-    driver, driven = (source.compliance(name, member, asked) for member in MEMBERS)
-    inputs = pair_inputs(asked.scene, name)
-    return build_loaded_pair(inputs, engagement_at_rest(inputs, (driver, driven)))
+    gears = [source.compliance(name, member, asked) for member in MEMBERS]
+    return load_plane(pair_spec(asked.scene, name), gears, estimates=False)
 
 
 def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionError:
@@ -237,9 +237,7 @@ class CaseTable:
 
     def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:
         """Read and fitted."""
-        part = asked.scene.case.pair[pair].compliance
-        x, c = pair_compliance_table(asked.scene, pair)
-        driver, driven = table_sources(asked.scene.pairs[pair], x, c, part.of or "tooth", part.fit or "cubic")
+        driver, driven = table_sources(asked.scene.pairs[pair], *pair_compliance_table(asked.scene, pair))
         return driver if member == "driver" else driven
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.case.built.loaded_flanks import check_flanks_to_load
+from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.built.train import motion_inputs
 from fegear.case.reading import Scene
@@ -213,7 +213,7 @@ def _flank_pair(scene: Scene) -> str:
 
 def _asked_of_flanks(scene: Scene, pair: str) -> Asked:
     """What is to be studied of a pair that is loaded over its face."""
-    check_flanks_to_load(scene, pair)
+    check_wide_pair(scene, pair)
     if scene.case.effects.hertz == "none":
         raise InputError(
             "effects.hertz", '"none"', "leaves the contact width equal to the mesh resolution",

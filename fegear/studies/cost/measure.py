@@ -15,10 +15,11 @@ import numpy as np
 
 from fegear.base.errors import FegearError
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.built.tooth_influence import gear_to_solve, needed_reach, solve_influence_functions
+from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence, solve_influence
@@ -26,7 +27,6 @@ from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.pair import MEMBERS, Member
-from fegear.results.pair.loaded_flanks import load_flanks
 from fegear.studies.cost.answers import (
     CaseTable,
     ComplianceFormula,
@@ -321,11 +321,10 @@ def _solve_wide(asked: Asked, configuration: Configuration) -> dict[Member, Flan
 
 def _load(asked: Asked, configuration: Configuration, bodies: dict[Member, FlankBody]) -> LoadedFlanks:
     """The pair under its load as the case has it, but for panels, neighbours and shafts, whose loads stay even."""
-    one, case = _flank(configuration), flanks_to_load(asked.scene, asked.pair)
-    if case.effects.misalignment and on_shafts(asked.scene, asked.pair):
+    one, case = _flank(configuration), pair_spec(asked.scene, asked.pair)
+    if case.misalignment and on_shafts(asked.scene, asked.pair):
         case = case.on(gaps_of_even_loads(gearbox_of(asked.scene), asked.pair))
-    effects = case.effects.model_copy(update={"neighbour_coupling": one.neighbours})
-    wanted = replace(case, panels=one.panels, effects=effects, loads=(case.nominal,))
+    wanted = replace(case, panels=one.panels, neighbour_coupling=one.neighbours, loads=(case.nominal,))
     return load_flanks(wanted, bodies, SolutionCache())[2]
 
 

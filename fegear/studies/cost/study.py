@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from fegear.base.one_thread import one_thread
-from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import seconds_of_solid_gear
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.engine.run import Silence, Watcher
@@ -63,7 +63,7 @@ def internal_gears(asked: Asked) -> list[str]:
 def ladder_of(asked: Asked, *, quick: bool = False) -> Ladder:
     """The ladder for what is asked."""
     if asked.over_face:
-        panels = flanks_to_load(asked.scene, asked.pair).panels
+        panels = pair_spec(asked.scene, asked.pair).panel_count
         return flank_ladder(panels, quick=quick, internal=bool(internal_gears(asked)))
     teeth = min((asked.scene.gears[name].teeth for name in asked.gears), default=0)
     solved = [q.name for q in asked.quantities if asked.solves(q)]

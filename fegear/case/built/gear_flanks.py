@@ -1,0 +1,124 @@
+"""What a case says of the profiles of a gear and of how its teeth stand: reliefs, tables, spacing errors."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.csv_file import one_column, read_columns
+from fegear.case.part import Part, at
+from fegear.contact.pair_spec import FlankSpec
+from fegear.geometry.plausible_flanks import refuse_spacing_errors
+from fegear.geometry.relief import TabulatedRelief, roll_of_radius
+from fegear.geometry.relief_spec import CrowningSpec, ReliefSpec, RootReliefSpec, TipReliefSpec
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.case.relief import ReliefTablePart
+    from fegear.geometry.gear import Gear
+
+_S = TypeVar("_S")
+
+
+def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> FlankSpec:
+    """What a case says of the profiles and the spacing of a gear; data of effects that are off may be wrong.
+
+    Parameters
+    ----------
+    scene : Scene
+    gear : str
+    drawn : bool
+        Whether the relief is wanted that is drawn, where another one is measured.
+    """
+    part, effects = scene.case.gear[gear], scene.case.effects
+    relief: ReliefSpec | None = None
+    spacing, wrong, measured = np.empty(0), {}, False
+    if part.relief is not None:
+        relief = ReliefSpec(
+            tuple(_spec(TipReliefSpec, tip) for tip in part.relief.tip),
+            tuple(_spec(RootReliefSpec, root) for root in part.relief.root),
+            tuple(_spec(CrowningSpec, crown) for crown in part.relief.crowning),
+        )
+    try:
+        if part.measured is not None and not drawn:
+            from fegear.case.built.measured_flanks import measured_gear
+
+            found = measured_gear(scene, gear)
+            if found.topography is not None:
+                relief = None
+            elif found.relief is not None:
+                relief, measured = ReliefSpec(tables=(found.relief,)), True
+        if relief is not None and not measured:
+            tables = part.relief.table if part.relief is not None else ()
+            read = (
+                _table_relief(scene, scene.gears[gear], table, f"gear.{gear}.relief.table[{i}]")
+                for i, table in enumerate(tables)
+            )
+            relief = replace(relief, tables=tuple(read))
+    except InputError as error:
+        if effects.relief:
+            raise
+        wrong["relief"] = error
+    try:
+        spacing = _spacing_errors(scene, gear)
+    except InputError as error:
+        if effects.spacing_errors:
+            raise
+        wrong["spacing_errors"] = error
+    return FlankSpec(relief, spacing, gear=gear, measured=measured, wrong=wrong)
+
+
+def _spec(kind: type[_S], part: Part) -> _S:
+    """A spec of the keys of the same names."""
+    values: dict[str, Any] = {one.name: getattr(part, one.name) for one in fields(kind)}  # type: ignore[arg-type]
+    return kind(**values)
+
+
+def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> TabulatedRelief:
+    if part.file is not None:
+        columns = read_columns(
+            scene.file(part.file, f"{key}.file"), f"{key}.file",
+            {"roll_angle": "angle", "radius": "length", "relief": "length"},
+        )  # fmt: skip
+        if "relief" not in columns or not ("roll_angle" in columns or "radius" in columns):
+            raise InputError(f"{key}.file", f'"{part.file}"', "requires the columns relief and roll_angle or radius")
+        one_column(columns, ("roll_angle", "radius"), f"{key}.file", part.file)
+        values = columns["relief"]
+        roll = columns["roll_angle"] if "roll_angle" in columns else _rolls(gear, columns["radius"], key)
+    else:
+        values = np.array(part.removals)
+        roll = np.array(part.roll_angles) if part.roll_angles else _rolls(gear, np.array(part.radii), key)
+    order = np.argsort(roll)
+    return TabulatedRelief(roll[order], values[order], part.interpolation)
+
+
+def _rolls(gear: Gear, radii: Array, key: str) -> Array:
+    if (radii < gear.base_radius).any():
+        raise InputError(f"{key}.radii", f"{radii.min() * 1e3:.6g} mm", "lies inside the base circle")
+    return roll_of_radius(gear, radii)
+
+
+def _spacing_errors(scene: Scene, gear: str) -> Array:
+    """Spacing error of each tooth of a gear [m]; empty for none."""
+    part, key = scene.case.gear[gear].spacing_errors, f"gear.{gear}.spacing_errors"
+    if part is None:
+        return np.empty(0)
+    if part.values is not None:
+        errors = np.array(part.values)
+    else:
+        columns = read_columns(scene.file(part.file or "", f"{key}.file"), f"{key}.file", {"spacing_error": "length"})
+        if "spacing_error" not in columns:
+            raise InputError(f"{key}.file", f'"{part.file}"', "has no column spacing_error")
+        errors = columns["spacing_error"]
+    teeth, module = scene.gears[gear].teeth, scene.gears[gear].module
+    if errors.size != teeth:
+        raise InputError(key, f"{errors.size} errors", f"must be one for each of the {teeth} teeth")
+    try:
+        refuse_spacing_errors(errors, module)
+    except InputError as error:
+        raise at(f"gear.{gear}", error) from None
+    return errors

@@ -1,0 +1,64 @@
+"""What a run says of a loaded pair of plane teeth: data that its effects neglect, values that are assumed, tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.case.built.members import gear_name
+from fegear.case.built.table_ends import table_end_notes
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible_flanks import heavy_load
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.contact.pair_spec import PairSpec
+
+
+def pair_notes(scene: Scene, spec: PairSpec) -> tuple[str, ...]:
+    """All of them, of a pair of which a case made the spec."""
+    notes = tuple(dict.fromkeys((*effect_notes(scene, spec.name), *table_end_notes(spec))))
+    if spec.table is not None:
+        from fegear.contact.plane.table_compliance import table_note
+
+        if sentence := table_note(spec.pair, spec.table.x, spec.table.of):
+            notes += (f"Pair {spec.name}: {sentence}",)
+    return notes
+
+
+def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
+    """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
+    from fegear.case.built.rated_duty import bore_remarks, width_remarks
+    from fegear.geometry.tip_interference import interference
+
+    notes, effects = [], scene.case.effects
+    for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
+        part = scene.case.gear[gear]
+        if part.relieved and not effects.relief:
+            notes.append(f"Gear {gear}: relief ignored because effects.relief is off (unmodified involute flanks).")
+        if part.spacing_errors is not None and not effects.spacing_errors:
+            notes.append(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch).")
+        if part.over_face:
+            notes.append(
+                f"Gear {gear}: {' and '.join(part.over_face)} ignored in the plane (2D) model, which has no "
+                f'variation along the face; set width = "solid" for pair {name}.'
+            )
+        notes += width_remarks(scene, gear)
+        if scene.case.pair[name].compliance.source == "fe":
+            notes += bore_remarks(scene, gear)
+    given = [key for key in ("misalignment", "line_error", "modification") if getattr(scene.case.pair[name], key)]
+    if given:
+        notes.append(
+            f"Pair {name}: {' and '.join(given)} ignored in the plane (2D) model, which has no variation along the "
+            'face; set width = "solid".'
+        )
+    pair = scene.pairs[name]
+    if sentence := heavy_load(pair, max(scene.case.pair[name].all_loads(pair), default=0.0)):
+        notes.append(f"Pair {name}: {sentence}")
+    if effects.corner_contact:
+        notes += [
+            f"Pair {name}: tip of the {member} gear reaches below the root form circle of the mating gear "
+            "(interference); the path of contact ends there and no corner contact is computed at that end."
+            for member in MEMBERS
+            if interference(pair, member).below_form_circle
+        ]
+    return tuple(notes)

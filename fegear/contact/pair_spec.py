@@ -1,0 +1,337 @@
+"""What the mechanics needs of two gears in mesh, plane or with their width: the one form between a case and its answer.
+
+`fegear.contact.load.load` makes a loaded pair of it. All in SI, nothing of it about files or names of keys; what is
+given and has its effect off is neglected, and the answer says by how much.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.errors import InputError
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
+from fegear.geometry.flank_modification import FlankModification, Topography
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
+from fegear.geometry.relief import CombinedRelief, Relief
+from fegear.geometry.relief_spec import BiasSpec, ReliefSpec
+from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
+
+#: How wide the teeth of a loaded pair are: a section, coupled slices of it, or solid gears.
+Width = Literal["plane", "slices", "solid"]
+Hertz = Literal["load-dependent", "linear", "none"]
+#: Panels per module of face, where their number is not given.
+_PANELS_PER_MODULE = 4.0
+
+
+class ComplianceTable(NamedTuple):
+    """Compliances [m/N] at positions on the line of action [m], of one tooth or of a pair of teeth, and their fit."""
+
+    x: Array
+    compliance: Array
+    of: Literal["tooth", "pair"] = "tooth"
+    fit: Literal["linear", "cubic"] = "cubic"
+
+
+@dataclass(frozen=True)
+class FlankSpec:
+    """What the flanks of one gear have.
+
+    Parameters
+    ----------
+    relief : ReliefSpec or None
+        Profile modification.
+    spacing : ndarray, shape (teeth,)
+        Spacing error of each tooth in the order of meshing, removal positive [m]; empty for none.
+    face : tuple of FlankModification
+        Lead modifications and topography, for teeth with a width.
+    bias : BiasSpec or None
+        Twist, for teeth with a width.
+    gear : str
+        Name of the gear, for messages.
+    measured : bool
+        Whether the relief is a measured one, for messages.
+    wrong : mapping of str to InputError
+        What is wrong with the data of an effect that is off, by its name: it stops nothing.
+    """
+
+    relief: ReliefSpec | None = None
+    spacing: Array = field(default_factory=lambda: np.empty(0))
+    face: tuple[FlankModification, ...] = ()
+    bias: BiasSpec | None = None
+    gear: str = field(default="", compare=False)
+    measured: bool = field(default=False, compare=False)
+    wrong: Mapping[str, InputError] = field(default_factory=dict, compare=False)
+
+    @property
+    def wants_delta(self) -> bool:
+        """Whether the relief's amount is given in Welbourn's Delta."""
+        return self.relief is not None and self.relief.wants_delta
+
+    @property
+    def over_face(self) -> bool:
+        """Whether anything is modified over the face."""
+        return bool(self.face) or self.bias is not None
+
+    @property
+    def prefix(self) -> str:
+        """Of keys in messages."""
+        return f"gear.{self.gear}" if self.gear else ""
+
+    def profile(self, pair: GearPair, member: Member, delta: float = math.nan) -> Relief:
+        """The relief for one gear of a pair; `delta` is Welbourn's [m].
+
+        Raises
+        ------
+        InputError
+            If it does not fit the gear.
+        """
+        if self.relief is None:
+            return CombinedRelief()
+        try:
+            return self.relief.built(pair, member, delta)
+        except InputError as error:
+            raise error.under(self.prefix) from None
+
+    def surface(self, pair: GearPair, member: Member) -> tuple[FlankModification, ...]:
+        """All that is modified over the face, for one gear of a pair.
+
+        Raises
+        ------
+        InputError
+            If it lies elsewhere than the active profile, or takes more than the tooth has.
+        """
+        try:
+            bias = () if self.bias is None else (self.bias.built(pair, member),)
+            found = (*self.face, *bias)
+            _refuse_odd_flank(pair, member, found)
+        except InputError as error:
+            raise error.under(self.prefix) from None
+        return found
+
+
+def _refuse_odd_flank(pair: GearPair, member: Member, parts: tuple[FlankModification, ...]) -> None:
+    gear, half = pair.gear(member), 0.5 * pair.gear(member).face_width
+    low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+    for part in parts:
+        if isinstance(part, Topography) and (part.roll[0] >= high or part.roll[-1] <= low):
+            raise InputError(
+                "topography",
+                f"from roll angle {math.degrees(part.roll[0]):.5g} to {math.degrees(part.roll[-1]):.5g} deg",
+                f"lies outside the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
+                "check the units of its radii and angles",
+            )  # fmt: skip
+    kinks = [k for part in parts for k in part.face_kinks]
+    z = np.union1d(np.linspace(-half, half, 65), np.clip(kinks, -half, half))
+    roll = np.linspace(low, high, 33)[:, None]
+    total = np.abs(sum((part.removal(roll, z) for part in parts), np.zeros((33, z.size))))
+    if total.max() > DEEPEST_RELIEF * gear.module:
+        raise InputError(
+            "", f"lead, bias and topography of {total.max() * 1e6:.4g} um",
+            f"equal {total.max() / gear.module:.3g} modules, more than the maximum of {DEEPEST_RELIEF:g} modules",
+            "check the unit: modifications are some tens of micrometres",
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Misalignment:
+    """Errors of a pair of teeth with a width that the effect `misalignment` counts.
+
+    Parameters
+    ----------
+    face_position, line_gap : ndarray, shape (n,)
+        Gap over the face [m]; empty for none.
+    tilt : ShaftTilt
+        Deviation of the axes.
+    cutting : tuple of FlankModification
+        Errors of the pinion's profile and lead angle.
+    apart : float
+        Error of the centre distance [m].
+    shafts : ShaftGaps
+        What shafts open as they are loaded.
+    """
+
+    face_position: Array = field(default_factory=lambda: np.empty(0))
+    line_gap: Array = field(default_factory=lambda: np.empty(0))
+    tilt: ShaftTilt = PARALLEL
+    cutting: tuple[FlankModification, ...] = ()
+    apart: float = 0.0
+    shafts: ShaftGaps = RIGID
+
+    @property
+    def given(self) -> bool:
+        """Whether there are any."""
+        own = bool(self.line_gap.size or self.cutting or self.apart or self.tilt != PARALLEL)
+        return own or self.shafts.given
+
+
+@dataclass(frozen=True)
+class PairSpec:
+    """Two gears in mesh, what their flanks have, their loads, and which effects count.
+
+    Parameters
+    ----------
+    pair : GearPair
+        Both gears, at their centre distance.
+    loads : tuple of float
+        Along the transverse line of action [N].
+    nominal : float
+        The one of them that single numbers are for [N]; the largest by default.
+    width : {"plane", "slices", "solid"}
+        One plane section, coupled slices of it, or solid gears.
+    compliance : str
+        Of plane teeth: ``"fe"`` (of the solved gears), or the name of a formula.
+    table : ComplianceTable or None
+        Of plane teeth, in place of either.
+    driver, driven : FlankSpec
+    corner_contact, neighbour_coupling, relief, spacing_errors, misalignment : bool
+        Effects: contact before and after the path of contact, loaded teeth that deflect their neighbours,
+        modifications, spacing errors; for teeth with a width what `errors` has.
+    hertz : {"load-dependent", "linear", "none"}
+        The contact's width follows its load, is that under the nominal load, or is the compliances' own.
+    errors : Misalignment
+    cutter : tuple of FlankModification
+        What the pinion's cutter leaves, counted with `relief`.
+    positions : int
+        Roll positions over one base pitch of teeth with a width.
+    panels : int
+        Parts of the common face; 0 for one to a quarter of a module.
+    base_pitch : int
+        Which teeth meet where teeth with a width have spacing errors.
+    name : str
+        For messages.
+    """
+
+    pair: GearPair
+    loads: tuple[float, ...] = ()
+    nominal: float = math.nan
+    width: Width = "plane"
+    compliance: str = "fe"
+    table: ComplianceTable | None = None
+    driver: FlankSpec = field(default_factory=FlankSpec)
+    driven: FlankSpec = field(default_factory=FlankSpec)
+    corner_contact: bool = True
+    neighbour_coupling: bool = True
+    hertz: Hertz = "load-dependent"
+    relief: bool = True
+    spacing_errors: bool = True
+    misalignment: bool = True
+    errors: Misalignment = field(default_factory=Misalignment)
+    cutter: tuple[FlankModification, ...] = ()
+    positions: int = 16
+    panels: int = 0
+    base_pitch: int = 0
+    name: str = field(default="", compare=False)
+
+    def __post_init__(self) -> None:
+        """Fill in the nominal load; refuse one that is none of the loads."""
+        if math.isnan(self.nominal):
+            object.__setattr__(self, "nominal", max(self.loads, default=math.nan))
+        elif self.loads and self.nominal not in self.loads:
+            among = ", ".join(f"{load:.6g}" for load in sorted(self.loads))
+            raise InputError("nominal", f"{self.nominal:.6g} N", f"must be one of the loads, {among} N")
+        object.__setattr__(self, "loads", tuple(sorted(set(self.loads))))
+
+    @property
+    def prefix(self) -> str:
+        """Of keys in messages."""
+        return f"pair.{self.name}" if self.name else ""
+
+    def is_on(self, effect: str) -> bool:
+        """Whether an effect counts."""
+        return getattr(self, effect) not in (False, "none")
+
+    def flanks(self, member: Member) -> FlankSpec:
+        """Those of driver or driven."""
+        return self.driver if member == "driver" else self.driven
+
+    @property
+    def both(self) -> tuple[FlankSpec, FlankSpec]:
+        """Flanks of driver and driven."""
+        return self.driver, self.driven
+
+    @property
+    def gears(self) -> tuple[str, str]:
+        """Names of driver and driven."""
+        return self.driver.gear, self.driven.gear
+
+    @property
+    def at_rest(self) -> PairSpec:
+        """The same of perfect flanks and teeth, under no load but the one that a contact's width is taken at."""
+        return replace(
+            self, relief=False, spacing_errors=False, misalignment=False, loads=(),
+            driver=FlankSpec(gear=self.driver.gear), driven=FlankSpec(gear=self.driven.gear),
+            nominal=self.nominal if self.hertz == "linear" else math.nan,
+        )  # fmt: skip
+
+    # ---- teeth with a width ------------------------------------------------------------------------------------------
+    @property
+    def panel_count(self) -> int:
+        """Parts into which the common face is divided."""
+        usual = math.ceil(_PANELS_PER_MODULE * self.pair.face_width / self.pair.driver.module - 1e-9)
+        return self.panels or max(4, usual)
+
+    @property
+    def panel(self) -> float:
+        """Length of a panel [modules]."""
+        return self.pair.face_width / self.panel_count / self.pair.driver.module
+
+    @property
+    def placed(self) -> GearPair:
+        """The pair at the centre distance that its error leaves, if the effect `misalignment` counts it."""
+        return self.misaligned if self.misalignment else self.pair
+
+    @property
+    def misaligned(self) -> GearPair:
+        """The pair at the centre distance that its error leaves.
+
+        Raises
+        ------
+        InputError
+            If the gears do not mesh there.
+        """
+        apart = self.errors.apart
+        try:
+            return replace(self.pair, centre_distance=self.pair.centre_distance + apart) if apart else self.pair
+        except InputError as error:
+            raise error.under(".".join(filter(None, (self.prefix, "misalignment")))) from None
+
+    def has_data(self, effect: str) -> bool:
+        """Whether there is anything that an effect could count."""
+        if effect == "relief":
+            given = any(flank.relief or flank.over_face for flank in self.both) or bool(self.cutter)
+            return given and not any(flank.wants_delta for flank in self.both)
+        if effect == "spacing_errors":
+            return any(flank.spacing.size for flank in self.both)
+        return effect != "misalignment" or self.errors.given
+
+    def on(self, shafts: ShaftGaps) -> PairSpec:
+        """The same on shafts that open other gaps."""
+        return replace(self, errors=replace(self.errors, shafts=shafts))
+
+    def gaps(self, *, relief: bool, misalignment: bool, spacing_errors: bool = False) -> FlankGaps:
+        """What keeps the flanks of teeth with a width apart, by these effects."""
+        apart, pair = FlankGaps(), self.placed
+        if relief:
+            driver, driven = (flank.profile(pair, member) for member, flank in zip(MEMBERS, self.both, strict=True))
+            first, second = (flank.surface(pair, member) for member, flank in zip(MEMBERS, self.both, strict=True))
+            apart = FlankGaps(driver, driven, driver_flank=(*first, *self.cutter), driven_flank=second)
+        if misalignment:
+            off = self.errors
+            apart = replace(
+                apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt, shafts=off.shafts,
+                driver_flank=(*apart.driver_flank, *off.cutting),
+            )  # fmt: skip
+        if spacing_errors:
+            apart = replace(
+                apart, driver_spacing=self.driver.spacing, driven_spacing=self.driven.spacing,
+                base_pitch=self.base_pitch,
+            )  # fmt: skip
+        return apart

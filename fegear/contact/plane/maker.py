@@ -1,0 +1,103 @@
+"""Makes a loaded pair of plane teeth of its spec and its gears: sources of compliance, their errors, the engagement."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_element_compliance
+from fegear.contact.plane.flanks import with_flanks
+from fegear.contact.plane.loaded_pair import LoadedPair
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
+from fegear.contact.plane.table_compliance import table_sources
+from fegear.fem.plane.gear import GearInfluence
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.base.solution_cache import SolutionCache
+    from fegear.contact.pair_spec import PairSpec
+    from fegear.contact.plane.compliance import GearCompliance
+
+    Sources = tuple[GearCompliance, GearCompliance]
+
+
+def load_plane(
+    spec: PairSpec,
+    gears: Sequence[GearInfluence | GearCompliance] = (),
+    *,
+    cache: SolutionCache | None = None,
+    estimates: bool = True,
+) -> LoadedPair:
+    """Make a loaded pair of plane teeth; see `fegear.contact.load.load`."""
+    at_rest = (
+        engagement_at_rest(spec.at_rest, *gears)
+        if cache is None
+        else cache.call(engagement_at_rest, spec.at_rest, *gears).value
+    )
+    compliance = replace(at_rest.compliance, nominal_load=spec.nominal)
+    engagement = with_flanks(spec, replace(at_rest, compliance=compliance))
+    first, second = compliance.driver, compliance.driven
+    shifted = shifted_sources(first, second, coupling=spec.neighbour_coupling) if estimates else ()
+    others = tuple(
+        replace(engagement, compliance=replace(compliance, driver=driver, driven=driven)) for driver, driven in shifted
+    )
+    described = tuple(dict.fromkeys(source.describe() for source in (first, second)))
+    return LoadedPair(engagement, others, spec, described, exact=estimates)
+
+
+def engagement_at_rest(spec: PairSpec, *gears: GearInfluence | GearCompliance) -> Engagement:
+    """The engagement of perfect flanks, the same one for every load and relief: it keeps what these do not change."""
+    sources = compliance_sources(spec, gears)
+    compliance = PairCompliance(spec.pair, *sources, spec.neighbour_coupling, spec.hertz, spec.nominal)
+    return Engagement(compliance, corner_contact=spec.corner_contact)
+
+
+def compliance_sources(spec: PairSpec, gears: Sequence[GearInfluence | GearCompliance]) -> Sources:
+    """The sources of driver and driven: those that are given, a table's, a formula's, or of solved gears.
+
+    Raises
+    ------
+    InputError
+        If a table or a formula does not fit the gears, or gears that are to be solved are not.
+    """
+    if gears and not isinstance(gears[0], GearInfluence):
+        first, second = gears
+        return first, second  # type: ignore[return-value]  # both are sources where the first is
+    pair = spec.pair
+    try:
+        if spec.table is not None:
+            return table_sources(pair, *spec.table)
+        if spec.compliance != "fe":
+            driver, driven = (closed_form_compliance(pair.gear(member), spec.compliance) for member in MEMBERS)
+            return driver, driven
+    except InputError as error:
+        raise error.under(spec.prefix) if error.key.startswith("compliance") else error from None
+    if len(gears) != len(MEMBERS):
+        raise InputError(
+            "gears", f"{len(gears)} given", "must be both solved gears, driver and driven",
+            "give solve_gear(pair.driver) and solve_gear(pair.driven), or a formula as compliance",
+        )  # fmt: skip
+    solved = {id(gear): finite_element_compliance(gear) for gear in gears if isinstance(gear, GearInfluence)}
+    first, second = (solved[id(gear)] for gear in gears)
+    return first, second
+
+
+def shifted_sources(first: GearCompliance, second: GearCompliance, *, coupling: bool) -> tuple[Sources, ...]:
+    """The pairs of sources that are off by their estimated errors; none where the sources state none."""
+    if not (isinstance(first, FiniteElementCompliance) and isinstance(second, FiniteElementCompliance)):
+        return ()
+    if first.influence.estimate is None or second.influence.estimate is None:
+        return ()
+    own1 = shifted_by_error(first)
+    own2 = own1 if second is first else shifted_by_error(second)
+    shifted: list[Sources] = [(own1, second), (first, own2)]
+    if coupling:
+        beside1 = neighbours_shifted_by_error(first)
+        shifted.append((beside1, beside1 if second is first else neighbours_shifted_by_error(second)))
+    return tuple(shifted)

@@ -1,0 +1,184 @@
+"""What a drawing says of the reliefs of a gear's flanks: amounts and places, which become curves in a pair.
+
+Ends that are not given follow from the path of contact, so that a relief is made for one gear of a pair.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.geometry.flank_modification import Bias
+from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.plausible_flanks import refuse_deep_relief, refuse_relief_elsewhere
+from fegear.geometry.relief import (
+    CombinedRelief,
+    Crowning,
+    EndRelief,
+    Relief,
+    Shape,
+    TabulatedRelief,
+    crowning,
+    normalised_tip_relief,
+    roll_of_radius,
+    root_relief,
+    tip_relief,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndReliefSpec:
+    """Relief toward one end of the profile; its amount in one of two ways, its start in one of four.
+
+    Parameters
+    ----------
+    amount : float, optional
+        Material removed at the end [m].
+    amount_over_delta : float, optional
+        The same in units of Welbourn's Delta.
+    start_roll_angle, start_radius, length : float, optional
+        Where it starts [rad], [m], or its length along the line of action [m].
+    normalised_length : float, optional
+        L_n of TM-89901, of tip reliefs only.
+    shape : {"linear", "parabolic"}
+    """
+
+    amount: float | None = None
+    amount_over_delta: float | None = None
+    start_roll_angle: float | None = None
+    start_radius: float | None = None
+    length: float | None = None
+    normalised_length: float | None = None
+    shape: Shape = "linear"
+
+    def removed(self, delta: float) -> float:
+        """Amount, Welbourn's Delta given [m]."""
+        return self.amount if self.amount is not None else (self.amount_over_delta or 0.0) * delta
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipReliefSpec(EndReliefSpec):
+    """Tip relief; `at_radius` is where its amount is measured [m], by default where the involute ends."""
+
+    at_radius: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootReliefSpec(EndReliefSpec):
+    """Root relief; `end_radius` is where its amount is measured [m], by default where contact starts."""
+
+    end_radius: float | None = None
+
+
+@dataclass(frozen=True)
+class CrowningSpec:
+    """Profile crowning: removal at both ends [m], which are those of the active profile by default."""
+
+    amount: float
+    start_radius: float | None = None
+    end_radius: float | None = None
+
+
+@dataclass(frozen=True)
+class BiasSpec:
+    """Twist S_alpha of a flank [m] between two radii [m], by default those of the active profile."""
+
+    amount: float
+    start_radius: float | None = None
+    end_radius: float | None = None
+
+    def built(self, pair: GearPair, member: Member) -> Bias:
+        """The twist of one gear of a pair.
+
+        Raises
+        ------
+        InputError
+            If its ends do not ascend.
+        """
+        gear = pair.gear(member)
+        ends = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        for i, radius in enumerate((self.start_radius, self.end_radius)):
+            if radius is not None:
+                if radius < gear.base_radius:
+                    raise InputError("bias", f"radius {radius * 1e3:.6g} mm", "lies inside the base circle")
+                ends[i] = float(roll_of_radius(gear, np.array(radius)))
+        start, end = ends
+        if not end > start:
+            raise InputError("bias", "start_radius and end_radius", "must ascend")
+        return Bias(self.amount, start, end, gear.face_width)
+
+
+@dataclass(frozen=True)
+class ReliefSpec:
+    """Profile modification of every tooth of a gear; all parts add up.
+
+    Parameters
+    ----------
+    tip, root, crowning : tuple
+    tables : tuple of TabulatedRelief
+    """
+
+    tip: tuple[TipReliefSpec, ...] = ()
+    root: tuple[RootReliefSpec, ...] = ()
+    crowning: tuple[CrowningSpec, ...] = ()
+    tables: tuple[TabulatedRelief, ...] = ()
+
+    @property
+    def wants_delta(self) -> bool:
+        """Whether an amount is given in Welbourn's Delta."""
+        return any(end.amount_over_delta is not None for end in (*self.tip, *self.root))
+
+    def built(self, pair: GearPair, member: Member, delta: float = math.nan) -> Relief:
+        """The modification of one gear of a pair.
+
+        Parameters
+        ----------
+        pair : GearPair
+        member : {"driver", "driven"}
+        delta : float
+            Welbourn's Delta [m], the unit of amount_over_delta.
+
+        Raises
+        ------
+        InputError
+            If it lies elsewhere than the active profile, or takes more than the tooth has.
+        """
+        gear = pair.gear(member)
+        low, high = _active_ends(pair, member)
+        found: list[EndRelief | Crowning] = []
+        for tip in self.tip:
+            amount = tip.removed(delta)
+            if tip.normalised_length is not None:
+                found.append(normalised_tip_relief(pair, member, amount, tip.normalised_length, tip.shape))
+                continue
+            found.append(
+                tip_relief(
+                    gear, amount, start_roll=tip.start_roll_angle, start_radius=tip.start_radius, length=tip.length,
+                    shape=tip.shape, at_radius=tip.at_radius,
+                )
+            )  # fmt: skip
+        found += [
+            root_relief(
+                gear, root.removed(delta), end_radius=root.end_radius or low, start_roll=root.start_roll_angle,
+                start_radius=root.start_radius, length=root.length, shape=root.shape,
+            )
+            for root in self.root
+        ]  # fmt: skip
+        found += [
+            crowning(gear, crown.amount, crown.start_radius or low, crown.end_radius or high) for crown in self.crowning
+        ]
+        whole = CombinedRelief((*found, *self.tables))
+        first, last = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        for part in (*found, *self.tables):
+            refuse_relief_elsewhere(part, first, last)
+        refuse_deep_relief(gear, whole, first, last)
+        return whole
+
+
+def _active_ends(pair: GearPair, member: Member) -> tuple[float, float]:
+    """Radii of the active profile's ends [m], that toward the root first."""
+    a, b = sorted(float(r) for r in pair.radius(np.array([pair.x_start, pair.x_end]), member))
+    return (b, a) if pair.gear(member).tooth.internal else (a, b)
