@@ -11,7 +11,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS
+from fegear.case.built.root_stress_sources import FINITE_ELEMENTS
 
 if TYPE_CHECKING:
     from fegear.contact.plane.tooth_stress import ToothStress
