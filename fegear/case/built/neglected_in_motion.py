@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import FegearError
+from fegear.base.printed import percent
 from fegear.base.tally import note
-from fegear.case.built.neglected_effects import percent, remark
+from fegear.case.built.neglected_effects import remark
 from fegear.case.effects import EffectsPart
 from fegear.contact.plane.neglected_effects import COUNTED
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
-from fegear.case.built.neglected_effects import percent
 from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
 from fegear.dynamics.train.gear_train import GearTrain, a_drives

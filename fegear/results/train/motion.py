@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.neglected_effects import percent
+from fegear.base.printed import percent
 from fegear.case.built.neglected_in_motion import NeglectedInMotion, motion_remarks, neglected_in_motion
 from fegear.case.built.train import MotionInputs, build_train, motion_inputs, steady_motions, train_inputs
 from fegear.case.part import at
