@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from fegear.base.errors import InputError, shown
 from fegear.base.unit_text import plain_number
 from fegear.base.units import unit_size
+from fegear.case.part import LARGEST
 from fegear.case.text_file import read_text
 
 #: Most lines of a table: some seconds of reading.
@@ -39,7 +40,8 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
     ------
     InputError
         If the file is no such table: its encoding, a head's unit, two columns of one name, a line with more or fewer
-        entries than heads, an entry that is no finite number.
+        entries than heads, an entry that is no finite number or
+        beyond any machine.
     """
     numbered = _lines(path, key)
     (_, heads), rows = numbered[0], numbered[1:]
@@ -63,7 +65,13 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
             )
         dimension = dimensions[name]
         scale = unit_size(match["unit"] or "", dimension, f"{key}, column {name}") if dimension else 1.0
-        columns[name] = scale * np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
+        entries = np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
+        beyond = np.flatnonzero(np.abs(entries) > LARGEST / scale)
+        if beyond.size:
+            number, row = rows[beyond[0]]
+            rule = f"has {shown(row[i])} in line {number}, {name}, which is beyond any machine"
+            raise InputError(key, f'"{path.name}"', rule, "check the unit")
+        columns[name] = scale * entries
     return columns
 
 

@@ -96,6 +96,7 @@ def test_tables_are_parted_by_what_parts_their_heads(folder):
         ("radius [mm],relief [um]\n31,\n33,2\n", ": not a number"),
         ("radius [mm],relief [um]\n31,nan\n", "which is not finite"),
         ("radius [mm],relief [um]\n31,1e400\n", "which is not finite"),
+        ("radius [mm],relief [um]\n31,-1e300\n", 'has "-1e300" in line 2, relief, which is beyond any machine'),
         ("radius,relief [um]\n31,1\n", "column radius.*has no unit"),
         ("radius [N],relief [um]\n31,1\n", "column radius.*is not a length"),
         ("radius [mm],relief [um]\n", "must have column heads with numbers below"),
