@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import Member
 
 #: Seconds of a roll position: both gears, both solutions, three loads.
-_SECONDS = 0.015
+_SECONDS = 0.0015
 
 
 @dataclass(frozen=True)
