@@ -85,6 +85,7 @@ def _also(of: type, key: str, si: str, error: str, further: str = "") -> Number:
 
 
 _DRAWN_LINE = {"dash": "solid", "markers": False}
+_DASHED = {"dash": "dash", "markers": False}
 _FACE_TITLE = "Load over the face of pair {name}"
 _TABLES = (
     Rows(
@@ -99,7 +100,8 @@ _TABLES = (
     Rows(
         "load_over_face_{name}", _FACE_TITLE,
         (
-            "z", "found.mean_over_face", Cell("found.over_face", "over_face.least", name="least_line_load"),
+            Cell("found.lines.z", "over_face.z"), "found.mean_over_face",
+            Cell("found.over_face", "over_face.least", name="least_line_load"),
             Cell("found.over_face", "over_face.largest", name="largest_line_load"), "factor",
         ),
         of="over_face",
@@ -166,14 +168,17 @@ _FIGURES = (
         "Pair {name}: load of all contact lines together per face width; K_Hβ = {d.over_face.face_load_factor:.4g}.",
         (
             Over(
-                "z",
+                "found.lines.z",
                 (
                     Line(
-                        "load", look={**_DRAWN_LINE, "width": 1.2},
+                        "load", x="z", look={**_DRAWN_LINE, "width": 1.2},
                         each=Family("over_face.at_rolls", "roll {one.roll:.3g}", "ramp"),
                     ),
-                    Line("found.mean_over_face", "mean over a base pitch", "ink", look={**_DRAWN_LINE, "width": 2.4}),
-                    Line("even", "load / face width", "grey", look={"dash": "dash", "markers": False}, ends=True),
+                    Line(
+                        "found.mean_over_face", "mean over a base pitch", "ink", x="z",
+                        look={**_DRAWN_LINE, "width": 2.4},
+                    ),
+                    Line("even", "load / face width", "grey", x="z", look=_DASHED, ends=True),
                 ),
                 "found.over_face", options={"zero": True},
             ),
@@ -185,10 +190,10 @@ _FIGURES = (
         "Pair {name}: load per face width, averaged over a base pitch, over its mean; the largest of it is K_Hβ.",
         (
             Over(
-                "z",
+                "found.lines.z",
                 (
-                    Line("relative", each=LOADS, look=_DRAWN_LINE),
-                    Line("one", "even", "grey", look={"dash": "dash", "markers": False}, ends=True),
+                    Line("relative", x="z", each=LOADS, look=_DRAWN_LINE),
+                    Line("one", "even", "grey", x="z", look=_DASHED, ends=True),
                 ),
                 options={"zero": True},
             ),

@@ -88,7 +88,7 @@ class LoadOverFace:
     case: int
 
     @property
-    @shows("mm", "along the face, from its middle", label="face position z")
+    @shows("mm", "middle of the cell, along the face")
     def z(self) -> Array:
         """Middles of the cells [m]."""
         return np.asarray(0.5 * (self.found.cells[1:] + self.found.cells[:-1]))

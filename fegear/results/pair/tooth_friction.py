@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.case.built.train import friction_coefficient
+from fegear.contact.plane.pair_history import PairHistory
 from fegear.engine.citation import Citation
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
@@ -72,7 +73,7 @@ class FrictionAtSpeed:
     speed: float = shown("rpm", "")
 
     @cached_property
-    @shows("deg", "of the contact point on the driver", name="roll_angle", label="roll angle of the driver")
+    @shows("deg", "roll angle of the driver")
     def driver_roll_angle(self) -> Array:
         """At each place on the path [rad]."""
         return np.asarray(self.mesh.pair.roll_angle(self.over_path.x, "driver"))
@@ -174,7 +175,8 @@ _SHEET = Sheet(
         Rows(
             "tooth_friction_{name}", "Tooth friction of mesh {name} over the path of contact",
             (
-                Cell("speed", meaning=_SPEED), "over_path.x", _ROLL, "over_path.load", "over_path.sliding",
+                Cell("speed", meaning=_SPEED), "over_path.x",
+                Cell(_ROLL, _ROLL, lambda _: PairHistory), "over_path.load", "over_path.sliding",
                 "over_path.rolling", Cell("over_path.coefficient", meaning="law {asked.law.law}"),
                 *(f"over_path.{k}" for k in ("torque_driver", "torque_driven", "total_driver", "total_driven")),
             ),
