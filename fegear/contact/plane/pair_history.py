@@ -43,7 +43,7 @@ class PairHistory:
         "mm", "position of the pair on the line of action, from the pitch point", label="line of action", table="path"
     )
     driver_roll_angle: Array = shown(
-        "deg", "radius of the contact point on the driver", name="roll_angle", table="path"
+        "deg", "roll angle of the contact point on the driver", name="roll_angle", table="path"
     )
     load: Array = shown("N", "load on the tooth pair along the line of action", label="load on the pair", table="path")
     share: Array = shown("", "share of the total load", table="path")
