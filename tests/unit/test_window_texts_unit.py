@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fegear.window import inputs
+from fegear.window.document import Desk
 from fegear.window.inputs import merged, stepped
 from fegear.window.journal import Journal, Kept, Left, drop, left_behind
 from fegear.workbench.pair import _apart
@@ -89,3 +90,31 @@ def test_a_step_is_a_unit_of_the_last_digit(text, steps, made):
 def test_gears_that_were_one_get_names_of_their_roles():
     assert _apart(("a", "a")) == ("driver", "driven")
     assert _apart(("a", "b")) == ("a", "b")
+
+
+def test_a_text_is_kept_once_and_no_more_after_it_was_saved(tmp_path, monkeypatch):
+    """Pages ask again and again to keep up: what is kept already, or in the file, is not written another time."""
+    done = []
+    keep, forget = Journal.keep, Journal.forget
+    monkeypatch.setattr(Journal, "keep", lambda self, kept: done.append("keep") or keep(self, kept))
+    monkeypatch.setattr(Journal, "forget", lambda self: done.append("forget") or forget(self))
+    path = tmp_path / "c.toml"
+    path.write_text('title = "a"\n')
+    desk = Desk.of_file(path)
+    done.clear()
+    desk.change('title = "b"\n')
+    desk.keep_up()
+    desk.keep_up()
+    assert done == ["keep"]
+    desk.save()
+    assert path.read_text() == 'title = "b"\n'
+    done.clear()
+    desk.keep_up()
+    assert done == []
+    desk.change('title = "c"\n')
+    desk.change('title = "b"\n')
+    desk.keep_up()
+    assert done[-1] == "forget"  # what the file has is not kept beside it
+    count = len(done)
+    desk.keep_up()
+    assert len(done) == count
