@@ -163,10 +163,6 @@ class EffectsPart(Part):
         """Names of the effects that the case itself switches on or off."""
         return frozenset(self.model_fields_set)
 
-    def only(self, names: Collection[str]) -> EffectsPart:
-        """These effects as they are, the others off."""
-        return EffectsPart(**{name: getattr(self, name) for name in names})
-
 
 #: What there is to know of each effect, by its name.
 EFFECTS: dict[str, Effect] = {
