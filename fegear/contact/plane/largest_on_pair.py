@@ -15,7 +15,7 @@ from fegear.base.arrays import Array
 from fegear.contact.loaded_teeth import Largest
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.pair_history import PairHistory, followed
-from fegear.contact.plane.peaks import LACKS, refined_peaks
+from fegear.contact.plane.peaks import LACKS, LEFT, refined_peaks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,6 +62,7 @@ def largest_on_pair(
         beside = np.unique([np.clip(np.searchsorted(x, one) + step, 0, x.size - 1) for one in where for step in _CELLS])
         changes = [refined_peaks(partial(_curves, other, load), x[beside], LACKS, _FOLLOWED)[1] for other in shifted]
         error = np.maximum(error, np.abs(np.array(changes) - value).sum(axis=0))
+        error += [_left_of_kink(x, curve, *peak) for curve, *peak in zip(sampled, where, value, strict=True)]
         # a whole load is exact; of a pressure digits are always left
         error[0] = error[0] if error[0] > _ROUND_OFF else 0.0
         error[1] = max(error[1], _DIGITS * value[1])
@@ -78,6 +79,16 @@ def _curves(e: Engagement, load: float, x: Array) -> Array:
 
 def _smooth(e: Engagement, x: Array, pressure: Array) -> Array:
     return np.where((x < e.pair.x_start) | (x > e.pair.x_end), 0.0, pressure)
+
+
+def _left_of_kink(x: Array, samples: Array, at: float, value: float) -> float:
+    """How far a curve may rise above a peak that was found: at a kink, by the gentler of both slopes."""
+    below, above = np.flatnonzero(x < at), np.flatnonzero(x > at)
+    if not (below.size and above.size):
+        return 0.0
+    ends = below[-1], above[0]
+    slope = min((value - float(samples[end])) / abs(float(x[end]) - at) for end in ends)
+    return max(slope, 0.0) * float(x[ends[1]] - x[ends[0]]) * LEFT
 
 
 def _own_errors(e: Engagement, shifted: Sequence[Engagement], load: float, x: Array) -> Array:

@@ -15,6 +15,9 @@ _POINTS = 4
 #: the error of a peak is in proportion to what is left.
 _PASSES = 5
 
+#: What they leave of that distance.
+LEFT = (_POINTS + 1.0) ** -_PASSES
+
 
 #: A local maximum of the samples may lead to the largest value of a stress where it lacks no more than this part of it.
 LACKS = 0.05

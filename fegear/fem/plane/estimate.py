@@ -35,8 +35,9 @@ _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.2
 _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
 #: which both orders have: so many times the part of a tooth's own and no less than the other part. A neighbour's other
-#: fillets are smooth. Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 0.65
+#: fillets are smooth: so many times a tooth's own part. Relatively no neighbour errs by less than so much of what a
+#: tooth's own stress usually differs by.
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _SMOOTH_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 1.4, 0.9
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
@@ -182,6 +183,8 @@ class Estimate:
             beside = max(usual[side], _OTHER_FILLET * max(usual.values()))
             if k > 0 and side == "compression":
                 share, beside = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS), _USUAL * beside
+            else:
+                share *= _SMOOTH_STRESS
             error = share * np.maximum(difference, beside)
             return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
         size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
