@@ -94,6 +94,7 @@ def test_gears_that_were_one_get_names_of_their_roles():
 
 def test_a_text_is_kept_once_and_no_more_after_it_was_saved(tmp_path, monkeypatch):
     """Pages ask again and again to keep up: what is kept already, or in the file, is not written another time."""
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "state"))
     done = []
     keep, forget = Journal.keep, Journal.forget
     monkeypatch.setattr(Journal, "keep", lambda self, kept: done.append("keep") or keep(self, kept))
