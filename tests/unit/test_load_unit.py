@@ -1,6 +1,7 @@
 """A loaded pair of its spec, without a case: the answers of a run, every field acts, refusals name what is missing."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.relief_spec import CrowningSpec, ReliefSpec, RootReliefSpec, TipReliefSpec
 from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
+from fegear.results.pair.loaded_flanks import LOADED_FLANKS
 
 PINION, WHEEL = Gear(Tooth(23), 3e-3, 15e-3, 10e-3), Gear(Tooth(57), 3e-3, 40e-3, 10e-3)
 PAIR = GearPair(PINION, WHEEL)
@@ -141,3 +143,28 @@ def test_what_cannot_be_loaded_is_refused(spec, key):
     with pytest.raises(InputError) as refusal:
         load(spec)
     assert refusal.value.key.startswith(key)
+
+
+@dataclass
+class Loaded:
+    """Teeth with a width that say whether they were asked what they neglect."""
+
+    neglected: str = "nothing"
+
+    def neglects(self, _answers, _loads):
+        return "all"
+
+
+@pytest.mark.parametrize("neglected", [None, False, True])
+def test_a_case_says_whether_pairs_with_a_width_size_what_they_neglect(monkeypatch, neglected):
+    document = {
+        "results": ["load-distribution"],
+        "gear": {"a": {"teeth": 24, "module": "2 mm", "face_width": "10 mm", "bore_radius": "10 mm"}},
+        "pair": {"I": {"driver": "a", "driven": "a", "load": "1000 N", "width": "solid"}},
+        **({} if neglected is None else {"neglected": neglected}),
+    }
+    asked = LOADED_FLANKS.inputs(build_scene(document, "case", None), "I")
+    monkeypatch.setattr("fegear.contact.wide.maker.load_wide", lambda *_given, **_named: Loaded())
+    solved = {Task("solid-solution", "a"): None}
+    found = LOADED_FLANKS.compute(asked, solved, SimpleNamespace(cache=None, progress=None))
+    assert found.neglected == ("nothing" if neglected is False else "all")
