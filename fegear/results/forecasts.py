@@ -97,12 +97,12 @@ def has_undamped(scene: Scene) -> bool:
 
 
 RING = (
-    Citation("thomas", "one tooth sector stands for the whole ring: harmonics of a cyclic structure"),
+    Citation("thomas", "one tooth sector for the full gear: harmonics of a cyclic structure"),
     Citation("gmsh", "mesh of the tooth"),
 )
 
 
-PATCH = Citation("johnson", "the contact's own deformation, and the swap of its half-width", "sections 4.2(c) and 5.6")
+PATCH = Citation("johnson", "local contact deformation and exchange of its half-width", "sections 4.2(c) and 5.6")
 
 
 HERTZ = Citation("hertz", "half-width and pressure of the contact")

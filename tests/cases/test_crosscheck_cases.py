@@ -219,7 +219,9 @@ def test_a_helical_pair_is_compared_through_its_virtual_teeth():
     assert values["I.single_stiffness_iso"] > 0.0
     assert any("virtual spur teeth" in remark for remark in results.remarks)
     # Remarks on spur gears' finite elements came with it, of which there are none.
-    assert not any("one tooth of the whole gear" in r or "one tooth pair with" in r for r in results.remarks)
+    assert not any(
+        "Crosscheck: single tooth of the complete gear" in r or "one tooth pair with" in r for r in results.remarks
+    )
 
 
 def test_without_a_helix_the_virtual_tooth_is_the_tooth():
@@ -376,7 +378,7 @@ def test_positions_off_a_flank_keep_their_own_reason():
         (["study={teeth=[3]}"], "study.teeth"),
         (["study={load_position=[1.5]}"], "load_position"),
         (["study={teeth=[]}"], "must not be empty"),
-        (["gear.base.tip_diameter=31 mm"], "has no meaning in a study"),
+        (["gear.base.tip_diameter=31 mm"], "is not used in a study of many gears"),
         (["study={pressure_angle=['20 deg']}"], "set samples (number of gears)"),
         (["study={samples=4, teeth=[20, 30, 40]}"], "must be one value, or minimum and maximum"),
         (["study={samples=4, rack_tip_radius=[0.3, 0.1]}"], "must be one value, or minimum and maximum"),

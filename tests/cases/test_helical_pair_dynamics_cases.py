@@ -258,7 +258,7 @@ def test_harmonics_from_a_table_are_those_of_the_amplitudes(tmp_path):
     third = third[0]["pair_force_spectrum_I"]
     assert lines["mesh_y"][lines["order"] == 150.0] == pytest.approx(third["mesh_y"][third["order"] == 150.0], rel=1e-9)
     for text, words in (
-        ("n,cosine [um]\n1.5,1\n", "no harmonics"),
+        ("n,cosine [um]\n1.5,1\n", "contains invalid harmonic numbers n"),
         ("n [mm],cosine [um]\n1,1\n", "has a unit in the head of column"),
         ("n,other\n1,1\n", "no columns n"),
     ):

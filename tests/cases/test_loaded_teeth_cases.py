@@ -99,7 +99,7 @@ def test_the_pair_compared_with_calculix_as_it_really_is():
     # 1000 rpm: the contact moves along the line of action with the base circle's speed.
     speed = 1000 * 2 * np.pi / 60 * values_of(results, "I").driver.base_radius * 1e3
     assert np.ptp(history["x"]) / np.ptp(history["t"]) == pytest.approx(speed, rel=1e-9)
-    assert any("tip corners touch off the path" in remark for remark in results.remarks)
+    assert any("Pair {name}: corner contact outside the path of" in remark for remark in results.remarks)
     assert set(np.unique(tables["load_sharing_loads_I"]["total_load"])) == {50.0, 150.0, 250.0, 350.0}
     # The rows of the nominal load are those of the pair's own table, in its units.
     for key in ("load_sharing", "transmission_error"):
@@ -264,7 +264,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ("design.slope=2.5",), "must be between 0 and 2"),
         ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
         ("mark_minimum_excitation", ("design.exponent=7",), 'requires family = "polynomial"'),
-        ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "needs root stresses"),
+        ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "requires root stresses"),
         ("mark_minimum_excitation", ("design.film={x=['0 mm'],thickness=['1 um','2 um']}",), "one value for each"),
         (
             "mark_minimum_excitation",
@@ -327,13 +327,15 @@ def test_marks_series_says_where_pairs_part():
     found = tables["transmission_error_series_I"]
     assert found["truncation"].max() < 1e-9
     assert np.abs(found["series"] - found["exact"]).max() > 0.1
-    assert any("every pair on the path as loaded" in remark for remark in results.remarks)
+    assert any("Pair {name}: a tooth pair on the path of" in remark for remark in results.remarks)
 
 
 def test_marks_series_says_where_tips_touch_off_the_path():
     _, _, results = run("sources/mark_series", "effects.corner_contact=true")
-    assert any("knows the path alone" in remark for remark in results.remarks)
-    assert not any("knows the path alone" in remark for remark in run("sources/mark_series")[2].remarks)
+    assert any("Pair {name}: corner contact is not covered by" in remark for remark in results.remarks)
+    assert not any(
+        "Pair {name}: corner contact is not covered by" in remark for remark in run("sources/mark_series")[2].remarks
+    )
 
 
 def test_loads_deflections_and_relief_at_the_reports_roll_angles():

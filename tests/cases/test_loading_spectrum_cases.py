@@ -38,7 +38,7 @@ def test_a_family_with_its_spectra():
         high = (spectra["order"] > 20.0) & (spectra["slope"] > 0.0)
         assert (spectra["spectrum"][high] <= 1.05 * spectra["envelope"][high]).all()
         assert (spectra["envelope"][spectra["slope"] == 0.0] == 0.0).all()
-        assert any("slope zero" in remark for remark in results.remarks)
+        assert any("Loading with zero initial slope has no" in remark for remark in results.remarks)
         (one,) = {len(f.panels) for f in results.figures if f.key == "loading_spectrum_factors"}
         assert one == len(results.tables["loading_trade_off"]["slope"])
         tables.append(off)
@@ -80,7 +80,7 @@ def test_cases_of_the_report_run(case):
     ("loading", "words"),
     [
         ({"slopes": [1.0]}, "loading.contact_ratio"),
-        ({"contact_ratio": 0.9}, "no pair is left"),
+        ({"contact_ratio": 0.9}, "base pitches; must be at least 1"),
         ({"contact_ratio": 1.4, "slopes": [2.5]}, "loading.slopes"),
         ({"contact_ratio": 1.4, "family": "polynomial", "exponents": [4]}, "loading.exponents"),
         ({"contact_ratio": 1.4, "exponents": [3]}, "loading.exponents"),

@@ -122,11 +122,11 @@ def test_the_command_writes_the_table_that_others_build_on(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (['stiffness={radii=["60 mm"]}'], "lies off the involute flank"),
-        (['stiffness={radii=["40 mm"]}'], "lies off the involute flank"),
+        (['stiffness={radii=["60 mm"]}'], "is outside the involute flank,"),
+        (['stiffness={radii=["40 mm"]}'], "is outside the involute flank,"),
         (["stiffness.gear=b"], "is not a gear of this case"),
         (["stiffness.pair=II"], "is not a pair of this case"),
-        (["pair={}"], "together with the mating flank"),
+        (["pair={}"], "requires a mating flank for the contact width"),
     ],
 )
 def test_what_the_table_cannot_be_made_for_is_refused(overrides, words):

@@ -170,7 +170,7 @@ def test_it_is_reported_above_the_tolerance_and_not_below(effect):
     assert remarks_at(share * 2.2) == []
     remark = remarks_at(share / 2.2)[0]
     line = f'{effect} = "load-dependent"' if effect == "hertz" else f"{effect} = true"
-    assert f"Write {line} under [effects]." in remark
+    assert f"Set {line} under [effects]." in remark
     assert " um (" in remark
 
 

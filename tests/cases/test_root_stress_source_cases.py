@@ -190,7 +190,7 @@ def test_formula_stands_beside_finite_elements_and_changes_nothing_of_theirs():
         np.testing.assert_array_equal(b["stress_cornell [MPa]"], c["stress [MPa]"])
     assert set(told) < set(found)
     assert found["I.driver.largest_root_tension_cornell"].si == other["I.driver.largest_root_tension"].si
-    assert any("own load alone" in remark for remark in results.remarks)
+    assert any("does not include the loads on neighbouring" in remark for remark in results.remarks)
     names = [curve.name for figure in results.figures for panel in figure.made().panels for curve in panel.items]
     assert sum("cornell" in name for name in names) == 2
     assert sum("finite elements" in name for name in names) == 4
@@ -227,7 +227,7 @@ def test_dynamic_root_stress_is_tooth_force_times_formula():
             "calculix_pair", (HISTORY, "gear.a.teeth=80", "gear.a.bore_radius='60 mm'", source("cornell")),
             "pair.I.root_stress.source = \"cornell\": does not hold .* no radial flank.*gear a.*choose",
         ),
-        ("litvin_lead", ('pair.I.root_stress={source="cornell"}',), "is for plane teeth"),
+        ("litvin_lead", ('pair.I.root_stress={source="cornell"}',), "is defined for the plane (2D) model"),
     ],
 )  # fmt: skip
 def test_refusals_say_what_to_do(case, overrides, words):

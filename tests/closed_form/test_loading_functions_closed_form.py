@@ -168,7 +168,7 @@ def test_impossible_loadings_are_refused():
         Ramp(2.1)
     with pytest.raises(InputError, match=r"design\.exponent"):
         Ramp(1.0, 4)
-    with pytest.raises(RangeError, match="no pair is left"):
+    with pytest.raises(RangeError, match="base pitches; must be at least 1"):
         LoadingFunction(0.9 * A, A)
     with pytest.raises(RangeError, match=r"design\.peak"):
         LoadingFunction(2.2 * A, A, peak=0.4)

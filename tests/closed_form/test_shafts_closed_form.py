@@ -157,7 +157,7 @@ def test_what_does_not_hold_is_refused_in_one_sentence(seats, at, load, word):
 
 
 def test_shafts_without_sections_or_wall_are_refused():
-    with pytest.raises(FegearError, match="give no shaft"):
+    with pytest.raises(FegearError, match="specify no shaft"):
         Shaft(())
     with pytest.raises(FegearError, match="no wall"):
         Section(0.1, 0.05, 0.05)

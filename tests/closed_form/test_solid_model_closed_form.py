@@ -47,7 +47,7 @@ def section_area(one: Gear) -> float:
 
 @contextlib.contextmanager
 def read_back(path):
-    with gmsh_session("read back") as gmsh:
+    with gmsh_session("designed, relief tables interpolated linearly,") as gmsh:
         shapes = gmsh.model.occ.importShapes(str(path))
         gmsh.model.occ.synchronize()
         yield gmsh, shapes

@@ -27,7 +27,7 @@ ONLY_NUMBERS = (
     "stiffen",
     "resonance",
     "no damping",
-    "did not settle",
+    '. Set dynamics.method = "shooting" there.',
     "cannot be reached",
 )
 OF_PAIRS = (

@@ -149,7 +149,7 @@ def test_one_revolution_moves_as_in_fegear(made):
         y = found.sol(time)
         forces = np.array([answer("mesh_force", t, one) for t, one in zip(time, y.T, strict=True)])
     expected, carried = own.approach(time)[:, 0], own.mesh_forces(time)[:, 0]
-    assert 0.2 < np.mean(carried == 0.0) < 0.4, "teeth part"
+    assert 0.2 < np.mean(carried == 0.0) < 0.4, "minimum / mean mesh force; negative: loss of"
     # the integrator of this test knows nothing of the moments at which they do
     assert np.abs(r1 * y[0] - r2 * y[1] - expected).max() < 1e-5 * expected.mean()
     # at the steps of the force, where a pair enters stiff, a place within round-off of one is of either side

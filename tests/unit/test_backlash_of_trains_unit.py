@@ -61,7 +61,7 @@ def test_that_of_the_gears_said_once_more_contradicts_nothing(tmp_path):
     for text in ("50.0 um", "unlimited"):
         own = case(backlash=text, allowance="53.2088886 um")
         assert make_plan(build_scene({**own, "effects": off["effects"]}, "case", tmp_path), STAGES).steps
-    with pytest.raises(InputError, match="only with effects\\.contact_loss"):
+    with pytest.raises(InputError, match="requires effects\\.contact_loss = true"):
         make_plan(build_scene({**case(backlash="60 um"), "effects": off["effects"]}, "case", tmp_path), STAGES)
 
 
@@ -95,5 +95,5 @@ def test_teeth_that_jam_by_rounding_lose_no_contact_and_are_named():
     results = fegear.run(document, progress=False)
     assert results.values["I.largest_contact_loss"].value == 0.0
     said = " ".join(results.remarks)
-    assert "Mesh I: no backlash (the gears jam by 2.05 um, as those with rounded profile shifts do)" in said
+    assert "Mesh I: no backlash (negative by 2.05 um, rounded profile shifts)" in said
     assert "set thickness_allowance of a gear, or train.mesh.I.backlash" in said

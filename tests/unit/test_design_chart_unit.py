@@ -33,7 +33,7 @@ def chart(factor=FACTOR, amounts=(0.5, 1.0, 1.5), **changes):
 def test_the_envelope_joins_the_least_factors_amount_by_amount():
     """Not by length: two amounts with one best length would make a zigzag."""
     (drawn, *_) = design_chart_figures(chart(np.vstack([FACTOR[:2, ::-1], FACTOR[2]])))
-    (envelope,) = (i for i in drawn.panels[0].items if isinstance(i, Curve) and i.name == "least of each amount")
+    (envelope,) = (i for i in drawn.panels[0].items if isinstance(i, Curve) and i.name == "minimum of each amount")
     assert np.asarray(envelope.x).tolist() == [0.5, 0.75, 0.75]
     assert np.asarray(envelope.y).tolist() == [1.5, 1.1, 1.05]
 

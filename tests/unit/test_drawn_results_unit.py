@@ -181,7 +181,7 @@ def test_a_dynamic_factor_over_too_few_speeds_says_where_peaks_may_be_missed():
         0 * whole, none, none,
     )  # fmt: skip
     figure = _factor_figure("I", chart, "motor")
-    assert "From 1909.86 to 2864.79 rpm it changes by 43%" in figure.caption
+    assert "From 1909.86 to 2864.79 rpm the dynamic factor changes by 43 %" in figure.caption
     assert all(item.marked for item in figure.panels[0].items)
     smooth = replace(chart, dynamic_factor=np.full(5, 1.2))
     assert "changes by" not in _factor_figure("I", smooth, "motor").caption

@@ -20,7 +20,7 @@ def test_averaging_is_of_motions_in_time_and_other_methods_of_all():
     still = ("effects.contact_loss=false", "effects.parametric=false")
     assert planned('dynamics.method="averaging"').steps
     assert planned(*still).steps  # of the linear train no method is asked for
-    with pytest.raises(InputError, match="has a meaning only for motions in time"):
+    with pytest.raises(InputError, match="applies to time-domain results only"):
         planned('dynamics.method="averaging"', *still)
 
 

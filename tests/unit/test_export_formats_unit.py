@@ -59,7 +59,9 @@ def test_a_format_is_its_row(teeth, tmp_path):
                "face_width": "10 mm"}
         for (name, gear), hand in zip(GEARS.items(), ("right", "left"), strict=True)
     }  # fmt: skip
-    with pytest.raises(InputError, match="teeth hold plane meshes of spur gears; write dxf or step or relief"):
+    with pytest.raises(
+        InputError, match="teeth: plane meshes are available for spur gears only; use dxf or step or relief"
+    ):
         export_gears(scene_of(gear=helical), tmp_path, (), "teeth")
 
 

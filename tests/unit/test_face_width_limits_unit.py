@@ -46,5 +46,5 @@ def test_a_face_load_factor_near_the_most_that_its_averaging_allows_is_remarked_
     remarks = limit_remarks("I", found, 1)
     assert len(remarks) == said
     if said:
-        assert "cannot exceed 20" in remarks[0]
+        assert "the maximum that can be resolved (20)" in remarks[0]
         assert "1.5 mm" in remarks[0]

@@ -203,7 +203,7 @@ def test_the_outline_of_any_mesh_runs_from_space_to_space():
 def test_deformed_teeth_need_finite_elements():
     pair = {**CASE["pair"]["I"], "compliance": {"source": "weber-banaschek"}}
     scene = build_scene({**CASE, "pair": {"I": pair}, "effects": {"neighbour_coupling": False}}, "case", None)
-    with pytest.raises(InputError, match="not the shape of a deformed tooth"):
+    with pytest.raises(InputError, match="gives flank deflections, not the deformed tooth"):
         make_plan(scene, STAGES, [DEFORMED])
 
 
@@ -240,7 +240,7 @@ def test_what_cannot_be_shown_is_said_and_stops_nothing():
     tasks, told = wanted_on_gears(scene, [("I", "stress"), ("I", "deformed"), ("I", "tool"), ("J", "stress")])
     assert tasks == [STRESS]
     refused, tool = told
-    assert "not the shape of a deformed tooth" in refused["refused"]
+    assert "gives flank deflections, not the deformed tooth" in refused["refused"]
     assert np.shape(tool["lines"]["driver"])[:2] == (31, 2)
     assert tool["tips"] == {
         member: pytest.approx(scene.pairs["I"].gear(member).tip_radius * 1e3) for member in ("driver", "driven")

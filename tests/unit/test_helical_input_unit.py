@@ -99,7 +99,7 @@ def test_what_knows_plane_teeth_alone_refuses_helical_ones():
     with pytest.raises(RangeError, match="spur teeth"):
         rate_spur(pair, "driver", 1e5, RatingChoice())
     source = closed_form_compliance(GearPair(spur(30), spur(40)).driver, "weber-banaschek")
-    with pytest.raises(InputError, match="no plane problem"):
+    with pytest.raises(InputError, match="is not possible in the plane \\(2D\\) model"):
         PairCompliance(pair, source, source)
 
 

@@ -80,7 +80,7 @@ def test_geometry_prints_mass_and_says_what_it_took_for_granted():
     assert table["mass"][0] == pytest.approx(1531.0054, rel=1e-7)
     assert table["inertia"][0] == pytest.approx(165.4591, rel=1e-6)
     assert (table["centre_of_gravity"] == 0.0).all()
-    said = [one for one in found.remarks if "mass and inertia are those" in one]
+    said = [one for one in found.remarks if ": mass and inertia computed with the default" in one]
     assert len(said) == 2
     assert "bore_radius = 8.75 mm and face_width = 1 mm" in said[0]
     assert "outer_radius = " in said[1]

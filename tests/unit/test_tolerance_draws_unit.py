@@ -360,7 +360,7 @@ def test_a_draw_is_an_ordinary_case_with_its_deviations_written_down():
         }}  # fmt: skip
         case["gear"][name]["spacing_errors"] = [f"{v:.17g} m" for v in d.spacing(row, i, scene.gears[name].teeth)]
     found = {value.name: value.si for value in run(case).values}
-    mine = dict(zip(OUTCOMES, data.values["as the case"][row], strict=True))
+    mine = dict(zip(OUTCOMES, data.values["as in the case"][row], strict=True))
     assert mine["te_mean"] == pytest.approx(found["I.te_mean"], rel=1e-4)
     assert mine["te_peak_to_peak"] == pytest.approx(found["I.te_peak_to_peak"], rel=3e-3)
     assert mine["te_harmonic_1"] == pytest.approx(found["I.te_first_harmonic"], rel=3e-3)
@@ -394,10 +394,10 @@ def test_own_deviations_take_the_place_of_those_by_class_when_drawn():
     scene = build_scene(case | {"gear": case["gear"] | {"pinion": lone}}, "case", None)
     assert limits_of(scene, "I", kinds).profile_slope == (0.0, plain.profile_slope[1])
     (said,) = untold(scene, ("pinion", "wheel"), kinds)
-    assert "no profile_slope among its own deviations" in said
+    assert "no profile_slope specified in its deviations" in said
     narrow = case["gear"]["pinion"] | {"face_width": "3 mm", "deviations": own | {"helix_slope": "4 um"}}
     scene = build_scene(case | {"gear": case["gear"] | {"pinion": narrow}}, "case", None)
-    with pytest.raises(InputError, match=r"give profile_slope of gear\.pinion\.deviations"):
+    with pytest.raises(InputError, match=r"specify profile_slope of gear\.pinion\.deviations"):
         limits_of(scene, "I", kinds)
     narrow["deviations"] = narrow["deviations"] | {"profile_slope": "1 um"}
     scene = build_scene(case | {"gear": case["gear"] | {"pinion": narrow}}, "case", None)
@@ -432,7 +432,7 @@ def test_a_draw_over_the_face_is_an_ordinary_case_with_its_deviations_written_do
     data = next(
         one.data for task, one in run(drawn_too, cache).outcomes.items() if task.stage == "tolerance-robustness"
     )
-    assert (np.ptp(data.values["as the case"], axis=0) > 0.0).all()
+    assert (np.ptp(data.values["as in the case"], axis=0) > 0.0).all()
     d, row = data.deviations, 7
     scene = build_scene(WIDE, "case", None)
     pair = scene.pairs["I"]
@@ -453,7 +453,7 @@ def test_a_draw_over_the_face_is_an_ordinary_case_with_its_deviations_written_do
         case["gear"][name]["lead"] = {"slope": f"{d.helix_slope[row, i]:.17g} m"}
         case["gear"][name]["spacing_errors"] = [f"{v:.17g} m" for v in d.spacing(row, i, scene.gears[name].teeth)]
     found = {value.name: value.si for value in run(case, cache).values}
-    mine = dict(zip(data.outcomes, data.values["as the case"][row], strict=True))
+    mine = dict(zip(data.outcomes, data.values["as in the case"][row], strict=True))
     # A lead slope takes nothing from end I and all from end II: half of it more in the middle than the deviation.
     assert mine["te_mean"] + 0.5 * d.helix_slope[row].sum() == pytest.approx(found["I.te_mean"], rel=1e-4)
     assert mine["te_peak_to_peak"] == pytest.approx(found["I.te_peak_to_peak"], rel=2e-3)
@@ -461,7 +461,7 @@ def test_a_draw_over_the_face_is_an_ordinary_case_with_its_deviations_written_do
     assert mine["hertz_pressure"] == pytest.approx(found["I.largest_hertz_pressure"], rel=5e-4)
     assert mine["largest_line_load"] == pytest.approx(found["I.largest_line_load"], rel=5e-4)
     plain = {value.name: value.si for value in run({**WIDE, "results": case["results"]}, cache).values}
-    nominal = dict(zip(data.outcomes, data.nominal["as the case"], strict=True))
+    nominal = dict(zip(data.outcomes, data.nominal["as in the case"], strict=True))
     assert nominal["face_load_factor"] == plain["I.K_Hbeta"]
     assert nominal["hertz_pressure"] == plain["I.largest_hertz_pressure"]
     for member in MEMBERS:
@@ -528,7 +528,7 @@ def test_a_stated_percentile_of_a_relief_is_that_of_draws_of_one_s_own(draws):
     fresh = draw(asked.limits, draws, 12345, own.teeth, "random")
     values = drawn_outcomes(replace(own, engagement=tips), fresh).values[:, 0]
     for percent in (50.0, 95.0) if draws > 73 else (50.0,):
-        mine, stated = (percentile(v, percent) for v in (values, found.values["best in the percentile"][:, 0]))
+        mine, stated = (percentile(v, percent) for v in (values, found.values["best percentile"][:, 0]))
         errors = [0.5 * (p.high - p.low) / 1.96 for p in (mine, stated)]
         assert abs(mine.value - stated.value) < 2.0 * np.hypot(*errors), percent
     searched = draw(asked.limits, 20, (asked.part.seed, 1), own.teeth).centre_distance

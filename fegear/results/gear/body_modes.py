@@ -84,8 +84,8 @@ def _inputs(scene: Scene, name: str) -> BodyToSolve:
     gear, settings = scene.gears[name], solid_settings_of(scene, name)
     if gear.body is not None and gear.body.holes is not None:
         raise InputError(
-            f"gear.{name}.body.holes", gear.body.holes.count, "are not known to body-modes, whose waves are those of "
-            "equal teeth", "leave body-modes or the holes out",
+            f"gear.{name}.body.holes", gear.body.holes.count, "are not supported "
+                                                              "by body-modes", "remove body-modes or the holes",
         )  # fmt: skip
     section = replace(settings.section.scaled(_COARSER), order=2)
     return BodyToSolve(gear, replace(settings, section=section), name, _gears(scene, internal=True))
@@ -134,7 +134,9 @@ def _figure(seen: Seen) -> Iterator[Figure]:
             points.append(turned(there, 2.0 * math.pi * k / gear.teeth))
             moved.append(np.sqrt((motion**2).sum(axis=0)))
         triangles = np.hstack([corners + k * count for k in range(gear.teeth)])
-        field = TriangleField(np.hstack(points) * m, triangles, np.concatenate(moved), 1.0, "motion over the largest")
+        field = TriangleField(
+            np.hstack(points) * m, triangles, np.concatenate(moved), 1.0, "motion relative to the maximum"
+        )
         end = 1.06 * gear.tip_radius * 1e3
         panels.append(Panel(
             Axis("x", "mm", limits=(-end, end)), Axis("y", "mm", limits=(-end, end)), (field,),
@@ -142,8 +144,8 @@ def _figure(seen: Seen) -> Iterator[Figure]:
         ))  # fmt: skip
     yield Figure(
         f"body_modes_{asked.name}", f"Mode shapes of gear {asked.name}",
-        f"The lowest mode of gear {asked.name} with each number of nodal diameters, seen along the axis: how far the "
-        "middle of its web moves, and, in the plane of the picture, where to.",
+        f"The lowest mode of gear {asked.name} with each number of nodal diameters, seen along the axis: axial "
+        "(colour) and in-plane displacement of the web centre plane.",
         tuple(panels), columns=2,
     )  # fmt: skip
 
@@ -160,7 +162,7 @@ def _on_the_body(seen: Seen) -> str:
 _SHEET = Sheet(
     tables=(
         Rows(
-            "body_modes_{name}", "Natural frequencies of gear {name}, bore held",
+            "body_modes_{name}", "Natural frequencies of gear {name}, bore fixed",
             (
                 "diameters", Cell("frequency", si=lambda seen: _unit(seen.asked) * seen.data.frequencies),
                 Off("frequency", lambda seen: _unit(seen.asked) * seen.data.errors),
@@ -182,7 +184,7 @@ _SHEET = Sheet(
             _on_the_body
         ),
         lambda seen: [
-            f"Gear {ring}: internal; natural frequencies of bodies are computed for external gears alone."
+            f"Gear {ring}: internal gear; natural frequencies of gear bodies are computed for external gears only."
             for ring in seen.asked.rings
         ],
     ),

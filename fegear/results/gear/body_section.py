@@ -87,15 +87,15 @@ def _figure(name: str, gear: Gear, body: GearBody) -> Figure:
     for key, (letter, size, _) in dimensions(gear, body).items():
         unit = "deg" if key == "web_inclination" else "mm"
         given.append(f"{letter.replace('{', '').replace('}', '')} = {size:.6g} {unit} ({key})")
-    said = f"Gear {name}, cut along its axis, teeth drawn up to the tip: {', '.join(given)}."
+    said = f"Gear {name}, axial section, teeth drawn up to the tip: {', '.join(given)}."
     if holes is not None:
         panels.append(_along_axis(gear, body, holes))
         turn = f", turned by {math.degrees(holes.angle):.6g} deg (holes.angle)" if holes.angle else ""
-        taken = "" if holes.tooth is None else f" All teeth are taken as tooth {holes.tooth} is."
+        taken = "" if holes.tooth is None else f" All teeth use the results of tooth {holes.tooth}."
         said += (
             f" {holes.count} holes of {2e3 * holes.radius:.6g} mm (holes.diameter) on a circle of "
             f"{2e3 * holes.circle_radius:.6g} mm (holes.circle_diameter){turn}, dashed in the section. Seen from end "
-            f"II tooth 0 stands at the top, its loaded flank at the right.{taken}"
+            f"II, tooth 0 is at the top with its loaded flank on the right.{taken}"
         )
     return Figure(f"gear_body_{name}", f"Section of the body of gear {name}", said, tuple(panels), columns=len(panels))
 
@@ -110,14 +110,14 @@ def _section(gear: Gear, body: GearBody) -> Panel:
         outline(1e3 * hatched(gear, body), "", "grey", 0.4),
         outline(1e3 * _corners(gear, body), "section", "outline", 2.0),
         outline(np.array([(-end, end), (root, root)]), "root circle", "grey", 1.0, "dot"),
-        outline(polylines(middles), "axis and middle of the face", "grey", 1.0, "dashdot"),
+        outline(polylines(middles), "axis and mid-face", "grey", 1.0, "dashdot"),
     ]
     if holes is not None:
         rings = (holes.circle_radius - holes.radius, holes.circle_radius + holes.radius)
         drawn = 1e3 * polylines(np.array([body.web, (r, r)]) for r in rings)
         items.append(outline(drawn, "holes", "orange", 1.6, "dash"))
     ends = (-end, "end I"), (end, "end II")
-    axes = Axis("along the axis", limits=(-side, side), ticks=ends), Axis("from the axis", "mm", limits=(low, high))
+    axes = Axis("axial", limits=(-side, side), ticks=ends), Axis("radial", "mm", limits=(low, high))
     letters, lines, at = [], [], []
     for letter, _, line in dimensions(gear, body).values():
         letters.append(letter)
@@ -130,7 +130,7 @@ def _section(gear: Gear, body: GearBody) -> Panel:
             at[-1][0] -= 0.4 * _OFF * size * upright
     (x, y), notes = np.array(at).T, tuple(letters)
     items += [outline(polylines(lines), "", "ink", 1.0), Points(x, y, "", "ink", size=0.1, written=True, notes=notes)]
-    return Panel(*axes, tuple(items), title="Section along the axis", height=1.5, equal=True)
+    return Panel(*axes, tuple(items), title="Axial section", height=1.5, equal=True)
 
 
 def _along_axis(gear: Gear, body: GearBody, holes: WebHoles) -> Panel:
@@ -146,5 +146,5 @@ def _along_axis(gear: Gear, body: GearBody, holes: WebHoles) -> Panel:
         outline(every, "holes", "orange", 2.0),
         Points([0.0], [1e3 * gear.tip_radius], "", "ink", size=4.0, written=True, notes=("0",)),
     )
-    axes = Axis("across", "mm", limits=(-half, half)), Axis("toward tooth 0", "mm", limits=(-half, half))
-    return Panel(*axes, items, title="Seen along the axis, from end II", height=1.5, equal=True)
+    axes = Axis("across", "mm", limits=(-half, half)), Axis("towards tooth 0", "mm", limits=(-half, half))
+    return Panel(*axes, items, title="Axial view from end II", height=1.5, equal=True)

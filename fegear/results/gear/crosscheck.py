@@ -70,25 +70,25 @@ _WHOLE = ""
 
 _GEAR_REMARKS = (
     (
-        "Crosscheck: one tooth of the whole gear is loaded normal to its flank, without friction and with no other "
-        "tooth loaded; everything is per unit line load (secant, not local slope)."
+        "Crosscheck: single tooth of the complete gear loaded normal to the flank, no friction, no other tooth "
+        "loaded; all values per unit line load (secant)."
     ),
     (
         "Crosscheck of root stress: FE is the largest tangential stress along the fillet below the loaded flank, "
-        "radial compression included, in the whole ring with its own rim; the formulas know no rim, and whether they "
-        "subtract the radial compression stands in table crosscheck_sources. Root stress per line load is the same in "
-        "plane stress and plane strain."
+        "radial compression included, in the whole ring with its own rim; the formulas do not include the rim; table "
+        "crosscheck_sources states whether radial compression is subtracted. Root stress per line load is the same "
+        "in plane stress and plane strain."
     ),
     (
-        "Crosscheck of gear compliance: tooth and body without the contact zone; from FE the exact half-plane approach "
-        "down to the tooth's centre line along the line of action is taken off."
+        "Crosscheck of gear compliance: tooth and body without the contact zone; the half-plane approach down to the "
+        "tooth centre line along the line of action is subtracted from FE."
     ),
 )
 
 
 _PAIR_REMARK = (
-    "Crosscheck of pair compliance: one tooth pair with its contact of Hertz's width, no load sharing; FE "
-    "deflections are means weighted with the contact pressure."
+    "Crosscheck of pair compliance: one tooth pair with Hertzian contact width, no load sharing; FE deflections are "
+    "averaged with the contact pressure as weight."
 )
 
 
@@ -289,7 +289,7 @@ class PairCompared:
         return PairComplianceRows.of(self.answers.compliance, self.answers.reference)
 
     @property
-    @shows("N/(mm.um)", "greatest stiffness of one tooth pair by FE")
+    @shows("N/(mm.um)", "maximum stiffness of one tooth pair, FE")
     def single_stiffness_fe(self) -> float:
         """[Pa]."""
         return float(1.0 / self.answers.reference.total.min())
@@ -309,7 +309,7 @@ class PairCompared:
         return None if iso is None else iso.theoretical
 
     @property
-    @shows("", "c' over FE")
+    @shows("", "c' / FE")
     def ratio_to_fe(self) -> float | None:
         """Of both."""
         c = self.single_stiffness_iso
@@ -376,10 +376,10 @@ _TOOTH = (
     "finite elements"
 )
 _STRESS_DRAWN = (
-    "largest fillet stress under a load normal to the flank, its ratio to the finite elements, and its place (ISO "
-    "looks at 30 deg always)"
+    "maximum fillet stress for a load normal to the flank, its ratio to FE, and its position (ISO: always the 30 deg "
+    "tangent)"
 )
-_COMPLIANCE_DRAWN = "along the line of action (secant), and its ratio to the finite elements"
+_COMPLIANCE_DRAWN = "along the line of action (secant), and its ratio to FE"
 _STRESS_TABLE = Rows("crosscheck_root_stress_{key}", _ROOT, ROOT_STRESS_COLUMNS, of="root_stress")
 _TOOTH_TABLE = Rows("crosscheck_compliance_{key}", _TOOTH, GEAR_COMPLIANCE_COLUMNS, of="compliance")
 _PAIR_TABLE = Rows("crosscheck_compliance_{key}", _of_pair, PAIR_COMPLIANCE_COLUMNS, of="compliance")
@@ -410,7 +410,7 @@ _SHEET = Sheet(
     name=lambda _asked: _WHOLE,
     of=Everything.of,
     tables=(
-        Rows("crosscheck_sources", "The closed forms and what each compares", (Every("sources"),), of="sources"),
+        Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
         Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
         Each("pairs", _PAIR_TABLE),
         Each("iso", ISO_TABLE),

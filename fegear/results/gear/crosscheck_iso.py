@@ -81,7 +81,7 @@ def _rim(scene: Scene, gear: str, said: list[str]) -> float | None:
     try:
         return gear_body(scene, gear, said).rim_thickness
     except InputError as error:
-        said.append(f"{error.key} {error.rule}: crosscheck gives no root stress of ISO 6336 for gear {gear}.")
+        said.append(f"{error.key} {error.rule}: no ISO 6336 root stress in crosscheck for gear {gear}.")
         return scene.case.gear[gear].rim(scene.gears[gear].root_radius)
 
 
@@ -159,25 +159,25 @@ class IsoRow:
         return self._of("stress")
 
     @property
-    @shows("MPa", "F_t/(b m_n) Y_F Y_S alone")
+    @shows("MPa", "F_t/(b m_n) Y_F Y_S")
     def form_stress(self) -> float:
         """[Pa]."""
         return self.gear.form_stress
 
     @property
-    @shows("MPa", "largest root tension of the same (virtual) spur tooth by FE")
+    @shows("MPa", "maximum root stress of the same (virtual) spur tooth, FE")
     def root_tension_fe(self) -> float:
         """[Pa]."""
         return self.gear.fe
 
     @property
-    @shows("", "form_stress over FE")
+    @shows("", "form_stress / FE")
     def ratio_to_fe(self) -> float:
         """Of both."""
         return self.gear.form_stress / self.gear.fe
 
     @property
-    @shows("", "why there is nothing")
+    @shows("", "reason, if no value")
     def reason(self) -> str:
         """Empty where there is something."""
         return self.gear.reason
@@ -363,19 +363,19 @@ class CornellSection:
         return self.found.section.base_half_angle
 
     @property
-    @shows("mm", "r, the trochoid's smallest")
+    @shows("mm", "r, minimum radius of the trochoid")
     def fillet_radius(self) -> float:
         """[m]."""
         return self.found.section.fillet_radius * self.gear.module
 
     @property
-    @shows("mm", "R_m, where it meets the radial flank")
+    @shows("mm", "R_m, junction with the radial flank")
     def fillet_height(self) -> float:
         """[m]."""
         return self.found.section.fillet_height * self.gear.module
 
     @property
-    @shows("mm", "h_0, tooth thickness there")
+    @shows("mm", "h_0, tooth thickness at R_m")
     def root_thickness(self) -> float:
         """[m]."""
         return self.found.section.root_thickness * self.gear.module
@@ -421,16 +421,16 @@ def section_figure(seen: Seen) -> Iterator[Figure]:
         section,
         Curve(mm * np.zeros(2), mm * np.array([height, apex[1]]), "arm l_{s}'", "purple", dash="dot", markers=False),
         Points([mm * at[0]], [mm * at[1]], "load", "red", "circle", notes=("load",)),
-        Points([mm * width], [mm * height], f"place by B.2, {math.degrees(gamma):.1f}°", "green", "diamond"),
-        Points([fe_at[0] * 1e3], [fe_at[1] * 1e3], f"place by finite elements, {fe_angle:.1f}°", "blue", "square"),
+        Points([mm * width], [mm * height], f"position by B.2, {math.degrees(gamma):.1f}°", "green", "diamond"),
+        Points([fe_at[0] * 1e3], [fe_at[1] * 1e3], f"position by FE, {fe_angle:.1f}°", "blue", "square"),
     )
     x, y = Axis("x", "mm", limits=(-across * mm, across * mm)), Axis("y", "mm", limits=(low * mm, high * mm))
     yield Figure(
         f"cornell_section_{name}",
         f"Cornell's root section of gear {name}",
-        f"Gear {name}: the tooth with the load that stresses its root most by finite elements, at radius "
-        f"{load * mm:.6g} mm; Cornell's tooth has a radial flank below the base circle and a circular fillet. Angles "
-        "are those of the fillet's tangent to the centre line.",
+        f"Gear {name}: tooth with the load position of maximum root stress (FE), radius {load * mm:.6g} mm; "
+        "Cornell's tooth has a radial flank below the base circle and a circular fillet. Angles are those of the "
+        "fillet's tangent to the centre line.",
         (Panel(x, y, items, height=1.6, equal=True),),
     )
 

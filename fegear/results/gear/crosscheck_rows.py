@@ -54,10 +54,10 @@ class Compared:
     reason: NDArray[np.str_]
     result: Array
     reference: Array
-    formula: NDArray[np.str_] = shown("", "name of the formula, see crosscheck_sources")
+    formula: NDArray[np.str_] = shown("", "formula, see crosscheck_sources")
 
     @property
-    @shows("", "formula over FE", label="formula / FE")
+    @shows("", "formula / FE", label="formula / FE")
     def ratio_to_fe(self) -> Array:
         """Shape (F N,)."""
         return self.result / self.reference
@@ -103,7 +103,7 @@ class RootStressRows(Compared):
     error: Array = shown("MPa.mm/N")
     place_radius: Array = shown("mm")
     place_radius_fe: Array = shown("mm")
-    place_angle: Array = shown("deg", label="fillet tangent to centre line")
+    place_angle: Array = shown("deg", label="angle of fillet tangent to tooth centre line")
     place_angle_fe: Array = shown("deg")
 
     @property
@@ -239,14 +239,14 @@ ROOT_STRESS_COLUMNS: Columns = (
         "root_tension",
         si="root_stress.result",
         of=_stiffness,
-        meaning="by the formula, per line load normal to the flank",
+        meaning="root stress by the formula, per line load normal to the flank",
     ),
     Cell(
         "root_tension",
         si="root_stress.reference",
         of=_stiffness,
         name="root_tension_fe",
-        meaning="largest tangential stress of the fillet by FE",
+        meaning="maximum tangential stress in the fillet, FE",
     ),
     Off("root_tension", "root_stress.error", "estimated error of FE", of=_stiffness, name="root_tension_fe"),
     "ratio_to_fe",
@@ -255,14 +255,14 @@ ROOT_STRESS_COLUMNS: Columns = (
         si="root_stress.place_radius",
         of=_stiffness,
         name="place_radius",
-        meaning="where the formula puts it",
+        meaning="location by the formula",
     ),
     Cell(
         "root_tension_radius",
         si="root_stress.place_radius_fe",
         of=_stiffness,
         name="place_radius_fe",
-        meaning="where FE puts it",
+        meaning="position of the maximum, FE",
     ),
     Cell("root_tension_angle", si="root_stress.place_angle", of=_stiffness, name="place_angle"),
     Cell(
@@ -270,7 +270,7 @@ ROOT_STRESS_COLUMNS: Columns = (
         si="root_stress.place_angle_fe",
         of=_stiffness,
         name="place_angle_fe",
-        meaning="the same by FE",
+        meaning="angle of the maximum, FE",
     ),
     Cell("reasons", si="root_stress.reason", of=_compliance),
 )
@@ -285,7 +285,7 @@ GEAR_COMPLIANCE_COLUMNS: Columns = (
         si="compliance.reference",
         of=_stiffness,
         name="compliance_fe",
-        meaning="FE, the loaded tooth without its contact zone",
+        meaning="FE, loaded tooth without contact zone",
     ),
     Off("c_self", "compliance.error", "estimated error of FE", of=_stiffness, name="compliance_fe"),
     Cell(
@@ -293,7 +293,7 @@ GEAR_COMPLIANCE_COLUMNS: Columns = (
         si="compliance.contact_zone",
         of=_stiffness,
         name="contact_zone",
-        meaning="half-plane approach that was taken off from FE",
+        meaning="half-plane approach subtracted from FE",
     ),
     "ratio_to_fe",
     *(
@@ -331,9 +331,9 @@ def extremes(kind: str, where: str) -> Any:
         for owner, (name, one) in of(seen).items():
             inner = replace(seen, key=owner, one=one)
             for quantity, meaning in (
-                ("lowest_ratio", f"{name} over FE, smallest over the positions"),
-                ("highest_ratio", f"{name} over FE, largest over the positions"),
-                ("largest_deviation", f"{name} against FE, relative"),
+                ("lowest_ratio", f"{name} / FE, minimum over the positions"),
+                ("highest_ratio", f"{name} / FE, maximum over the positions"),
+                ("largest_deviation", f"{name} relative to FE"),
             ):
                 yield from Number(quantity, owner="{key}", meaning=meaning).values(inner)
 

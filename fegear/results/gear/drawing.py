@@ -115,11 +115,11 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     return Figure(
         f"tooth_{name}",
         f"Tooth, tool and mesh of gear {name}",
-        f"Gear {name}: {gear.teeth} teeth, module {m:.6g} mm. The {tool} tool rolls through the space and leaves the "
-        "tooth standing; the one sector of the mesh is solved for the whole ring.",
+        f"Gear {name}: {gear.teeth} teeth, module {m:.6g} mm. Generation by the {tool} tool, and FE mesh of one "
+        "sector (cyclic symmetry, complete gear).",
         (
             Panel(Axis("x", "mm", limits=space), Axis("y", "mm", limits=depth), lines,
-                  title="Tooth and the tool that generates it", height=1.5, equal=True),
+                  title="Tooth and generating tool", height=1.5, equal=True),
             Panel(Axis("x", "mm", limits=(-across, across)),
                   Axis("y", "mm", limits=(below, above)), sector,
                   title=f"Sector mesh: {mesh.triangles.shape[1]} six-node triangles", height=1.5, equal=True),
@@ -154,15 +154,15 @@ def deformed_figure(name: str, influence: GearInfluence, line_load: float) -> Fi
             title=title, height=1.26, equal=True,
         )
         for half, centre, triangles, title in (
-            (1.06 * max(gear.tip_radius, gear.bore_radius) * 1e3, 0.0, whole.triangles[:3], "Whole gear"),
+            (1.06 * max(gear.tip_radius, gear.bore_radius) * 1e3, 0.0, whole.triangles[:3], "Full gear"),
             (0.5 * (high - low), 0.5 * (high + low), finer, "Loaded tooth"),
         )
     ]  # fmt: skip
     return Figure(
         f"deformed_{name}",
         f"Deformed gear {name}",
-        f"Gear {name} under {line_load * 1e-3:.4g} N/mm on tooth 0, displacements {scale:.3g} times as large; thin "
-        f"lines show the gear at rest. The colour scale ends at {top:.3g} MPa; under the contact the stress is higher.",
+        f"Gear {name} with {line_load * 1e-3:.4g} N/mm on tooth 0, displacements x {scale:.3g}; thin lines: "
+        f"undeformed gear. Colour scale limited to {top:.3g} MPa (higher below the contact).",
         tuple(panels),
         columns=2,
         field=MeshField(name, rest, whole.triangles, fields),
@@ -280,15 +280,18 @@ def pair_figure(name: str, drawing: Drawing) -> Figure:
     pair, names = drawing.pairs[name], drawing.members[name]
     single = 1.0 <= pair.contact_ratio < 2.0
     places = ("", "") if pair.internal else (" (below)", " (above)")
-    alone = "; between B and D it is alone" if single else "; at every B and D the number of pairs in contact changes"
+    alone = (
+        "; between B and D it is in single contact"
+        if single
+        else "; at every B and D the number of pairs in contact changes"
+    )
     alone += " in one section" if pair.driver.helix_angle else ""
     return Figure(
         f"gear_data_{name}",
         f"Pair {name} in mesh",
-        f"Pair {name}: {names[0]} drives{places[0]}, {names[1]} is driven{places[1]}. Drawn where the flanks touch at "
-        f"the pitch point. A tooth pair comes into contact at A and leaves it at E{alone}. Specific sliding is "
-        "negative where a flank is dragged, below its own pitch circle."
-        + (" All of it lies in the section across the axes." if pair.driver.helix_angle else ""),
+        f"Pair {name}: {names[0]} drives{places[0]}, {names[1]} is driven{places[1]}. Shown in contact at the pitch "
+        f"point C. Path of contact A to E{alone}. Specific sliding is negative in the dedendum, below the pitch "
+        "circle." + (" Transverse section." if pair.driver.helix_angle else ""),
         (_drawn(pair), _sliding(pair)),
     )
 
@@ -315,7 +318,7 @@ def _drawn(pair: GearPair) -> Panel:
                notes=tuple(point.letter for point in points)),
     ]  # fmt: skip
     return Panel(
-        Axis("across, from the pitch point", "mm", limits=(-wide * 1e3, wide * 1e3)),
+        Axis("perpendicular to the line of centres, from the pitch point", "mm", limits=(-wide * 1e3, wide * 1e3)),
         Axis("along the centre line", "mm", limits=(-tall * 1e3, tall * 1e3)),
         tuple(items), title="The pair in mesh", height=1.5, equal=True,
     )  # fmt: skip

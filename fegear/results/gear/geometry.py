@@ -58,7 +58,7 @@ class PairData:
         return self.pair if self.pair.driver.helix_angle != 0.0 else None
 
     @property
-    @shows("", "tooth loss factor H_V of rigid gears")
+    @shows("", "tooth loss factor H_V (rigid gears)")
     def rigid_loss_factor(self) -> float | None:
         """Of teeth without deflection; None where at times none of them is in contact, and of internal pairs."""
         from fegear.formulas.friction import wimmer
@@ -132,8 +132,8 @@ def drawing_of(scene: Scene) -> Drawing:
 def assumed_cutters(scene: Scene) -> tuple[str, ...]:
     """Sentences on ring gears whose cutter the case leaves open."""
     return tuple(
-        f"Gear {name}: cutter.teeth is not given; assumed default: {gear.tooth.cutter.teeth} teeth, the largest cutter "
-        "that trims no tip of the ring. It makes the fillet, not the flanks."
+        f"Gear {name}: cutter.teeth not specified, {gear.tooth.cutter.teeth} assumed (largest cutter that does not "
+        "trim the ring tips); affects the fillet only."
         for name, gear in scene.gears.items()
         if isinstance(gear.tooth, InternalTooth)
         and (part := scene.case.gear[name].cutter) is not None
@@ -152,22 +152,22 @@ def assumed_bodies(scene: Scene) -> tuple[str, ...]:
         if part.face_width is None:
             lacking.append(f"face_width = {gear.face_width * 1e3:.6g} mm")
         if lacking:
-            found.append(f"Gear {name}: mass and inertia are those of the default {' and '.join(lacking)}.")
+            found.append(f"Gear {name}: mass and inertia computed with the default {' and '.join(lacking)}.")
     return tuple(found)
 
 
 def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
     """Which gears have no span or no dimension over balls, and why."""
     spanless = tuple(
-        f"Gear {name} has no span: its face is too narrow for discs that touch its leaning flanks."
+        f"Gear {name}: span measurement not possible, face width too small for the helix angle."
         for name, gear in drawing.gears.items()
         if usual_span(gear) is None and not gear.tooth.internal
     )
     return spanless + tuple(
-        f"Gear {name} has no dimension over or between balls: none that touches both flanks stands out of the tooth "
-        "space."
+        f"Gear {name} has no dimension over or between balls: no ball that contacts both flanks protrudes from the "
+        "tooth space."
         if gear.tooth.internal
-        else f"Gear {name} has no dimension over balls: none that touches both flanks stands out of the tooth space."
+        else f"Gear {name}: no dimension over balls; balls touching both flanks do not protrude beyond the tip circle."
         for name, gear in drawing.gears.items()
         if measured(gear, drawing.balls.get(name)) is None
     )
@@ -266,8 +266,8 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
     for name, pair in pairs.items():
         if pair.total_contact_ratio < 1.0:
             yield (
-                f"Pair {name}: the contact ratio of {pair.total_contact_ratio:.4f} is below 1: no teeth are on the "
-                "path at some roll positions. Lengthen the teeth, raise their number or lower the centre distance."
+                f"Pair {name}: contact ratio {pair.total_contact_ratio:.4f} is below 1, motion is not transmitted "
+                "continuously. Increase tooth depth or number of teeth, or reduce the centre distance."
             )
     for name, pair in pairs.items():
         for sentence in (interference(pair, "driver").sentence, interference(pair, "driven").sentence):
@@ -279,7 +279,7 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
                 yield f"Pair {name}: {one.of_pinion.sentence(pair.driver.module)}."
     for name, pair in pairs.items():
         if pair.clearing:
-            yield f"Pair {name}: these gears cannot run; {pair.clearing} to clear all tips."
+            yield f"Pair {name}: tip interference; {pair.clearing} to avoid it."
 
 
 def _figures(seen: Seen) -> Iterator[Figure | DeferredFigure]:

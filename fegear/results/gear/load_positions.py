@@ -27,7 +27,10 @@ def chosen_gears(scene: Scene) -> tuple[str, ...]:
     named = scene.case.stiffness.gear
     if named is not None and named not in scene.spur_gears:
         raise InputError(
-            "stiffness.gear", f'"{named}"', "is helical, and its teeth are no plane problem", "name a spur gear"
+            "stiffness.gear",
+            f'"{named}"',
+            "is helical; the plane (2D) model applies to spur gears only",
+            "specify a spur gear",
         )
     return tuple(scene.spur_gears) if named is None else (named,)
 
@@ -44,13 +47,15 @@ def check_contacts_of(scene: Scene, name: str) -> None:
     """Refuse loads without a mate, and contacts that lie off the flank or are wider than it."""
     part = scene.case.stiffness
     if part.pair is not None and _pair_of(scene, name) is None:
-        raise InputError("stiffness.pair", f'"{part.pair}"', f"does not hold gear {name}", "name a pair of that gear")
+        raise InputError(
+            "stiffness.pair", f'"{part.pair}"', f"does not contain gear {name}", "specify a pair with this gear"
+        )
     if part.load is not None and _pair_of(scene, name) is None:
         raise InputError(
             "stiffness.load",
             f"{part.load * 1e-3:.6g} N/mm",
-            "gives a contact width only together with the mating flank",
-            f"describe a pair with gear {name}, or give contact_half_width",
+            "requires a mating flank for the contact width",
+            f"specify a pair with gear {name}, or contact_half_width",
         )
     gear = scene.gears[name]
     for i, radius in enumerate(part.radii or ()):
@@ -59,8 +64,8 @@ def check_contacts_of(scene: Scene, name: str) -> None:
             raise InputError(
                 f"stiffness.radii[{i}]",
                 f"{radius * 1e3:.9g} mm",
-                f"lies off the involute flank of gear {name}",
-                f"it runs from {low * 1e3:.9g} mm to {high * 1e3:.9g} mm",
+                f"is outside the involute flank of gear {name}",
+                f"valid range {low * 1e3:.6g} mm to {high * 1e3:.6g} mm",
             )
     if part.contact_half_width is not None:
         from fegear.fem.plane.table import check_contacts
@@ -151,7 +156,7 @@ def stiffness_inputs(scene: Scene, name: str) -> StiffnessInputs:
     wide = part.face_positions is not None
     assumed = () if wide and gear.body else bore_remarks(scene, name)
     if part.contact_half_width is None and part.load is None:
-        usual = f"c_self is for a half-width of {USUAL_HALF_WIDTH} modules."
-        assumed = (f"Gear {name}: no contact_half_width or load was given, so {usual}", *assumed)
+        usual = f"c_self is for a contact half-width of {USUAL_HALF_WIDTH} modules."
+        assumed = (f"Gear {name}: contact_half_width or load not specified; {usual}", *assumed)
     places, tolerance = face_positions(scene, name) if wide else None, scene.case.accuracy.tolerance
     return StiffnessInputs(gear, radii, contact_half_width(scene, name, radii), places, tolerance, assumed, name)

@@ -71,7 +71,7 @@ def _inputs(scene: Scene, name: str) -> FlanksToEvaluate:
         drawn = described_relief(scene, name)
         if drawn.left_out:
             remarks.append(
-                f"Gear {name}: its profile is compared with an involute, not with its relief, because {drawn.left_out}."
+                f"Gear {name}: profile compared with the involute, without relief, because {drawn.left_out}."
             )
         roll = measured.profile.x / gear.base_radius
         design["profile"] = np.zeros(roll.size) if drawn.relief is None else -drawn.relief.removal(roll)
@@ -83,7 +83,8 @@ def _inputs(scene: Scene, name: str) -> FlanksToEvaluate:
     part = scene.case.gear[name]
     if part.spacing_errors is None and any(len(one.teeth) > 1 for one in (measured.profile, measured.helix) if one):
         remarks.append(
-            f"Gear {name}: pairs take the mean of its teeth; how unevenly these stand is what spacing_errors says."
+            f"Gear {name}: the mean of the measured teeth is used for all teeth; pitch deviations are taken from "
+            "spacing_errors."
         )
     return FlanksToEvaluate(measured, gear, design, part.tolerance_class, tuple(remarks), name)
 
@@ -115,34 +116,34 @@ class OneTrace:
     deviations: TraceDeviations
     gear: Gear
     trace: Kind = shown("", "profile or helix")
-    tooth: str = shown("", "its number in the file, or the mean of all")
+    tooth: str = shown("", "tooth number in the file, or the mean of all teeth")
 
     @property
-    @shows("um", "rise of the mean line over the range")
+    @shows("um", "slope deviation: rise of the mean line over the evaluation range")
     def slope_deviation(self) -> float:
         """f_H [m]."""
         return self.deviations.slope
 
     @property
-    @shows("um", "range of the trace about its mean line")
+    @shows("um", "form deviation (range about the mean line)")
     def form_deviation(self) -> float:
         """f_f [m]."""
         return self.deviations.form
 
     @property
-    @shows("um", "range of the trace about the design")
+    @shows("um", "range of the trace about the design profile")
     def total_deviation(self) -> float:
         """F [m]."""
         return self.deviations.total
 
     @property
-    @shows("um", "height of the mean parabola over its ends")
+    @shows("um", "crowning: height of the mean parabola over its ends")
     def crown(self) -> float:
         """[m]."""
         return self.deviations.crown
 
     @property
-    @shows("", "tightest of ISO 1328-1:2013 that holds it", name="class")
+    @shows("", "tightest class of ISO 1328-1:2013 met", name="class")
     def kept(self) -> float | None:
         """nan beyond class 11, None where the standard knows no such gear."""
         return _kept(self.gear, self.trace, (self.deviations,))
@@ -178,7 +179,7 @@ class OneKind:
         )
 
     @property
-    @shows("mm", "height over the middle of the face")
+    @shows("mm", "face position from mid-face")
     def z(self) -> Array | None:
         """Of helix traces, shape (N,) [m]."""
         return self.traces.x if self.kind == "helix" else None
@@ -203,19 +204,19 @@ class OneKind:
         return None if roll is None else gear.tooth.radius_of_roll(roll) * gear.module
 
     @property
-    @shows("um", "mean of all teeth, from the involute or helix", label="deviation")
+    @shows("um", "mean deviation of all teeth from the involute or helix", label="deviation")
     def measured(self) -> Array:
         """Shape (N,) [m]."""
         return self.traces.mean
 
     @property
-    @shows("um", "of the drawn flank, from the same")
+    @shows("um", "design flank, deviation from the involute or helix")
     def design(self) -> Array:
         """Shape (N,) [m]."""
         return self.asked.design[self.kind]
 
     @property
-    @shows("um", "that pairs take")
+    @shows("um", "deviation used in gear pairs")
     def removal(self) -> Array:
         """Shape (N,) [m]."""
         return self.traces.removal
@@ -227,7 +228,7 @@ class OneKind:
         return self.deviations[-1].slope
 
     @property
-    @shows("um", "height of its mean parabola")
+    @shows("um", "crowning of the mean trace")
     def crown(self) -> float:
         """Of the mean trace [m]."""
         return self.deviations[-1].crown
@@ -245,7 +246,7 @@ class OneKind:
         return max(one.form for one in self.deviations[:-1])
 
     @property
-    @shows("um", "total deviation, largest of all teeth")
+    @shows("um", "total deviation, maximum over all teeth")
     def total(self) -> float:
         """[m]."""
         return max(one.total for one in self.deviations[:-1])
@@ -258,7 +259,7 @@ class OneKind:
         return float(getattr(tolerances_of(self.asked.gear, drawn).rounded, f"{self.kind}_{what}"))
 
     @property
-    @shows("", "tightest class of ISO 1328-1:2013 that every tooth keeps", name="class")
+    @shows("", "tolerance class (ISO 1328-1:2013) met by all teeth", name="class")
     def kept(self) -> float | None:
         """None where the standard knows no such gear, and where a tooth exceeds all classes."""
         return None if self._kept is None or math.isnan(self._kept) else self._kept
@@ -345,7 +346,7 @@ def _exact(_seen: Seen) -> float:
 def _tolerance(what: str) -> Number:
     return Number(
         what, _exact, si=lambda seen: seen.one.allowed(what), name=f"{{key}}_{what}_tolerance",
-        meaning="of class {asked.tolerance_class}, ISO 1328-1:2013",
+        meaning="tolerance of class {asked.tolerance_class}, ISO 1328-1:2013",
     )  # fmt: skip
 
 

@@ -53,15 +53,15 @@ class FilletStress:
     """
 
     arc: Array = shown("mm", "arc length along the fillet from the root land", label="arc length from the root land")
-    radius: Array = shown("mm", "distance from the gear's centre")
-    angle: Array = shown("deg", "clockwise angle from the tooth's centre line")
-    tangent_angle: Array = shown("deg", "fillet tangent to tooth centre line")
+    radius: Array = shown("mm", "radius")
+    angle: Array = shown("deg", "angle from the tooth centre line, clockwise")
+    tangent_angle: Array = shown("deg", "angle of the fillet tangent to the tooth centre line")
     stress: Array = shown(
-        "MPa.mm/N", "tangential stress per line load on the same tooth", label="tangential stress per line load"
+        "MPa.mm/N", "tangential stress per line load, load on the same tooth", label="tangential stress per line load"
     )
-    stress_prev: Array = shown("MPa.mm/N", "the same on the tooth before the loaded one")
-    stress_next: Array = shown("MPa.mm/N", "the same on the tooth after the loaded one")
-    side: NDArray[np.str_] = shown("", "fillet below the loaded flank (tension) or the other one")
+    stress_prev: Array = shown("MPa.mm/N", "tangential stress of the previous tooth, per line load")
+    stress_next: Array = shown("MPa.mm/N", "tangential stress of the next tooth, per line load")
+    side: NDArray[np.str_] = shown("", "tension side (fillet of the loaded flank) or compression side")
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -148,7 +148,8 @@ _SHEET = Sheet(
         Chart(
             "fillet_{name}", "Stress along the fillets of gear {name}",
             "Gear {name}: tangential stress along both fillets with the load at radius {d.radius:.6g}.",
-            (_panel("tension", "Fillet below the loaded flank"), _panel("compression", "Fillet of the other flank")),
+            (_panel("tension", "Fillet of the loaded flank (tension side)"), _panel("compression",
+                "Opposite fillet (compression side)")),
             of="sides.tension", columns=2,
         ),
         _deformed,
@@ -162,6 +163,6 @@ ROOT_STRESS = Stage(
     inputs=FilletInputs.of,
     compute=_worst_load,
     present=_SHEET.present,
-    cites=citing(*RING, Citation("iso-6336-3", "the 30 degree tangent that the place is compared with", "clause 6")),
+    cites=citing(*RING, Citation("iso-6336-3", "30 degree tangent for comparison of the position", "clause 6")),
     forecast=lambda _scene, _name: Forecast({}, 0.01),
 )

@@ -60,7 +60,7 @@ def _gear(scene: Scene) -> str:
 
 def _study(scene: Scene) -> StudyPart:
     if scene.case.study is None:
-        raise InputError("study", "(not given)", "is needed for root-stress-study", "add a [study] part")
+        raise InputError("study", "(not given)", "is required for root-stress-study", "add a table [study]")
     return scene.case.study
 
 
@@ -68,14 +68,12 @@ def _check(scene: Scene, _subject: str) -> None:
     study = _study(scene)
     if study.gear is None and len(scene.spur_gears) > 1:
         raise InputError(
-            "study.gear", "(not given)", "must say which gear is varied", f"one of {', '.join(scene.spur_gears)}"
+            "study.gear", "(not given)", "must specify the gear to vary", f"one of {', '.join(scene.spur_gears)}"
         )
     name = _gear(scene)
     for key in ("tip_diameter", "tooth_mesh"):
         if getattr(scene.case.gear[name], key) is not None:
-            raise InputError(
-                f"gear.{name}.{key}", "(given)", "has no meaning in a study of many gears", f"remove {key}"
-            )
+            raise InputError(f"gear.{name}.{key}", "(given)", "is not used in a study of many gears", f"remove {key}")
 
 
 def _rack(v: Variant) -> tuple[float, float]:
@@ -120,26 +118,26 @@ def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: flo
     heads: tuple[tuple[str, str, str], ...] = (
         ("teeth", "", "number of teeth"),
         ("profile_shift", "", "profile shift coefficient"),
-        ("rack_tip_radius", "", "of the generating rack, in modules"),
-        ("load_position", "", "share of the roll angle between start (0) and end (1) of the involute"),
+        ("rack_tip_radius", "", "of the basic rack, in modules"),
+        ("load_position", "", "load position: fraction of roll angle from start (0) to end (1) of the involute"),
         ("load_radius", "mm", "radius of the load"),
         ("formula", "", "name of the formula"),
-        ("stress", "MPa.mm/N", "by the formula: root stress over line load"),
-        ("stress_fe", "MPa.mm/N", "by finite elements"),
-        ("ratio_to_fe", "", "formula over finite elements"),
-        ("place_angle", "deg", "fillet tangent to tooth centre line where the formula puts the stress"),
-        ("place_angle_fe", "deg", "the same by finite elements"),
-        ("verdict", "", "high, low, within 5 %, or breaks down"),
+        ("stress", "MPa.mm/N", "root stress per line load, formula"),
+        ("stress_fe", "MPa.mm/N", "root stress per line load, FE"),
+        ("ratio_to_fe", "", "formula / FE"),
+        ("place_angle", "deg", "angle of the fillet tangent at the critical section, formula"),
+        ("place_angle_fe", "deg", "angle of the fillet tangent at the maximum, FE"),
+        ("verdict", "", "high, low, within 5 %, or no result"),
         ("reason", "", declared(RootStressAnswers, "reasons").meaning),
     )
     if drawn:
         heads += (
-            ("rack_dedendum", "", "of the generating rack, in modules"),
-            ("pressure_angle", "deg", "of the generating rack"),
-            ("stress_fe_error", "MPa.mm/N", "estimated error of the finite elements"),
+            ("rack_dedendum", "", "of the basic rack, in modules"),
+            ("pressure_angle", "deg", "of the basic rack"),
+            ("stress_fe_error", "MPa.mm/N", "estimated error of FE"),
         )
     made = (Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(heads, columns, strict=True))
-    return Table("root_stress_study", tuple(made), "Where each root-stress formula is high, low or breaks down")
+    return Table("root_stress_study", tuple(made), "Over- and underestimation of each root-stress formula")
 
 
 def _values(table: Table, names: tuple[str, ...], *, drawn: bool) -> tuple[Value, ...]:
@@ -153,16 +151,18 @@ def _values(table: Table, names: tuple[str, ...], *, drawn: bool) -> tuple[Value
         verdicts = table["verdict"][table["formula"] == name]
         if r.size:
             for key, number, words in (
-                ("lowest_ratio", r.min(), "smallest formula over FE"),
-                ("median_ratio", np.median(r), "median formula over FE"),
-                ("highest_ratio", r.max(), "largest formula over FE"),
+                ("lowest_ratio", r.min(), "minimum formula / FE"),
+                ("median_ratio", np.median(r), "median formula / FE"),
+                ("highest_ratio", r.max(), "maximum formula / FE"),
             ):
                 values.append(Value(f"{name}.{key}", float(number), "", None, f"{words} in the study"))
         for key in ("high", "low", "within 5 %", "breaks down"):
             hits = verdicts == key
             error = share_error(hits.reshape(-1, LOADS)) if drawn else 0.0
             head = key.replace(" %", "_percent").replace(" ", "_")
-            values.append(Value(f"{name}.share_{head}", float(np.mean(hits)), "", error, f"share of all points: {key}"))
+            values.append(
+                Value(f"{name}.share_{head}", float(np.mean(hits)), "", error, f"fraction of all points: {key}")
+            )
     return tuple(values)
 
 
@@ -211,8 +211,8 @@ def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
     base, names, drawn = asked.base, tuple(ROOT_STRESS_SOURCES), asked.study.samples is not None
     table = _table(found, names, base.module, drawn=drawn)
     about = (
-        "Study of root stress: one tooth of the whole ring under one load normal to its flank, no friction; FE is the "
-        "largest tangential stress of the fillet below the load, radial compression included; ratio of bore to root "
+        "Study of root stress: one tooth of the full gear, load normal to the flank, no friction; FE: maximum "
+        "tangential stress in the fillet of the loaded flank, including radial compression; ratio of bore to root "
         f"radius {base.bore_radius / base.root_radius:.4g} in all gears. A stress per line load is the same in plane "
         "stress and plane strain."
     )
@@ -248,7 +248,7 @@ def _tiles(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
     edges = np.flatnonzero(np.diff([z for z, *_ in gears]))
     marks = tuple(Mark("y", len(gears) - 1.5 - int(edge)) for edge in edges)
     axes = (
-        Axis("load: share of roll angle, start 0, end 1", categories=shares),
+        Axis("load position: fraction of roll angle (0 start, 1 end)", categories=shares),
         Axis("teeth | profile shift | rack tip radius in modules", categories=labels[::-1]),
     )
     tiles = ratio.reshape(len(gears), len(names), len(positions))
@@ -262,9 +262,10 @@ def _tiles(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
     )  # fmt: skip
     return Figure(
         "root_stress_study",
-        "Where each root-stress formula is high, low or breaks down",
-        "Root stress of one tooth under a load normal to the flank, formula over finite elements: white agrees, orange "
-        "is high (safe), blue is low, × on grey breaks down (the table says why, point by point).",
+        "Over- and underestimation of each root-stress formula",
+        "Root stress of one tooth under a load normal to the flank, formula over finite elements: white: agreement, "
+        "orange: overestimate (conservative), blue: underestimate, × on grey: formula not applicable (reason in the "
+        "table).",
         views=views,
         most_views=len(views),
     )
@@ -277,7 +278,8 @@ def _scatter(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
         rows = table["formula"] == name
         found = zip(*(np.asarray(table[key], dtype=float)[rows] for key in _KEYS), strict=True)
         notes = tuple(
-            f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load at {p:.3g}" for z, x, r, p in found
+            f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load position {p:.3g}"
+            for z, x, r, p in found
         )
         teeth = np.searchsorted(counts, np.asarray(table["teeth"], dtype=float)[rows])
         place = teeth + lane * (number - 0.5 * (len(names) - 1))
@@ -285,16 +287,16 @@ def _scatter(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
     ticks = tuple((float(k), f"{z:.0f}") for k, z in enumerate(counts))
     edges = tuple(Mark("x", k + 0.5) for k in range(counts.size - 1))
     panel = Panel(
-        Axis("number of teeth; one bar for each formula", ticks=ticks),
+        Axis("number of teeth; one bar per formula", ticks=ticks),
         Axis("formula / FE"),
         tuple(points),
         (*edges, Mark("y", 1.0, "finite elements")),
     )
     return Figure(
         "root_stress_ratios",
-        "How far each root-stress formula is from the finite elements",
-        "One point for each gear and load position; 1 agrees, above 1 is safe. In the report, point at one to see "
-        "which gear it is.",
+        "Root-stress formulas relative to FE",
+        "One point for each gear and load position; 1 agrees, above 1 is safe. In the report, hover over a point to "
+        "identify the gear.",
         (panel,),
     )
 
@@ -307,8 +309,8 @@ def _histogram(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
     panel = Panel(Axis("formula / FE"), Axis("points", zero=True), tuple(curves), (Mark("x", 1.0, "agreement"),))
     return Figure(
         "root_stress_histogram",
-        "How often each formula is how far off",
-        f"Points of the study by the ratio of formula to finite elements, in steps of {_BIN:g}.",
+        "Distribution of formula / FE",
+        f"Distribution of the ratio formula / FE over the points of the study, in steps of {_BIN:g}.",
         (panel,),
     )
 
@@ -401,15 +403,15 @@ def spread_figure(table: Mapping[str, Array], key: str = "root_stress_spread") -
     off, upper = fe_error(table), _number(table, "load_position") >= HIGH
     panels = [_panel(table, np.ones(upper.size, dtype=bool), "all loads", off)]
     if upper.any() and not upper.all():
-        panels.append(_panel(table, upper, "loads on the upper half, where ratings put them", off))
+        panels.append(_panel(table, upper, "loads on the upper half of the flank (as in ratings)", off))
     gears = len(np.unique(np.stack([_number(table, k) for k in WORDS if k != "load_position"], axis=1), axis=0))
     points = int((np.asarray(table["formula"]) == names_of(table)[0]).sum())
     return Figure(
         key,
-        "How often each root-stress formula is how far off",
-        f"{points} loads on {gears} gears drawn evenly over {bounds_in_words(table)} (share of the roll angle). What "
-        "lies left of 1 is low, unsafe; the steeper a curve, the better one number mends the formula. Grey, and "
-        f"narrower than the dotted line where it is not seen: estimated error of the finite elements, "
+        "Distribution of the errors of the root-stress formulas",
+        f"{points} loads on {gears} gears drawn evenly over {bounds_in_words(table)} (share of the roll angle). Left "
+        "of 1: stress underestimated (unsafe). The steeper the curve, the better a constant correction factor works. "
+        "Grey, and narrower than the dotted line where it is not seen: estimated error of the finite elements, "
         f"{100.0 * off:.2g} % at 95 % of the points.",
         tuple(panels),
         columns=2,
@@ -423,7 +425,7 @@ def _panel(table: Mapping[str, Array], rows: NDArray[np.bool_], title: str, off:
         curves.append(spread_curve(ratio, name, f"series:{number}"))
     return Panel(
         Axis("root stress, formula / FE", limits=_SHOWN),
-        Axis("points with a smaller ratio", "%", limits=(0.0, 100.0)),
+        Axis("fraction of points with a smaller ratio", "%", limits=(0.0, 100.0)),
         tuple(c for c in curves if c is not None),
         (Zone("x", 1.0 - off, 1.0 + off), Mark("x", 1.0), Mark("y", 50.0)),
         title=title,

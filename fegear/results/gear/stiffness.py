@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, first_of_largest
+from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.case.built.tooth_influence import solution_settings
 from fegear.engine.citation import citing
@@ -83,9 +84,9 @@ def _at_pitch(seen: Seen) -> dict[str, AtPitch]:
     order = np.argsort(t.radius)
     b = np.interp(gear.pitch_radius, t.radius[order], t.half_width[order])
     found = {
-        "c_self": (known.contact(at, b)[:2], "self compliance"),
-        "c_prev": (known.neighbour_with_error(-1, at, at), "tooth before"),
-        "c_next": (known.neighbour_with_error(1, at, at), "tooth after"),
+        "c_self": (known.contact(at, b)[:2], "self-compliance c_0"),
+        "c_prev": (known.neighbour_with_error(-1, at, at), "previous tooth"),
+        "c_next": (known.neighbour_with_error(1, at, at), "next tooth"),
     }
     return {key: AtPitch(off.item(), word, c.item()) for key, ((c, off), word) in found.items()}
 
@@ -104,8 +105,8 @@ def tolerance_remarks(who: str, label: str, relative: Array, radius: Array, tole
     """Where the estimated relative errors of a quantity over the radius [m] miss the tolerance, if anywhere."""
     i = int(first_of_largest(relative))
     said = (
-        f"{who}: the estimated error of {label} reaches {relative[i]:.1e} (tolerance {tolerance:.0e}), at radius "
-        f"{radius[i] * 1e3:.6g} mm; at {np.mean(relative <= tolerance):.0%} of the {of} it is within the tolerance."
+        f"{who}: estimated error of {label} up to {percent(relative[i])} (tolerance {100.0 * tolerance:g} %) at "
+        f"radius {radius[i] * 1e3:.6g} mm; within tolerance at {percent(np.mean(relative <= tolerance))} of the {of}."
     )
     return [said] if relative[i] > tolerance else []
 
@@ -115,7 +116,7 @@ def _remarks(seen: Seen) -> list[str]:
     # The neighbour's deflection is small compared with the loaded tooth's, to which it is added: that is its scale.
     for label, value, error in (
         ("c_self", t.c_self, t.errors["c_self"]),
-        ("c_next over c_self", t.c_self, t.errors["c_neighbour"]),
+        ("c_next / c_self", t.c_self, t.errors["c_neighbour"]),
         ("root tension", t.root_tension, t.errors["root_tension"]),
         ("root compression", t.root_compression, t.errors["root_compression"]),
     ):
@@ -233,9 +234,9 @@ _SHEET = Sheet(
                 Over(
                     _roll_axis,
                     (
-                        _line("root_tension", "root_tension", "tension, fillet below the loaded flank", "tension"),
+                        _line("root_tension", "root_tension", "tension side (fillet of the loaded flank)", "tension"),
                         _line(
-                            "root_compression", "root_compression", "compression, other fillet (magnitude)",
+                            "root_compression", "root_compression", "compression side (magnitude)",
                             "compression",
                         ),
                     ),

@@ -12,6 +12,7 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index, first_of_largest
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.base.shown import declared
 from fegear.case.built.solid_influence import check_source
 from fegear.engine.citation import Citation, citing
@@ -50,8 +51,8 @@ _USUAL_FORCE = 1e3
 
 
 _SIDES: dict[Side, str] = {
-    "tension": "largest tangential stress of the fillet below the loaded flank, anywhere along the face",
-    "compression": "most negative tangential stress of the other fillet, anywhere along the face",
+    "tension": "root stress, tension side: maximum over the face width",
+    "compression": "root stress, compression side: minimum over the face width",
 }
 
 
@@ -138,8 +139,8 @@ def _check(scene: Scene, name: str) -> None:
     for i, place in enumerate(wanted if isinstance(wanted, list) else ()):
         if abs(place) > half * (1.0 + 1e-9):
             raise InputError(
-                f"stiffness.face_positions[{i}]", f"{place * 1e3:.9g} mm", f"lies off the face of gear {name}",
-                f"it runs from {-half * 1e3:.9g} mm to {half * 1e3:.9g} mm, 0 in its middle",
+                f"stiffness.face_positions[{i}]", f"{place * 1e3:.9g} mm", f"is outside the face width of gear {name}",
+                f"valid range {-half * 1e3:.6g} mm to {half * 1e3:.6g} mm from mid-face",
             )  # fmt: skip
 
 
@@ -210,8 +211,8 @@ def _map(seen: Seen) -> Iterator[Figure]:
     yield Figure(
         f"flank_{name}",
         f"Flank of gear {name}",
-        f"Gear {name}, per force on a band: approach of the contact, and the largest tension that it causes in the "
-        f"fillet. Estimated error of c_0 at most {worst:.1e} of it.",
+        f"Gear {name}, per force on a band: approach of the contact and maximum root stress (tension side). "
+        f"Estimated error of c_0 at most {percent(worst)}.",
         (over(t, "c_self", "c_{0} of the contact"), over(t.root["tension"], "value", "largest root tension")),
         columns=2,
     )
@@ -225,8 +226,8 @@ def _along(seen: Seen) -> Iterator[Figure]:
     chosen = np.unique(np.round(np.linspace(0, count - 1, min(count, _MOST_CURVES))).astype(int))
     panels = []
     for side, sign, title, label in (
-        ("tension", 1.0, "Fillet below the loaded flank", "largest tension up the fillet"),
-        ("compression", -1.0, "Fillet of the other flank", "largest compression (magnitude)"),
+        ("tension", 1.0, "Fillet of the loaded flank (tension side)", "maximum tension in the fillet"),
+        ("compression", -1.0, "Opposite fillet (compression side)", "maximum compression (magnitude)"),
     ):
         found = t.root[side]
         places, along = drawn(found, "places"), sign * drawn(found, "along")[row]
@@ -239,8 +240,8 @@ def _along(seen: Seen) -> Iterator[Figure]:
         panels.append(Panel(*axes, curves, title=title))
     yield Figure(
         f"root_stress_over_face_{name}",
-        f"Root stress of gear {name} along its face",
-        f"Gear {name}: largest tangential stress up each fillet along the face, per force on bands at radius "
+        f"Root stress of gear {name} over the face width",
+        f"Gear {name}: maximum tangential stress in both fillets over the face width, per force on bands at radius "
         f"{t.radius[row] * 1e3:.6g} mm.",
         tuple(panels),
         columns=2,
@@ -286,13 +287,12 @@ def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure
     )
     camera = ((0.9, 0.75, 1.3), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     holed = fine.body is not None and fine.body.holes is not None
-    holes = " The holes of its web are neglected here." if holed else ""
+    holes = " Web holes are neglected here." if holed else ""
     return Figure(
         f"deformed_tooth_{name}",
         f"Deformed tooth of gear {name}",
-        f"Gear {name} under {force:.4g} N on a band ({where}), displacements "
-        f"{scale:.3g} times as large. The colour scale ends at {top:.3g} MPa; under the band the stress is "
-        f"higher.{holes}",
+        f"Gear {name} under {force:.4g} N on a band ({where}), displacements scaled by {scale:.3g}. Colour scale "
+        f"limited to {top:.3g} MPa; stress under the band is higher.{holes}",
         (Panel(Axis(), Axis(), (shown,), height=1.5, camera=camera),),
         field=SolidMeshField(f"{name}_tooth", rest, field.mesh.wedges, {"displacement": moved.T, "von_mises": stress}),
         under=f"{force:.4g} N",
@@ -315,7 +315,7 @@ _SHEET = Sheet(
     tables=(
         Rows(
             "stiffness_over_face_{name}",
-            "Compliance and root stress of gear {name} over its face, per force on a band",
+            "Compliance and root stress of gear {name} over the face width, per force on a band",
             (
                 *map(_over_positions, ("radius", "roll_angle")), _over_radii("position"),
                 *map(_flat, ("c_self", "c_prev", "c_next")),
@@ -358,6 +358,6 @@ SOLID_STIFFNESS = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    cites=citing(*RING, Citation("iso-21771", "the transverse section, turned along the face")),
+    cites=citing(*RING, Citation("iso-21771", "transverse section, rotated along the face width")),
     forecast=_forecast,
 )

@@ -24,15 +24,17 @@ if TYPE_CHECKING:
 class TeethOverHoles:
     """What each tooth does under the same load, over the mean of all, shape (T,)."""
 
-    tooth: NDArray[np.int64] = shown("", "clockwise from tooth 0", label="tooth", table="teeth")
+    tooth: NDArray[np.int64] = shown("", "tooth number, clockwise from tooth 0", label="tooth", table="teeth")
     deflection: Array = shown(
-        "", "deflection of a band at half height in the middle of the face, over its mean over all teeth", table="teeth"
+        "", "deflection of a band at half tooth height, mid-face, relative to the mean of all teeth", table="teeth"
     )
     root_tension: Array = shown(
-        "", "largest root tension under it along the face, over its mean over all teeth", table="teeth"
+        "", "maximum root stress (tension side) over the face width, relative to the mean of all teeth", table="teeth"
     )
     root_compression: Array = shown(
-        "", "largest root compression under it along the face, over its mean over all teeth", table="teeth"
+        "",
+        "maximum root stress (compression side) over the face width, relative to the mean of all teeth",
+        table="teeth",
     )
 
     @property
@@ -66,11 +68,11 @@ def _uneven(seen: Seen) -> TeethOverHoles | None:
 
 def _caption(seen: Seen) -> str:
     tooth = seen.asked.gear.body.holes.tooth
-    taken = "the mean" if tooth is None else f"tooth {tooth} for all"
+    taken = "the mean" if tooth is None else f"tooth {tooth} for all teeth"
     return f"Gear {seen.name}: each tooth loaded at half height in the middle of the face; pairs take {taken}."
 
 
-_TITLE = "Teeth of gear {name} over the holes of its web, each under the same load"
+_TITLE = "Variation of tooth compliance of gear {name} due to web holes (equal load)"
 #: Of a result whose data have the `SolidInfluence` of a gear as ``influence``.
 HOLES_TABLE = Rows("teeth_over_holes_{name}", _TITLE, (Every("teeth"),), of=_uneven)
 HOLES_FIGURE = Chart(
@@ -84,7 +86,7 @@ HOLES_FIGURE = Chart(
                 Line(f"{key}_off", key.replace("_", " "), f"series:{i}")
                 for i, key in enumerate(("deflection", "root_tension", "root_compression"))
             ),
-            Axis("off the mean", "%"),
+            Axis("deviation from mean", "%"),
             x_options={"whole": True},
         ),
     ),

@@ -62,37 +62,37 @@ class CheckRow:
         return self.check.of
 
     @property
-    @shows("", "what is compared with its limit", table="checks")
+    @shows("", "quantity compared with its limit", table="checks")
     def rule(self) -> str:
         """In words."""
         return self.check.rule
 
     @property
-    @shows("", "in the unit of the next column", table="checks")
+    @shows("", "value, in the unit of the next column", table="checks")
     def value(self) -> float:
         """[mm] or a ratio."""
         return self._scale * self.check.value
 
     @property
-    @shows("", "the least that is usual", table="checks")
+    @shows("", "usual minimum", table="checks")
     def limit(self) -> float:
         """[mm] or a ratio."""
         return self._scale * self.check.limit
 
     @property
-    @shows("", "of value and limit; empty for ratios", table="checks")
+    @shows("", "unit of value and limit; empty for ratios", table="checks")
     def unit(self) -> str:
         """Millimetres or none."""
         return self.check.unit
 
     @property
-    @shows("", "holds or broken", table="checks")
+    @shows("", "met or not met", table="checks")
     def verdict(self) -> str:
         """Whether the rule is kept."""
         return "holds" if self.check.holds else "broken"
 
     @property
-    @shows("", "none where the limit is zero", table="checks")
+    @shows("", "value / limit; none if the limit is zero", table="checks")
     def value_over_limit(self) -> float:
         """A limit of zero has no such ratio."""
         return self.check.value / self.check.limit if self.check.limit > 0.0 else np.nan
@@ -114,7 +114,7 @@ class Verdict:
     """Rules that hold, or those that are broken, as points: value over limit, and the place of the rule's name."""
 
     place: Array = shown("")
-    share: Array = shown("", label="value over its limit")
+    share: Array = shown("", label="value / limit")
 
 
 @dataclass(frozen=True)
@@ -129,13 +129,13 @@ class Checked:
         return tuple(row for row in self.rows if not row.check.holds)
 
     @property
-    @shows("", "rules that apply to this case")
+    @shows("", "number of applicable rules")
     def rules_checked(self) -> float:
         """How many."""
         return float(len(self.rows))
 
     @property
-    @shows("", "of them")
+    @shows("", "number of rules not met")
     def rules_broken(self) -> float:
         """How many."""
         return float(len(self.broken))
@@ -173,7 +173,7 @@ def _points(word: str, role: str, *, holds: bool) -> Line:
     )
 
 
-_TITLE = "The drawing against rules of thumb"
+_TITLE = "Design check (rules of thumb)"
 _SHEET = Sheet(
     name=lambda _asked: "",
     of=lambda checks, _asked: Checked(tuple(map(CheckRow, checks))),
@@ -181,10 +181,10 @@ _SHEET = Sheet(
     values=(Number("rules_checked", _exact), Number("rules_broken", _exact)),
     figures=(
         Chart(
-            "tooth_geometry_check", _TITLE, "Each rule's value over its limit; left of the line a rule is broken.",
+            "tooth_geometry_check", _TITLE, "Value / limit for each check; left of the line: limit not met.",
             (
                 Over(
-                    Axis("value over its limit", zero=True),
+                    Axis("value / limit", zero=True),
                     (_points("holds", "green", holds=True), _points("broken", "red", holds=False)),
                     _names, marks=lambda _: (Mark("x", 1.0, "limit"),),
                 ),

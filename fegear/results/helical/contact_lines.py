@@ -144,7 +144,7 @@ class ShownLines:
     length: LineLength
 
     @property
-    @shows("", "number of the line", name="line")
+    @shows("", "number of the contact line", name="line")
     def number(self) -> Array:
         """In each row, from 1."""
         return np.repeat(np.arange(1, self.lines.phi_1.shape[0] + 1), self.lines.phi_1.shape[1])
@@ -155,7 +155,7 @@ class ShownLines:
         return values if np.isfinite(values).all() else None
 
     @property
-    @shows("arcsec", "of the aligned pair, the same at all angles", name="aligned_transmission_error")
+    @shows("arcsec", "of the aligned pair, constant over all angles", name="aligned_transmission_error")
     def play(self) -> float:
         """[rad]."""
         return float((self.lines.phi_2 - self.pair.ratio * self.lines.phi_1).mean())
@@ -205,7 +205,7 @@ def _on_teeth(name: str, pair: HelicalPair, lines: LineContact, title: str) -> F
         panels.append(Panel(Axis(), Axis(), tuple(items), title=which, height=1.25, camera=camera))
     return Figure(
         f"contact_lines_on_teeth_{name}", title,
-        f"Pair {name}: the straight lines along which pinion and gear touch one after the other, on a tooth of either.",
+        f"Pair {name}: contact lines on one tooth of pinion and gear.",
         tuple(panels), columns=2,
     )  # fmt: skip
 
@@ -258,8 +258,8 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "contact_lines_{name}", "Contact lines of pair {name}",
-            "Pair {name}, aligned: lines along which one tooth pair touches, at even steps of the pinion angle. They "
-            "are straight in space, tangent to the base helix; over the radius they bend.",
+            "Pair {name}, aligned: contact lines of one tooth pair at equal steps of the pinion angle; straight and "
+            "tangent to the base helix, curved over the radius.",
             (
                 Over(
                     lambda seen: Axis(f"height z on the {seen.one.which}", "mm"),
@@ -292,12 +292,12 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(
-            "Pair {name}: contact lines are those of the aligned pair with flanks as designed; errors of the case "
-            "other than that of the centre distance, and its modification, leave points in place of lines.",
+            "Pair {name}: contact lines of the aligned, unmodified pair; misalignment or modification gives point "
+            "contact instead.",
             when=lambda seen: seen.asked.left_out,
         ),
         Remark(
-            "Pair {name}: lines of a spur gear are parallel to its axis, so that u1 and u2 do not exist.",
+            "Pair {name}: contact lines of spur gears are parallel to the axis; u1 and u2 are not defined.",
             when=lambda seen: seen.data.pair.pinion.helix_angle == 0.0,
         ),
     ),

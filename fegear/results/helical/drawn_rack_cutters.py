@@ -99,14 +99,15 @@ def _sections(name: str, cutters: tuple[RackCutter, RackCutter], u: Array) -> Fi
         Panel(Axis("y_{c2}", "mm"), Axis("x_{c2}", "mm"), other, (Mark("x", a_m, "a_{m}"),),
               title="gear cutter in its own frame", equal=True),
         Panel(Axis("u along the straight profile", "mm"), Axis("departure a_{c} u²", "um"),
-              (outline(departure, "", "blue"),), title="departure as it is"),
+              (outline(departure, "", "blue"),), title="departure, true scale"),
     )  # fmt: skip
     angles = " and ".join(f"{math.degrees(cutter.gear.normal_pressure_angle):.6g}" for cutter in cutters)
     return Figure(
         f"rack_cutters_{name}",
         f"Normal sections of the rack cutters of pair {name}",
-        f"Pair {name}: rack cutters in the normal section, with profile angles of {angles} deg. The pinion's profile "
-        f"leaves the straight one by {departure[1].max():.4g} um at most. Back flanks are the mirror image.",
+        f"Pair {name}: rack cutters in the normal section, with profile angles of {angles} deg. Maximum departure of "
+        f"the pinion profile from the straight line {departure[1].max():.4g} um. Non-working flanks are the mirror "
+        "image.",
         panels,
         columns=2,
     )
@@ -142,8 +143,8 @@ def _surfaces(name: str, title: str, pair: HelicalPair, cutters: tuple[RackCutte
     eye = centre + face * 1e3 * (0.9 * side + 1.4 * tooth + np.array([-0.7, 0.0, 0.0]))
     camera = (tuple(eye.tolist()), tuple(centre.tolist()), (0.0, 0.0, 1.0))
     caption = (
-        f"Pair {name}: the surfaces that generate the flanks. They are one tool and touch along a line that makes the "
-        f"helix angle of {math.degrees(pair.gear.helix_angle):.4g} deg with the axes of the gears."
+        f"Pair {name}: surfaces generating the flanks; contact along a line at the helix angle of "
+        f"{math.degrees(pair.gear.helix_angle):.4g} deg to the gear axes."
     )
     return Figure(
         f"cutter_surfaces_{name}", title, caption, (Panel(Axis(), Axis(), items, height=1.25, camera=camera),)
@@ -179,8 +180,8 @@ def _frames(name: str, cutters: tuple[RackCutter, RackCutter]) -> Figure:
     return Figure(
         f"cutter_frames_{name}",
         f"Rack cutters of pair {name} on the pitch plane",
-        f"Pair {name}: the pitch plane with the traces of the cutters' teeth, which make the helix angle with the axes "
-        "of the gears. The normal section of a cutter is moved along them.",
+        f"Pair {name}: pitch plane with the traces of the cutter teeth at the helix angle to the gear axes, along "
+        "which the normal section is translated.",
         tuple(panels),
         columns=2,
     )
@@ -217,8 +218,8 @@ def _generation(name: str, gears: tuple[str, str], flanks: tuple[GeneratedFlank,
     return Figure(
         f"generation_{name}",
         f"Generation of the flanks of pair {name} by rack cutters",
-        f"Pair {name}, seen along the axis: the cutter rolls on the pitch circle, and the flank is the envelope of its "
-        "positions. It touches where the normal goes through the instantaneous axis of the moment.",
+        f"Pair {name}, seen along the axis: the cutter rolls on the pitch circle, and the flank is the envelope of "
+        "its positions. Contact where the normal passes through the instantaneous centre of rotation.",
         tuple(panels),
         columns=2,
     )

@@ -37,15 +37,15 @@ def _flanks(name: str, contact: ToothContact) -> Figure:
     middle = contact.phi_1.size // 2
     phi_1 = float(contact.phi_1[middle])
     phi_2 = float(contact.error[middle]) + contact.pair.ratio * phi_1
-    spot = Spot(contact.mesh.point[:, middle] * 1e3, "red", "earliest contact")
+    spot = Spot(contact.mesh.point[:, middle] * 1e3, "red", "first contact")
     pitch, width = contact.pair.cut_pinion.pitch_radius * 1e3, contact.pair.pinion.face_width * 1e3
     camera = ((pitch - 1.2 * width, -2.2 * width, 1.8 * width), (pitch, 0.0, 0.0), (0.0, 0.0, 1.0))
     items: tuple[Surface | Spot, ...] = (*_surfaces(contact, phi_1, phi_2), spot)
     return Figure(
         f"flanks_{name}",
         f"Teeth of pair {name} in mesh",
-        f"Pair {name}: teeth of pinion and gear in mesh, in the pinion's frame at rest; the red point is the earliest "
-        "contact. Below the form circles the teeth are not drawn.",
+        f"Pair {name}: teeth of pinion and gear in mesh, in the frame of the pinion; red: first contact. Not drawn "
+        "below the form circles.",
         (Panel(Axis(), Axis(), items, height=1.25, camera=camera),),
     )
 
@@ -127,8 +127,8 @@ def _section(gear: Gear, name: str, x_axis: Literal["space", "tooth"], letter: s
     foot = base * math.cos(end) - 0.15 * (tip - base * math.cos(end))
     role = "blue" if index == 1 else "orange"
     circles = (
-        (tip, "outside circle", "solid"),
-        (gear.pitch_radius, "pitch circle", "dashdot"),
+        (tip, "tip circle", "solid"),
+        (gear.pitch_radius, "reference circle", "dashdot"),
         (base, "base circle", "dot"),
     )
     items: tuple[Item, ...] = (
@@ -151,8 +151,8 @@ def _frames(name: str, gears: tuple[str, str], pair: HelicalPair) -> Figure:
     return Figure(
         f"frames_{name}",
         f"Frames of pair {name}",
-        f"Pair {name}: along the pinion's axis the frames fixed to housing, pinion and gear; along the line of centres "
-        "the axes with the error of the shaft angle. The pinion turns counter-clockwise, the gear clockwise.",
+        f"Pair {name}: view along the pinion axis with the frames of housing, pinion and gear; view along the line "
+        "of centres with the shaft angle error. The pinion turns counter-clockwise, the gear clockwise.",
         (_along_axis(gears, pair), _along_centres(gears, pair)),
         columns=2,
     )
@@ -169,18 +169,18 @@ def _along_axis(gears: tuple[str, str], pair: HelicalPair) -> Panel:
         return polylines([np.array([[centre, centre + c], [0.0, s]]), np.array([[centre, centre - s], [0.0, c]])]) * 1e3
 
     items: tuple[Item, ...] = (
-        outline(circle * r1 * 1e3, f"pitch circle of {gears[0]}", "blue", 1.2),
-        outline((circle * r2 + np.array([[distance], [0.0]])) * 1e3, f"pitch circle of {gears[1]}", "orange", 1.2),
+        outline(circle * r1 * 1e3, f"reference circle of {gears[0]}", "blue", 1.2),
+        outline((circle * r2 + np.array([[distance], [0.0]])) * 1e3, f"reference circle of {gears[1]}", "orange", 1.2),
         outline(frame(0.0, 1.35 * r1), "S_{f}, fixed to the housing", "ink", 1.6),
-        outline(frame(_TURNED, 1.1 * r1), f"S_{{1}}, turned by φ_{{1}} = {_degrees(_TURNED)}", "blue", 2.0),
-        outline(frame(0.0, 0.9 * r1, distance, -1.0), "S_{q}, turned by Δγ alone", "grey", 1.4, "dash"),
+        outline(frame(_TURNED, 1.1 * r1), f"S_{{1}}, rotated by φ_{{1}} = {_degrees(_TURNED)}", "blue", 2.0),
+        outline(frame(0.0, 0.9 * r1, distance, -1.0), "S_{q}, rotated by Δγ", "grey", 1.4, "dash"),
         outline(
-            frame(-turn_2, 1.1 * r1, distance, -1.0), f"S_{{2}}, by φ_{{2}} = {_degrees(turn_2)} too", "orange", 2.0
+            frame(-turn_2, 1.1 * r1, distance, -1.0), f"S_{{2}}, and by φ_{{2}} = {_degrees(turn_2)}", "orange", 2.0
         ),
         outline(np.array([[0.0, distance], [0.0, 0.0]]) * 1e3, f"E = {distance * 1e3:.6g} mm", "green", 1.0, "dot"),
         Points([r1 * 1e3], [0.0], "pitch point", "red", size=5.0),
     )
-    return Panel(Axis("x_{f}", "mm"), Axis("y_{f}", "mm"), items, title="along the pinion's axis", equal=True)
+    return Panel(Axis("x_{f}", "mm"), Axis("y_{f}", "mm"), items, title="along the pinion axis", equal=True)
 
 
 def _along_centres(gears: tuple[str, str], pair: HelicalPair) -> Panel:

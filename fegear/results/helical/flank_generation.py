@@ -116,7 +116,7 @@ _SHEET = Sheet(
             when=lambda seen: not seen.data.pair.pinion.twist,
         ),
         Remark(
-            "Pair {name}: the lengthwise crown is not part of the rack cutter and not drawn.",
+            "Pair {name}: lead crowning is not part of the rack cutter and not drawn.",
             when=lambda seen: seen.data.pair.crown,
         ),
     ),

@@ -59,15 +59,15 @@ class DesignedGear:
     teeth: int = shown("", "N")
     alpha_n: float = shown("deg", "normal profile angle")
     alpha_t: float = shown("deg", "transverse profile angle (A.2.1)")
-    lambda_p: float = shown("deg", "lead angle on the pitch cylinder")
-    lambda_b: float = shown("deg", "lead angle on the base cylinder (A.2.7)")
+    lambda_p: float = shown("deg", "lead angle at the reference cylinder")
+    lambda_b: float = shown("deg", "lead angle at the base cylinder (A.2.7)")
     p_t: float = shown("mm", "transverse pitch (A.2.2)")
     s_t: float = shown("mm", "tooth thickness (A.2.4)")
     w_t: float = shown("mm", "width of space (A.2.3)")
-    r_p: float = shown("mm", "pitch radius (A.2.5)")
+    r_p: float = shown("mm", "reference radius (A.2.5)")
     r_b: float = shown("mm", "base radius (A.2.6)")
-    mu: float = shown("deg", "half the space on the base cylinder (A.1.1)")
-    eta: float = shown("deg", "half the tooth on it (A.1.3)")
+    mu: float = shown("deg", "half the space width at the base cylinder (A.1.1)")
+    eta: float = shown("deg", "half the tooth thickness at the base cylinder (A.1.3)")
     p: float | None = shown("mm", "screw parameter (A.2.8)")
     lead: float | None = shown("mm", "lead (A.2.9)", name="H")
 
@@ -88,34 +88,34 @@ class DesignedGear:
 class ProfileAngleChange:
     """What the wrong profile angle changes, by one of two ways, and their difference."""
 
-    by: str = shown("", "linear equations, the design formulas with the wrong angle, and their difference")
-    transverse_angle: float = shown("arcsec", "of the transverse profile angle", name="alpha_t")
-    base_lead_angle: float = shown("arcsec", "of the base lead angle", name="lambda_b")
-    base_radius: float = shown("um", "of the base radius", name="r_b")
+    by: str = shown("", "linear equations, design formulas with the incorrect angle, and their difference")
+    transverse_angle: float = shown("arcsec", "change of the transverse profile angle", name="alpha_t")
+    base_lead_angle: float = shown("arcsec", "change of the base lead angle", name="lambda_b")
+    base_radius: float = shown("um", "change of the base radius", name="r_b")
 
 
 @dataclass(frozen=True)
 class CutterSections:
     """Normal sections of both cutters over the u that both flanks need."""
 
-    u: Array = shown("mm", "along the straight profile from the reference line toward the pinion's root")
+    u: Array = shown("mm", "along the straight profile from the reference line towards the pinion's root")
     x_pinion: Array = shown("mm", "pinion cutter in its own frame (A.5.6)")
-    y_pinion: Array = shown("mm", "the same")
+    y_pinion: Array = shown("mm", "second coordinate")
     x_gear: Array = shown("mm", "gear cutter in its own frame (A.5.1)")
-    y_gear: Array = shown("mm", "the same")
-    departure: Array = shown("um", "of the pinion cutter from the straight profile")
+    y_gear: Array = shown("mm", "second coordinate")
+    departure: Array = shown("um", "departure of the pinion cutter from the straight profile")
 
 
 @dataclass(frozen=True)
 class FlankRows:
     """Every place at which the generation of a flank is followed."""
 
-    u: Array = shown("mm", "across the cutter surface")
-    along: Array = shown("mm", "along it", name="l")
-    psi: Array = shown("deg", "roll angle at which this place generates (A.5.14, A.5.15)")
-    x: Array = shown("mm", "of the flank")
-    y: Array = shown("mm", "of the flank")
-    z: Array = shown("mm", "of the flank")
+    u: Array = shown("mm", "position across the cutter surface")
+    along: Array = shown("mm", "position along the cutter surface", name="l")
+    psi: Array = shown("deg", "roll angle at which this point generates the flank (A.5.14, A.5.15)")
+    x: Array = shown("mm", "coordinate of the flank")
+    y: Array = shown("mm", "coordinate of the flank")
+    z: Array = shown("mm", "coordinate of the flank")
     r: Array = shown("mm", "radius")
     nx: Array = shown("", "unit normal")
     ny: Array = shown("", "unit normal")
@@ -193,19 +193,19 @@ class ShownGeneration:
         return [ShownFlank(gear, FlankRows.of(flank)) for gear, flank in both]
 
     @property
-    @shows("mm", "a_m, half the cutter on the line u = 0")
+    @shows("mm", "a_m, half the cutter thickness at u = 0")
     def rack_half_width(self) -> float:
         """[m]."""
         return self.data.flanks[0].cutter.half_width
 
     @property
-    @shows("um", "of the pinion cutter from the straight profile, over the flank")
+    @shows("um", "maximum departure of the pinion cutter from the straight profile over the flank")
     def largest_departure(self) -> float:
         """[m]."""
         return self.pair.parabola * float(np.max(self.data.flanks[0].u ** 2))
 
     @property
-    @shows("um", "largest distance of the generated flanks from those of tooth contact analysis")
+    @shows("um", "maximum distance between the generated flanks and those of tooth contact analysis")
     def generated_apart(self) -> float:
         """[m]."""
         return self.data.apart

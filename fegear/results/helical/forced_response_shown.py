@@ -79,22 +79,22 @@ class ForcesOverSpeed:
 
     found: PairForces
     teeth: int
-    mesh_normal_error: Array | None = shown("N", "by the estimated errors of the transmission error")
+    mesh_normal_error: Array | None = shown("N", "estimated error, from that of the transmission error")
 
     @property
-    @shows("rpm", "of the driver")
+    @shows("rpm", "speed of the driver")
     def speed(self) -> Array:
         """[rad/s]."""
         return self.found.speed
 
     @property
-    @shows("Hz", "teeth times speed")
+    @shows("Hz", "mesh frequency (number of teeth times speed)")
     def mesh_frequency(self) -> Array | None:
         """None without transmission error."""
         return self.teeth * self.found.speed / (2.0 * math.pi) if self.teeth else None
 
     @cached_property
-    @shows("N", "root mean square along the tooth normal")
+    @shows("N", "rms force along the tooth normal")
     def mesh_normal(self) -> Array:
         """[N]."""
         return rms(self.found.normal)
@@ -119,19 +119,19 @@ class LinesOverSpeed:
         return np.repeat(np.array(values), self.found.speed.size)
 
     @property
-    @shows("rpm", "of the driver")
+    @shows("rpm", "speed of the driver")
     def speed(self) -> Array:
         """[rad/s]."""
         return np.tile(self.found.speed, len(self.found.lines))
 
     @property
-    @shows("", "frequency over the driver's speed; 0 where it does not follow")
+    @shows("", "order (frequency / driver speed); 0 if independent of speed")
     def order(self) -> NDArray[np.generic]:
         """Of the line."""
         return self._each([line.order for line in self.found.lines])
 
     @property
-    @shows("", "what excites the line")
+    @shows("", "source of excitation")
     def source(self) -> NDArray[np.generic]:
         """In words."""
         return self._each([line.source for line in self.found.lines])
@@ -143,7 +143,7 @@ class LinesOverSpeed:
         return self.found.frequency.ravel() / (2.0 * math.pi)
 
     @property
-    @shows("N", "along the tooth normal, 0-peak")
+    @shows("N", "force amplitude along the tooth normal")
     def mesh_normal(self) -> Array:
         """[N]."""
         return np.abs(self.found.normal).ravel()
@@ -166,7 +166,7 @@ class DrawnLines:
     role: str
     notes: tuple[str, ...]
     frequency: Array = shown("", "frequency in kHz")
-    size: Array = shown("N", "force, 0-peak")
+    size: Array = shown("N", "force amplitude")
 
 
 @dataclass(frozen=True)
@@ -182,9 +182,9 @@ class LargestForce:
     """Largest of a force over the speeds of the case, and its estimated error."""
 
     error: float | None
-    normal: float | None = shown("N", "root mean square along the tooth normal", name="largest_mesh_force")
-    speed: float | None = shown("rpm", "driver's speed of that", name="largest_mesh_force_speed")
-    radial: float | None = shown("N", "root mean square along the line of action", name="largest_bearing_force")
+    normal: float | None = shown("N", "rms force along the tooth normal", name="largest_mesh_force")
+    speed: float | None = shown("rpm", "driver speed of the maximum", name="largest_mesh_force_speed")
+    radial: float | None = shown("N", "rms force along the line of action", name="largest_bearing_force")
 
 
 @dataclass(frozen=True)
@@ -255,7 +255,7 @@ class ShownForces:
         if len(forces.lines) > 1:
             rows.append(("all lines", rms(forces.normal), "grey"))
         panels = [_over_speed(axis, ("normal mesh force, rms", "N"), speed, rows, poles)]
-        for where, word in (("bearing_driver", "driver's bearings"), ("bearing_driven", "driven gear's bearings")):
+        for where, word in (("bearing_driver", "driver bearings"), ("bearing_driven", "driven gear bearings")):
             found: Complex = getattr(forces, where)
             for unit, label in (("N", "force, rms"), ("N.m", "moment, rms")):
                 rows = [
@@ -281,8 +281,8 @@ class ShownForces:
         panels = []
         for title, rows in (
             ("Mesh", (("along the tooth normal", forces.normal[:, 0]),)),
-            ("Driver's bearings", tuple((COMPONENTS[k][1], forces.bearing_driver[:, 0, k]) for k in range(2))),
-            ("Driven gear's bearings", tuple((COMPONENTS[k][1], forces.bearing_driven[:, 0, k]) for k in range(2))),
+            ("Driver bearings", tuple((COMPONENTS[k][1], forces.bearing_driver[:, 0, k]) for k in range(2))),
+            ("Driven gear bearings", tuple((COMPONENTS[k][1], forces.bearing_driven[:, 0, k]) for k in range(2))),
         ):
             largest = max(float(np.abs(row).max()) for _, row in rows)
             drawn = []

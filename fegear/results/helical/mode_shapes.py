@@ -41,13 +41,13 @@ class ModeMotion:
         return np.arange(5.0)
 
     @property
-    @shows("", "motion over the largest")
+    @shows("", "motion relative to the maximum")
     def driver(self) -> Array:
         """Shape (5,)."""
         return np.asarray(self.shape[0])
 
     @property
-    @shows("", "motion over the largest")
+    @shows("", "motion relative to the maximum")
     def driven(self) -> Array:
         """Shape (5,)."""
         return np.asarray(self.shape[1])
@@ -66,13 +66,13 @@ def mode_motions(model: HelicalPairModel | ReducedPairModel, modes: ModeTable) -
 #: All motions of every mode as bars.
 MODE_SHAPES = Chart(
     "mode_shapes_{name}", "Mode shapes of pair {name}",
-    "Pair {name}: motion of both gears in every mode, over the largest; rotations as lengths, b half the face width, a "
-    "the base radius.",
+    "Pair {name}: motion of both gears in every mode, relative to the maximum; rotations as lengths (b half the face "
+    "width, a base radius).",
     (
         Over(
             Axis(categories=_NAMES),
             tuple(Line(gear, gear, gear, x="place", kind="bars") for gear in ("driver", "driven")),
-            Axis("motion over the largest", limits=(-1.1, 1.1)), title="{one.title}", each="motions",
+            Axis("motion relative to the maximum", limits=(-1.1, 1.1)), title="{one.title}", each="motions",
         ),
     ),
     columns=2,
@@ -90,8 +90,8 @@ def mesh_mode_shapes(seen: Seen) -> tuple[Figure, ...]:
         f"mesh_mode_shapes_{name}",
         f"Mesh mode shapes of pair {name}",
         f"Pair {name}, seen along the axes: base circles and their radii to the line of action (dotted), at rest "
-        "(grey) and at one end of the swing. Motion along the axes and tilting do not show; modes of these alone are "
-        "left out.",
+        "(grey) and at one end of the swing. Axial motion and tilting are not visible; purely axial or tilting modes "
+        "are omitted.",
         tuple(_drawing(one.shape, one.title, radii) for one in across or motions),
         columns=2,
     )

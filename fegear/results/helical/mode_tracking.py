@@ -41,9 +41,9 @@ class Response:
 
     value: float
     undamped: Array
-    ratio: Array = shown("", "frequency over sqrt(K_M/m_eq)", name="Lambda", table="response")
+    ratio: Array = shown("", "frequency / sqrt(K_M/m_eq)", name="Lambda", table="response")
     dynamic: Array = shown(
-        "", "G - a_M over K_M, amplitude", name="G_minus_a_theta_z_y_abs", label="|G − a_{M}|_{θz,y} / K_{M}",
+        "", "amplitude of (G - a_M) / K_M", name="G_minus_a_theta_z_y_abs", label="|G − a_{M}|_{θz,y} / K_{M}",
         table="response",
     )  # fmt: skip
     line_of_action: Array = shown(
@@ -155,8 +155,8 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
 def _check(scene: Scene, name: str) -> None:
     if scene.case.transmissibility[name].follow is None:
         raise InputError(
-            f"transmissibility.{name}.follow", "(not given)", "is missing, but mode-tracking needs it",
-            'write follow.base_helix_angle = { start = "0 deg", stop = "40 deg" }',
+            f"transmissibility.{name}.follow", "(not given)", "is required for mode-tracking",
+            'set follow.base_helix_angle = { start = "0 deg", stop = "40 deg" }',
         )  # fmt: skip
 
 
@@ -174,10 +174,10 @@ PARAMETERS = {
     "alpha_z": ("axial bearing stiffness ratio α_{z}", ""),
     "alpha_theta": ("bending bearing stiffness ratio α_{θ}", ""),
     "aspect_ratio": ("aspect ratio ν", ""),
-    "bearing_stiffness": ("bearing stiffness over that of the case", ""),
+    "bearing_stiffness": ("bearing stiffness relative to the case", ""),
     "base_helix_angle": ("base helix angle ψ_{b}", "deg"),
     "kappa": ("mesh coupling κ", ""),
-    "mu": ("rotary mesh stiffness μ", ""),
+    "mu": ("rotational mesh stiffness μ", ""),
     "mesh_stiffness": ("mesh stiffness K_{M}", "N/um"),
 }
 
@@ -221,7 +221,7 @@ class Branch:
     """One mode over the parameter."""
 
     number: int
-    ratio: Array = shown("", "frequency over sqrt(K_M/m_eq)", name="Lambda")
+    ratio: Array = shown("", "frequency / sqrt(K_M/m_eq)", name="Lambda")
     frequency: Array = shown("Hz", "natural frequency")
     normal: Array = shown("", "modal index", name="Delta_normal")
     bending: Array = shown("", "modal index", name="Delta_bending")
@@ -351,7 +351,7 @@ _SHEET = Sheet(
                 "modes_over_{one.parameter}_{name}",
                 "Modes of pair {name} over {one.parameter}, numbered as in the case itself",
                 (
-                    *_values("values", "over which the modes are followed"),
+                    *_values("values", "parameter value"),
                     Each(
                         "branches",
                         *(Cell(key, name=f"{name}_{{one.number}}")
@@ -361,7 +361,7 @@ _SHEET = Sheet(
                 ),
             ),
             Rows(
-                "response_over_{one.parameter}_{name}", "Response of pair {name} at values of {one.parameter}",
+                "response_over_{one.parameter}_{name}", "Response of pair {name} for values of {one.parameter}",
                 (
                     *_values("value", "value of the parameter"),
                     *(f"response.{key}" for key in ("ratio", "dynamic", "line_of_action", "torsion")),
@@ -376,9 +376,9 @@ _SHEET = Sheet(
             Chart(
                 "modes_over_{one.parameter}_{name}", "Modes of pair {name} over the {one.label}",
                 "Pair {name}: modes followed by the continuity of their shapes, numbered by falling frequency in the "
-                "case itself. Crossings are passed straight; at veerings the shapes are exchanged. Mesh displacements "
-                "along the tooth normal and about x are over the largest; the coupling ratio is |U_ηθx| / (U_η + "
-                "U_θx).",
+                "case itself. Modes are tracked through crossings; mode shapes interchange at veerings. Mesh "
+                "displacements along the tooth normal and about x are over the largest; the coupling ratio is "
+                "|U_ηθx| / (U_η + U_θx).",
                 (drawn_panels("mode_panels"),), columns="columns",
             ),
             Chart(

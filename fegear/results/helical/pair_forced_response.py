@@ -101,7 +101,7 @@ def _source(scene: Scene, name: str, error: MeshErrorPart) -> str:
         if error.flanks == "rigid":
             raise InputError(
                 f"transmissibility.{name}.excitation.transmission_error.flanks", '"rigid"',
-                f"knows helical gears only, and those of pair {pair} are spur", "leave it out",
+                f"is valid for helical gears only; those of pair {pair} are spur gears", "remove it",
             )  # fmt: skip
         return "transmission-error"
     its_own = scene.case.transmissibility[name].mesh.pair == pair or pair not in scene.helical_pairs
@@ -119,9 +119,7 @@ def _read_harmonics(scene: Scene, file: str, key: str) -> Complex:
         )  # fmt: skip
     n = columns["n"]
     if np.any(n % 1.0 != 0.0) or n.min() < 1.0 or n.max() > 20_000.0 or np.unique(n).size != n.size:
-        raise InputError(
-            key, f'"{path.name}"', "has numbers n that are no harmonics", "count 1, 2, 3 and on, each once"
-        )
+        raise InputError(key, f'"{path.name}"', "contains invalid harmonic numbers n", "use 1, 2, 3, ..., each once")
     cosine = columns["cosine"] if "cosine" in columns else columns["amplitude"]
     sine = columns["sine"] if "cosine" in columns and "sine" in columns else np.zeros(n.size)
     found = np.zeros(int(n.max()), dtype=complex)
@@ -133,8 +131,8 @@ def _excitation(scene: Scene, name: str) -> ExcitationPart:
     found = scene.case.transmissibility[name].excitation
     if found is None:
         raise InputError(
-            f"transmissibility.{name}.excitation", "(not given)", "is missing, but pair-forced-response needs it",
-            'write excitation = { teeth = 50, speeds = ["1000 rpm"], transmission_error = { amplitude = "1 um" } }',
+            f"transmissibility.{name}.excitation", "(not given)", "is required for pair-forced-response",
+            'set excitation = { teeth = 50, speeds = ["1000 rpm"], transmission_error = { amplitude = "1 um" } }',
         )  # fmt: skip
     return found
 
@@ -158,14 +156,14 @@ def _check(scene: Scene, name: str) -> None:
     if abs(abs(own) - abs(angle)) > _SAME_ANGLE:
         raise InputError(
             f"{prefix}.mesh.base_helix_angle", f"{math.degrees(own):.6g} deg",
-            f"is not that of pair {error.pair}, {math.degrees(abs(angle)):.6g} deg",
-            "give the pair's own, or the harmonics of the transmission error as a file",
+            f"contradicts pair {error.pair}, {math.degrees(abs(angle)):.6g} deg",
+            "use that of the pair, or specify the harmonics of the transmission error as a file",
         )  # fmt: skip
     source = _source(scene, name, error)
     if error.shuttling and (source != "loaded-flanks" or mesh.pair != error.pair):
         raise InputError(
             f"{prefix}.excitation.transmission_error.shuttling", "true",
-            "is known of the loaded flanks that the mesh is taken from", f'write mesh = {{ pair = "{error.pair}" }}',
+            "requires the mesh of the loaded flanks of the pair", f'set mesh = {{ pair = "{error.pair}" }}',
         )  # fmt: skip
     tables = {"tooth-contact": "tooth_contact", "loaded-flanks": "load_distribution"}
     if source not in tables:
@@ -174,8 +172,8 @@ def _check(scene: Scene, name: str) -> None:
     count = error.harmonics or (_HARMONICS if source == "tooth-contact" else 0)
     if positions < _EACH * count:
         raise InputError(
-            f"{tables[source]}.positions", positions, f"is too few for {count} harmonics",
-            f"give at least {_EACH * count} positions",
+            f"{tables[source]}.positions", positions, f"is too low for {count} harmonics",
+            f"set at least {_EACH * count} positions",
         )  # fmt: skip
 
 
@@ -249,8 +247,8 @@ def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairFo
     lines = _lines(asked, harmonics, ratio)
     if not lines:
         raise InputError(
-            f"transmissibility.{asked.name}.excitation.transmission_error", "without harmonics", "excites nothing",
-            "give an amplitude that is not zero",
+            f"transmissibility.{asked.name}.excitation.transmission_error", "without harmonics", "gives no excitation",
+            "specify a non-zero amplitude",
         )  # fmt: skip
     speeds, (resonant, undamped) = part.speeds.array, resonant_speeds(model, lines)
     try:
@@ -316,8 +314,8 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "pair_forces_{name}", "Mesh and bearing forces of pair {name}",
-            "Pair {name}: root mean square over time of the force along the tooth normal, by its lines, and of what "
-            "the bearings exert on both gears.",
+            "Pair {name}: root mean square of the force along the tooth normal, by spectral lines, and of the "
+            "bearing forces on both gears.",
             (drawn_panels("force_panels"),), when="several",
         ),
         Chart(
@@ -333,7 +331,7 @@ _SHEET = Sheet(
                             each=Family("rows", "{one.label}", "{one.role}"),
                         ),
                     ),
-                    Axis("force, 0-peak", "N", log=True), title="{one.title}", each="spectrum_panels",
+                    Axis("force amplitude", "N", log=True), title="{one.title}", each="spectrum_panels",
                 ),
             ),
             under="{d.spectrum_speed:.6g}",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.case.part import at
 from fegear.contact.unloaded.manufacture import lead_angle_error_of_cut, lead_error_as_cut
 from fegear.engine.citation import Citation, citing
@@ -87,13 +88,13 @@ def check_misalignment(scene: Scene, name: str) -> None:
         if shaft is not None and shaft.in_plane:
             raise InputError(
                 f"pair.{name}.misalignment.{member}.in_plane", f"{shaft.in_plane * 1e6:.6g} um",
-                "is known to a pair with a width, not to rigid tooth contact analysis",
-                "give out_of_plane, or ask for load-distribution in a case of its own",
+                "is available for load-distribution only, not for tooth contact analysis of rigid flanks",
+                "specify out_of_plane, or use a separate case for load-distribution",
             )  # fmt: skip
     if part.misalignment is not None and not scene.case.effects.misalignment:
         raise InputError(
-            f"pair.{name}.misalignment", "(a table)", "is given, but the effect is off",
-            "write misalignment = true under [effects], or remove the table",
+            f"pair.{name}.misalignment", "(a table)", "is specified, but the effect is off",
+            "set misalignment = true under [effects], or remove the table",
         )  # fmt: skip
     _check_data(scene)
 
@@ -102,8 +103,8 @@ def _check_data(scene: Scene) -> None:
     if scene.case.effects.misalignment and all(part.misalignment is None for part in scene.case.pair.values()):
         name = next(iter(scene.helical_pairs), "NAME")
         raise InputError(
-            "effects.misalignment", "true", "finds no pair with a misalignment in this case",
-            f'give pair.{name}.misalignment = {{ shaft_angle = "3 arcmin" }}, or remove the effect',
+            "effects.misalignment", "true", "has no effect: no pair of this case has a misalignment",
+            f'specify pair.{name}.misalignment = {{ shaft_angle = "3 arcmin" }}, or remove the effect',
         )  # fmt: skip
 
 
@@ -114,10 +115,10 @@ def _lead_remark(name: str, asked: ToothContactInputs) -> tuple[str, ...]:
     other = lead_angle_error_of_cut(pinion, asked.lead)
     minutes = math.degrees(60.0)
     remark = (
-        f"Pair {name}: a lead of {pinion.lead * 1e3:.6g} mm that is off by {asked.lead * 1e3:.6g} mm is taken as "
-        f"{angle * minutes:.6g}' of lead angle by Eq. 18 of TM-107451, which holds the pitch radius. Its Appendix 2 "
-        f"lets the radius follow: the lead as cut is off by {lead_error_as_cut(pinion, angle) * 1e3:.6g} mm, and by "
-        f'what is given with lead_angle = "{other * minutes:.8g} arcmin".'
+        f"Pair {name}: lead error {asked.lead * 1e3:.6g} mm (lead {pinion.lead * 1e3:.6g} mm) converted to a lead "
+        f"angle error of {angle * minutes:.6g}' by Eq. 18 of TM-107451 (constant pitch radius). With the radius as "
+        f"generated (Appendix 2) the lead error is {lead_error_as_cut(pinion, angle) * 1e3:.6g} mm; for the "
+        f'specified lead error set lead_angle = "{other * minutes:.8g} arcmin".'
     )
     return (remark,)
 
@@ -130,24 +131,25 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
     total = t.pair.transverse_contact_ratio + t.pair.overlap_ratio
     if total < 1.0:
         remarks.append(
-            f"Pair {name}: contact ratio {total:.3g}, overlap included, is below 1: over {1.0 - total:.0%} of a pitch "
-            "no tooth pair is on its path of contact, and edges carry the motion on."
+            f"Pair {name}: total contact ratio {total:.3g} is below 1; over {percent(1.0 - total)} of a pitch "
+            "motion is transmitted by edge contact."
         )
     if edges:
-        shares = ", ".join(f"{k} {s:.0%}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
-        remarks.append(f"Pair {name}: contact is on an edge over part of the cycle: {shares}.")
+        shares = ", ".join(f"{k} {percent(s)}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
+        remarks.append(f"Pair {name}: edge contact over part of the mesh cycle: {shares}.")
     if any("circle" in k or "tangent" in k for k in edges):
-        remarks.append(f"Pair {name}: contact reaches the end of the involute near the root: the fillet would be hit.")
+        remarks.append(f"Pair {name}: contact reaches the root form circle (interference with the fillet).")
     for member, hit in zip(("pinion", "gear"), t.pair.interferes, strict=True):
         if hit:
             remarks.append(
-                f"Pair {name}: the mating tip reaches below the {member}'s form circle; that fillet is not analysed."
+                f"Pair {name}: the mating tip reaches below the root form circle of the {member}; contact with the "
+                "fillet is not analysed."
             )
     vague = float(np.mean(t.mesh.ill_defined))
     if vague > 0.0:
         remarks.append(
-            f"Pair {name}: over {vague:.0%} of the cycle the flanks touch along a line, or nearly so; the place of the "
-            "contact point is ill-defined there, the transmission error is not."
+            f"Pair {name}: (near) line contact over {percent(vague)} of the cycle; the contact point is "
+            "ill-defined there, the transmission error is not affected."
         )
     return tuple(remarks)
 
@@ -163,9 +165,9 @@ def _ellipse_remarks(name: str, t: ToothContact, bearing: Bearing) -> tuple[str,
     than = f"longer than the common face of {1e3 * face:.4g} mm" if longest > face else "not as long as the common face"
     share = np.mean(past > _NEGLIGIBLE * face)
     remark = (
-        f"Pair {name}: at {share:.0%} of the positions the contact ellipse reaches past an end "
-        f"of the face, by up to {1e3 * past.max():.3g} mm (the longest, of {1e3 * longest:.4g} mm, is {than}). Hertz's "
-        "flanks do not end: pressures there are too low."
+        f"Pair {name}: at {percent(share)} of the positions the contact ellipse reaches past an end of the face, by "
+        f"up to {1e3 * past.max():.3g} mm (the longest, of {1e3 * longest:.4g} mm, is {than}). Hertz theory assumes "
+        "unbounded flanks, so the pressure is underestimated there."
     )
     return (remark,)
 
@@ -214,13 +216,13 @@ def _all_remarks(seen: Seen) -> Iterator[str]:
     if asked.relieved:
         of = " and ".join(f"gear {gear}" for gear in asked.relieved)
         yield (
-            f"Pair {name}: relief, lead, bias and topography of {of} change nothing here: tooth contact analysis takes "
-            "the flanks as cut, with the pair's own modification."
+            f"Pair {name}: relief, lead, bias and topography of {of} ignored: tooth contact analysis uses the "
+            "generated flanks with the modification of the pair."
         )
     if asked.ignored:
         yield (
-            f"Pair {name}: {asked.ignored} changes nothing in tooth contact analysis, which takes the flanks as rigid; "
-            "tooth_contact.load gives contact ellipses."
+            f"Pair {name}: {asked.ignored} is ignored in tooth contact analysis (rigid flanks); set "
+            "tooth_contact.load for contact ellipses."
         )
     if data.no_ellipses:
         yield f"Pair {name}: no contact ellipses: {data.no_ellipses}."
@@ -238,7 +240,7 @@ def _half_axis(key: str, label: str, role: str) -> Line:
 
 def _pattern_caption(seen: Seen) -> str:
     ellipses = " Ellipses: contact under the load of the case, cut at the ends of the flank."
-    vague = " The flanks touch along lines: the place of the point on them is arbitrary."
+    vague = " Line contact: the position of the point on the line is arbitrary."
     return (
         f"Pair {seen.name}: where one tooth pair touches over its engagement, by kind of contact."
         + (ellipses if seen.data.data.bearing is not None else "")
@@ -269,11 +271,11 @@ _SHEET = Sheet(
             tuple(_alone(key) for key in ("phi_1", "error", *_POINT)),
         ),
         Rows(
-            "tooth_contact_pieces_{name}", "Pieces of the cycle of pair {name}",
+            "tooth_contact_pieces_{name}", "Intervals of the mesh cycle of pair {name}",
             ("first", "last", "pair", "contact", "slope"), of="pieces",
         ),
         Rows(
-            "tooth_contact_kinds_{name}", "Kinds of contact of pair {name}",
+            "tooth_contact_kinds_{name}", "Types of contact of pair {name}",
             ("contact", "share", "slope", "rise", "rise_spread"), of="kinds",
         ),
         Rows(
@@ -329,9 +331,9 @@ _SHEET = Sheet(
                 Over(
                     PHI,
                     (
-                        _half_axis("long", "long half axis", "blue"), _half_axis("short", "short half axis", "orange"),
+                        _half_axis("long", "semi-major axis", "blue"), _half_axis("short", "semi-minor axis", "orange"),
                     ),
-                    Axis("half axes", "mm", zero=True),
+                    Axis("semi-axes", "mm", zero=True),
                 ),
                 Over(PHI, (_half_axis("pressure", "pressure", "red"),)),
             ),

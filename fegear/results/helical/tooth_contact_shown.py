@@ -58,10 +58,10 @@ class ToothContactData:
 class Pieces:
     """Pieces of the cycle with one leading pair and one kind of contact, arrays of shape (n,)."""
 
-    first: Array = shown("deg", "first pinion angle of the piece", name="phi1_first")
-    last: Array = shown("deg", "last pinion angle of the piece", name="phi1_last")
-    pair: NDArray[np.int_] = shown("", "tooth pair that leads")
-    contact: NDArray[np.str_] = shown("", "kind of contact")
+    first: Array = shown("deg", "first pinion angle of the interval", name="phi1_first")
+    last: Array = shown("deg", "last pinion angle of the interval", name="phi1_last")
+    pair: NDArray[np.int_] = shown("", "tooth pair in contact")
+    contact: NDArray[np.str_] = shown("", "type of contact")
     slope: Array = shown("", "mean slope of the transmission error")
 
 
@@ -69,11 +69,11 @@ class Pieces:
 class Kinds:
     """Kinds of contact: their shares of the cycle, how fast and how evenly the gear runs ahead in them."""
 
-    contact: NDArray[np.str_] = shown("", "kind of contact")
-    share: Array = shown("", "of the cycle's positions")
+    contact: NDArray[np.str_] = shown("", "type of contact")
+    share: Array = shown("", "fraction of the mesh cycle")
     slope: Array = shown("", "mean slope of the transmission error")
     rise: Array = shown("arcsec", "mean slope times the pitch")
-    rise_spread: Array = shown("arcsec", "peak to peak of the slope, times the pitch")
+    rise_spread: Array = shown("arcsec", "peak-to-peak slope times the pitch")
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class ShownContact:
         return self.data.contact
 
     @property
-    @shows("", "which tooth pair touches first", name="pair")
+    @shows("", "first tooth pair in contact", name="pair")
     def leader(self) -> NDArray[np.int_]:
         """At each angle of the cycle."""
         return self.contact.leader
@@ -164,7 +164,7 @@ class ShownContact:
     # ---- single numbers
 
     @property
-    @shows("arcsec", "variation over a cycle of the gear set", name="unloaded_te_peak_to_peak")
+    @shows("arcsec", "variation over a mesh cycle", name="unloaded_te_peak_to_peak")
     def peak_to_peak(self) -> float:
         """[rad]."""
         return self.contact.peak_to_peak
@@ -175,13 +175,13 @@ class ShownContact:
         return self.contact.maximum.error + self.contact.minimum.error
 
     @property
-    @shows("arcsec", "largest transmission error", name="unloaded_te_max")
+    @shows("arcsec", "maximum transmission error", name="unloaded_te_max")
     def maximum(self) -> float:
         """[rad]."""
         return self.contact.maximum.value
 
     @property
-    @shows("arcsec", "smallest transmission error", name="unloaded_te_min")
+    @shows("arcsec", "minimum transmission error", name="unloaded_te_min")
     def minimum(self) -> float:
         """[rad]."""
         return self.contact.minimum.value
@@ -193,19 +193,19 @@ class ShownContact:
         return self.contact.pair.transverse_contact_ratio
 
     @property
-    @shows("", "common face over axial pitch")
+    @shows("", "common face width / axial pitch")
     def common_overlap_ratio(self) -> float:
         """Of the pair."""
         return self.contact.pair.overlap_ratio
 
     @property
-    @shows("mm", "with the pinion as cut")
+    @shows("mm", "with the pinion as generated")
     def centre_distance_as_cut(self) -> float:
         """[m]."""
         return self.contact.pair.centre_distance
 
     @property
-    @shows("", "share of the cycle without edge contact")
+    @shows("", "fraction of the mesh cycle without edge contact")
     def surface_share(self) -> float:
         """Of the positions."""
         return float((self.contact.mesh.kind == "surface").mean())
@@ -224,20 +224,20 @@ class ShownContact:
         return None if angle == 0.0 or angle >= pair.pinion.helix_angle else angle
 
     @property
-    @shows("arcsec", "on the pinion's pitch cylinder")
+    @shows("arcsec", "at the reference cylinder of the pinion")
     def lead_angle_error(self) -> float | None:
         """[rad]."""
         return self._lead_angle
 
     @property
-    @shows("mm", "of the pinion's lead H, pitch radius as cut")
+    @shows("mm", "change of the pinion lead H, with generated reference radius")
     def lead_error_as_cut(self) -> float | None:
         """As the lead of the pinion that Appendix 2 makes of it [m]."""
         angle = self._lead_angle
         return None if angle is None else lead_error_as_cut(self.contact.pair.pinion, angle)
 
     @property
-    @shows("um", "material to remove at each end of the face, along the normal")
+    @shows("um", "amount of lead crowning at each face end, normal to the flank")
     def crown(self) -> float | None:
         """[m]; None where no modification is designed."""
         if (design := self.data.design) is None:
@@ -247,7 +247,7 @@ class ShownContact:
         return float(design.crown * arm * (0.5 * pinion.face_width) ** 2)
 
     @property
-    @shows("arcsec", "parabolic error it is designed for")
+    @shows("arcsec", "parabolic transmission error of the design")
     def predesigned_te(self) -> float | None:
         """[rad]; None where no modification is designed."""
         return None if self.data.design is None else self.data.design.peak_to_peak
@@ -267,13 +267,13 @@ class ShownContact:
             here = (phi >= first) & (phi <= last)
             alone.append(np.stack([np.degrees(phi[here]), single.error[inside][here] * _ARCSEC]))
         along, size = polylines(alone)
-        curves = [DrawnCurve("one pair alone", "grey", along, size, 1.0)]
+        curves = [DrawnCurve("one pair only", "grey", along, size, 1.0)]
         for turn in (0, 1):
             phi = np.degrees(contact.phi_1 + turn * pitch)
             for k in numbers.tolist():
                 error = np.where(contact.leader == k, contact.error * _ARCSEC, np.nan)
                 curves.append(
-                    DrawnCurve(f"pair {k + turn} leads", f"series:{(k + turn) % 6}", phi, error, dash="solid")
+                    DrawnCurve(f"pair {k + turn} in contact", f"series:{(k + turn) % 6}", phi, error, dash="solid")
                 )
         low, high = float(contact.error.min()) * _ARCSEC, float(contact.error.max()) * _ARCSEC
         room = max(0.6 * (high - low), _LEAST_ROOM)

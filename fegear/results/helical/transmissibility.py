@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.case.built.helical_pair import HelicalPairInputs, full_matrix_frequencies, helical_pair_inputs, mesh_of_pair
 from fegear.case.part import at
 from fegear.case.reading import Scene
@@ -141,8 +142,9 @@ def _two_parameters(seen: Seen) -> tuple[str, ...]:
     worst = int(np.argmax(np.abs(change)))
     sentence = (
         f"Pair {seen.name}: one kappa for both gears lets them tilt about the pitch axis. With the whole mesh "
-        f"stiffness matrix, each tilting about its own axis, natural frequencies move by up to {change[worst]:+.2%} "
-        f"(mode {worst + 1}, {own[worst] / (2.0 * math.pi):.5g} Hz); the table has them."
+        "stiffness matrix, each tilting about its own axis, natural frequencies move by up to "
+        f"{percent(change[worst], signed=True)} (mode {worst + 1}, {own[worst] / (2.0 * math.pi):.5g} Hz); the table "
+        "has them."
     )
     return (sentence,)
 
@@ -166,8 +168,8 @@ def _transmitted(key: str, title: str, rows: tuple[str, ...]) -> Chart:
     """What the mesh transmits along some coordinates."""
     return Chart(
         f"transmissibility_{key}_{{name}}", f"{title} mesh force transmissibility of pair {{name}}",
-        "Pair {name}: first index the mesh force, second the external force, over q = (y, z, b theta_x, a theta_y, "
-        "a theta_z). Entries that are equal share a curve; what is zero is not drawn.",
+        "Pair {name}: first index the mesh force, second the external force, over q = (y, z, b theta_x, a theta_y, a "
+        "theta_z). Equal entries share a curve; zero entries are omitted.",
         (drawn_panels(lambda seen: seen.data.transmitted(rows)),),
     )  # fmt: skip
 
@@ -207,7 +209,7 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "helical_modes_{name}", "Modal indices of pair {name}",
-            "Pair {name}: which modes a transmission error along the tooth normal or a bending one excites.",
+            "Pair {name}: modes excited by a transmission error along the tooth normal or in bending.",
             (
                 Over(
                     lambda seen: Axis("mode and its Λ_{r}", categories=seen.data.flexible.names),

@@ -83,18 +83,18 @@ class TransmissibilityData:
 class ModeRows:
     """Modes of a pair, arrays of shape (n,)."""
 
-    mode: NDArray[np.int64] = shown("", "by falling frequency")
-    ratio: Array = shown("", "frequency over sqrt(K_M/m_eq); 0 for rigid-body motion", name="Lambda")
+    mode: NDArray[np.int64] = shown("", "mode number, descending frequency")
+    ratio: Array = shown("", "frequency / sqrt(K_M/m_eq); 0: rigid-body motion", name="Lambda")
     frequency: Array = shown("Hz", "natural frequency")
     normal: Array = shown("", "relative mesh displacement along the tooth normal", name="Delta_normal")
     bending: Array = shown("", "relative mesh rotation about x", name="Delta_bending")
-    coupling: Array = shown("", "coupling strain energy over the sum of the two")
+    coupling: Array = shown("", "coupling strain energy / sum of both")
     rank_normal: Array = shown("", "rank for normal transmission error and forces")
-    weight_normal: Array = shown("", "modal mesh force over the largest")
+    weight_normal: Array = shown("", "modal mesh force / maximum")
     rank_bending: Array = shown("", "rank for bending error and moments")
-    weight_bending: Array = shown("", "modal mesh moment over the largest")
+    weight_bending: Array = shown("", "modal mesh moment / maximum")
     whole: Array | None = shown(
-        "Hz", "with the whole mesh stiffness matrix, each gear tilting about its own axis",
+        "Hz", "with the full mesh stiffness matrix (tilting about each gear axis)",
         name="frequency_full_matrix",
     )  # fmt: skip
 
@@ -145,7 +145,7 @@ class ResponseRows:
     """Frequency response at the frequencies of the case."""
 
     found: Response
-    ratio: Array = shown("", "frequency over sqrt(K_M/m_eq)", name="Lambda")
+    ratio: Array = shown("", "frequency / sqrt(K_M/m_eq)", name="Lambda")
     frequency: Array = shown("Hz", "frequency")
 
     @property
@@ -183,8 +183,8 @@ class PairMesh:
     errors: tuple[float, float, float]
     omega: float = shown("Hz", "sqrt(K_M/m_eq)")
     stiffness: float = shown("N/um", "K_M", name="mesh_stiffness")
-    kappa: float = shown("", "axial centre of the mesh stiffness over half the face")
-    mu: float = shown("", "rotary mesh stiffness")
+    kappa: float = shown("", "axial centre of the mesh stiffness / half face width")
+    mu: float = shown("", "rotational mesh stiffness")
 
     @property
     def omega_error(self) -> float:
@@ -242,7 +242,7 @@ class ShownTransmissibility:
         shapes = self.data.modes.shapes
         both = shapes.shape[0] > len(COORDINATES)
         what = (
-            "motion over q, unit norm" if both
+            "mode shape in q, unit norm" if both
             else "q_i + P q_j, unit norm: each gear moves half, the driven mirrored"
         )  # fmt: skip
         gears = ("_driver", "_driven") if both else ("",)

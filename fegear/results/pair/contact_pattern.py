@@ -76,11 +76,11 @@ class PrintedLoads:
     """What the coat prints under every load: arrays of shape (L,), NaN where nothing is printed."""
 
     load: Array = shown("N", "along the line of action")
-    printed_share: Array = shown("", "of the flank")
-    z_first: Array = shown("mm", "where the pattern begins along the face")
-    z_last: Array = shown("mm", "where it ends")
-    x_first: Array = shown("mm", "where it begins along the line of action")
-    x_last: Array = shown("mm", "where it ends")
+    printed_share: Array = shown("", "fraction of the flank")
+    z_first: Array = shown("mm", "start of the pattern along the face width")
+    z_last: Array = shown("mm", "end of the pattern")
+    x_first: Array = shown("mm", "start of the pattern along the line of action")
+    x_last: Array = shown("mm", "end of the pattern")
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ _SHEET = Sheet(
     of=lambda data, asked: Printed(data, asked.coat),
     tables=(
         Rows(
-            "contact_pattern_{name}", "Contact pattern of pair {name} under every load",
+            "contact_pattern_{name}", "Contact pattern of pair {name} for every load",
             (
                 "load", Cell("printed_share", further=", by a coat of {asked.coat:.4g!} um"),
                 "z_first", "z_last", "x_first", "x_last",

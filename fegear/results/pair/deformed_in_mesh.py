@@ -115,8 +115,8 @@ def _check_compliance(scene: Scene, name: str) -> None:
     if source != "fe":
         raise InputError(
             f"pair.{name}.compliance.source", f'"{source}"',
-            "has the deflection of flanks, not the shape of a deformed tooth",
-            'write source = "fe", or leave the deformed teeth out',
+            "gives flank deflections, not the deformed tooth shape",
+            'set source = "fe", or remove the deformed teeth',
         )  # fmt: skip
 
 

@@ -46,9 +46,9 @@ def flank_pressure_figure(name: str, found: LoadedFlanks, case: int) -> Figure:
     return Figure(
         f"flank_pressure_{name}",
         f"Pressure on the flanks of pair {name}",
-        f"Pair {name}: largest Hertzian pressure that a place on the flank sees as the contact lines pass over it; "
-        f"driver on the left, driven gear on the right, +z to the left. The scale of colours ends at {top:.4g} MPa; at "
-        "tips and ends of the face the pressure may be higher.",
+        f"Pair {name}: maximum Hertzian pressure at each point of the flank over the mesh cycle; driver on the left, "
+        f"driven gear on the right, +z to the left. Colour scale limited to {top:.4g} MPa; higher pressure possible "
+        "at tips and face ends.",
         (Panel(Axis(), Axis(), (skin,), height=1.0, camera=((1.6, 0.6, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))),),
         under=f"{found.load[case]:.5g} N",
     )

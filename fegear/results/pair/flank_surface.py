@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.printed import percent
 from fegear.case.built.pair_surface import PairSurface, pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.seen import Seen
@@ -107,50 +108,50 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
     told, pair = [], data.pair
     if math.isnan(data.scuffing):
         told.append(
-            f"Pair {name}: no safety against scuffing: lubricant gives neither scuffing_load_stage nor "
-            "scuffing_temperature."
+            f"Pair {name}: safety factor for scuffing not computed: lubricant.scuffing_load_stage or "
+            "scuffing_temperature not specified."
         )
     oil = asked.rated.surface.temperature
     if data.scuffing <= oil:
         told.append(
-            f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of {data.scuffing:.4g} "
-            "degC: S_B is not above zero, and says no more than that."
+            f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of "
+            f"{data.scuffing:.4g} degC: S_B is zero or negative and has no quantitative meaning."
         )
     if math.isnan(data.permissible_film):
         told.append(
-            f"Pair {name}: no safety against micropitting: lubricant gives neither micropitting_load_stage nor "
-            "permissible_film."
+            f"Pair {name}: safety factor for micropitting not computed: lubricant.micropitting_load_stage or "
+            "permissible_film not specified."
         )
     if data.why_not:
         told.append(f"Pair {name}: no integral temperature: {data.why_not}")
     if pair.contact_ratio >= 2.0 and pair.driver.helix_angle == 0.0:
         told.append(
-            f"Pair {name}: the load sharing factors of ISO/TS 6336-20 and -22 are for contact ratios below 2; theirs "
-            "is 1 everywhere here, and the computed load sharing says more."
+            f"Pair {name}: load sharing factors of ISO/TS 6336-20 and -22 are defined for contact ratios below 2; 1 "
+            "used here (see the FE load sharing)."
         )
     if pair.internal:
         told.append(
-            f"Pair {name}: ISO/TS 6336-22 is written for external teeth; its film is taken here with the signed radius "
-            "of curvature of the hollow flank, and its safety against micropitting has no test behind it."
+            f"Pair {name}: ISO/TS 6336-22 applies to external gears; film computed with the signed curvature of the "
+            "concave flank, safety factor for micropitting not verified by tests."
         )
     told += _recalled(name, asked)
     if data.share_outside > 0.0:
         told.append(
-            f"Pair {name}: tip corners carry up to {data.share_outside:.1%} of the load off the path of contact, where "
-            "no temperature and no film is given."
+            f"Pair {name}: corner contact outside the path of contact carries up to {percent(data.share_outside)} of "
+            "the load; no temperature and film computed there."
         )
     if asked.rated.factors.product != 1.0:
         told.append(
-            f"Pair {name}: loads are shared as at the nominal load and then multiplied by the load factors; what was "
-            f"computed replaces {'K_Hbeta and K_Halpha' if data.wide else 'K_Halpha'}."
+            f"Pair {name}: load sharing at nominal load, multiplied by the load factors; the computed distribution "
+            f"replaces {'K_Hbeta and K_Halpha' if data.wide else 'K_Halpha'}."
         )
     for member in ("driver", "driven"):
         gear = pair.gear(member)
         reach = float(np.abs(pair.flank_curvature_radius(np.array([pair.x_start, pair.x_end]), member)).min())
         if reach < 0.02 * gear.base_radius:
             told.append(
-                f"Pair {name}: contact comes close to the base circle of the {member} gear, where specific sliding "
-                "goes to minus infinity and film and curvature to zero."
+                f"Pair {name}: contact close to the base circle of the {member} gear: specific sliding becomes very "
+                "large, film thickness and curvature radius approach zero."
             )
     return told
 
@@ -162,13 +163,13 @@ def _recalled(name: str, asked: PairSurface) -> list[str]:
     told = []
     if narrow(asked.rated.pair):
         told.append(
-            f"Pair {name}: X_Y of ISO/TS 6336-22 is recalled from memory for helical teeth with an overlap ratio of "
-            f"{asked.rated.pair.overlap_ratio:.3g}; printed numbers back it from 1.2 on."
+            f"Pair {name}: X_Y of ISO/TS 6336-22 for overlap ratio {asked.rated.pair.overlap_ratio:.3g} is not "
+            "verified against a printed source (verified from 1.2)."
         )
     if asked.tests.micropitting_stage is not None:
         told.append(
-            f"Pair {name}: lambda_GFP takes the line load at A of the FZG gears in proportion to their torque; it is "
-            "printed for load stage 10 alone (236.3 N/mm)."
+            f"Pair {name}: line load at A of the FZG gears scaled with torque for lambda_GFP (published for load "
+            "stage 10 only, 236.3 N/mm)."
         )
     return told
 

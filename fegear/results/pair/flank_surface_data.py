@@ -89,21 +89,25 @@ class SurfaceFactor:
     """A factor with its clause, its number in the unit of the standards."""
 
     symbol: str = shown("", "symbol", name="factor")
-    value: float = shown("", "in the unit of the next column")
+    value: float = shown("", "value, in the unit of the next column")
     unit: str = shown("", "unit", name="in")
-    clause: str = shown("", "where it stands")
+    clause: str = shown("", "reference")
 
 
 @dataclass(frozen=True)
 class SurfaceSafeties:
     """Safeties against scuffing and micropitting; None where the case gives no test."""
 
-    flash: float | None = shown("", "against scuffing by the flash temperature, computed load", name="S_B")
-    flash_iso: float | None = shown("", "the same with X_Gamma and all load factors of the standard", name="S_B_iso")
-    integral: float | None = shown("", "against scuffing by the mean flash temperature, computed load", name="S_intS")
-    integral_iso: float | None = shown("", "against scuffing by the integral temperature", name="S_intS_iso")
-    film: float | None = shown("", "against micropitting, computed load", name="S_lambda")
-    film_iso: float | None = shown("", "against micropitting, ISO/TS 6336-22 method B", name="S_lambda_iso")
+    flash: float | None = shown("", "safety factor for scuffing, flash temperature, FE load", name="S_B")
+    flash_iso: float | None = shown(
+        "",
+        "safety factor for scuffing, flash temperature, X_Gamma and all load factors of the standard",
+        name="S_B_iso",
+    )
+    integral: float | None = shown("", "safety factor for scuffing, mean flash temperature, FE load", name="S_intS")
+    integral_iso: float | None = shown("", "safety factor for scuffing, integral temperature", name="S_intS_iso")
+    film: float | None = shown("", "safety factor for micropitting, FE load", name="S_lambda")
+    film_iso: float | None = shown("", "safety factor for micropitting, ISO/TS 6336-22 method B", name="S_lambda_iso")
 
 
 @dataclass(frozen=True)
@@ -156,12 +160,12 @@ class ShownSurface:
     @property
     def largest_at(self) -> str:
         """What the largest number at a place on the path is."""
-        return "largest over the face" if self.data.wide else "by the computed load"
+        return "maximum over the face width" if self.data.wide else "FE load"
 
     @property
     def least_at(self) -> str:
         """What the least one is."""
-        return "least over the face" if self.data.wide else "by the computed load"
+        return "minimum over the face width" if self.data.wide else "FE load"
 
     def extreme(self, key: str) -> Array:
         """What counts of a quantity at every place on the path."""
@@ -175,19 +179,19 @@ class ShownSurface:
         return self.mean(key) if self.data.wide else None
 
     @property
-    @shows("N/mm", "over the face where it touches")
+    @shows("N/mm", "over the face width in contact")
     def line_load_mean(self) -> Array | None:
         """[N/m]; None of plane teeth."""
         return self._over_width("line_load")
 
     @property
-    @shows("K", "over the face")
+    @shows("K", "over the face width")
     def flash_temperature_mean(self) -> Array | None:
         """None of plane teeth."""
         return self._over_width("flash")
 
     @property
-    @shows("", "lambda_GF, over the face")
+    @shows("", "lambda_GF, over the face width")
     def film_ratio_mean(self) -> Array | None:
         """None of plane teeth."""
         return self._over_width("ratio")
@@ -235,7 +239,7 @@ class ShownSurface:
         return self._thin(key, getattr(theirs, {"film": "thickness"}.get(key, key)))
 
     @property
-    @shows("", "film ratio")
+    @shows("", "specific film thickness")
     def mapped_ratio(self) -> Array:
         """Film ratio over the path and the face, as far as it is drawn, shape (X, Z)."""
         ratio = self.computed.ratio
@@ -262,7 +266,7 @@ class ShownSurface:
         return float(np.abs(self.asked.rated.at(np.array([pair.x_start, pair.x_end])).sliding).max())
 
     @property
-    @shows("", "of either flank")
+    @shows("", "of each flank")
     def least_specific_sliding(self) -> float:
         """At A or E."""
         pair = self.data.pair
@@ -339,12 +343,12 @@ class ShownSurface:
             ("nu_oil", float(oil.kinematic(warm)) * 1e6, "mm^2/s", "ASTM D341, at the oil temperature"),
             ("eta_oil", float(oil.dynamic(warm)) * 1e3, "mPa s", "ISO/TR 15144-1, Formula 16"),
             ("X_L", oil.factor, "", "base oil"),
-            ("B_M", STEEL_HEAT / math.sqrt(1e6), "N/(mm s^.5 K)", "of steel, for scuffing and micropitting"),
+            ("B_M", STEEL_HEAT / math.sqrt(1e6), "N/(mm s^0.5 K)", "of steel, for scuffing and micropitting"),
             ("X_S", r.supply, "", "ISO/TR 13989-1, Eq. 22"),
             ("X_W", r.structure, "", "ISO/TR 13989-1, Table 2"),
             ("C_eff", f.optimal_relief * 1e6, "um", "ISO/TR 13989-1, Eq. B.1"),
-            ("C_a driver", r.tip_relief[0] * 1e6, "um", "of the case, or of running in"),
-            ("C_a driven", r.tip_relief[1] * 1e6, "um", "of the case, or of running in"),
+            ("C_a driver", r.tip_relief[0] * 1e6, "um", "from the case, or from running-in"),
+            ("C_a driven", r.tip_relief[1] * 1e6, "um", "from the case, or from running-in"),
             ("mu_m", f.friction, "", "ISO/TR 13989-1, Eq. 25"),
             ("X_J,max", float(f.approach.max()), "", "ISO/TR 13989-1, Eqs. 45 to 48"),
             ("Theta_flm", f.mean_flash, "K", "ISO/TR 13989-1, Eq. 24"),
@@ -356,7 +360,7 @@ class ShownSurface:
             rows += [
                 ("mu_mC", i.friction, "", "ISO/TR 13989-2, Eq. 1"),
                 ("K_Bgamma", i.helical, "", "ISO/TR 13989-2, Eq. 5"),
-                ("X_M", i.thermal, "K N^-.75 s^.5 m^-.5 mm", "ISO/TR 13989-2, Eq. 11"),
+                ("X_M", i.thermal, "K N^-0.75 s^0.5 m^-0.5 mm", "ISO/TR 13989-2, Eq. 11"),
                 ("X_alphabeta", i.angle, "", "ISO/TR 13989-2, Eq. 13"),
                 ("X_BE", i.geometry, "", "ISO/TR 13989-2, Eq. 22"),
                 ("X_Q", i.approach, "", "ISO/TR 13989-2, Eqs. 25 to 29"),
@@ -375,7 +379,7 @@ class ShownSurface:
             ("theta_M", data.film.bulk, "degC", "ISO/TR 15144-1, Formula 84"),
             ("alpha_thetaM", float(oil.pressure_viscosity(data.film.bulk)) * 1e9, "1/GPa", "ISO/TR 15144-1, Formula 8"),
             ("eta_thetaM", float(oil.dynamic(data.film.bulk)) * 1e3, "mPa s", "ISO/TR 15144-1, Formula 16"),
-            ("W_W", asked.tests.material_factor, "", "ISO/TR 15144-1, clause 5, of both flanks' steels"),
+            ("W_W", asked.tests.material_factor, "", "ISO/TR 15144-1, clause 5, steels of both flanks"),
             ("lambda_GF,min", data.least_film[0], "", f"ISO/TR 15144-1, 8.2, at {data.least_film[1]}"),
             ("lambda_GFP", data.permissible_film, "", "ISO/TR 15144-1, clause 5"),
         ]

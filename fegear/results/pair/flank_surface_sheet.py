@@ -47,7 +47,7 @@ TABLES = (
         ),
     ),
     Rows(
-        "flank_surface_over_face_{name}", "Flanks of pair {name} over path and face",
+        "flank_surface_over_face_{name}", "Flanks of pair {name} over path of contact and face width",
         tuple(_touching(key) for key in ("x", "z", "line_load", "pressure", "flash", "contact", "film", "ratio")),
         when="data.wide",
     ),
@@ -100,7 +100,7 @@ def _extreme_word(key: str) -> Callable[[Seen], str]:
     def word(seen: Seen) -> str:
         if not seen.data.data.wide:
             return "computed load"
-        return "least over the face" if key in ("film", "ratio") else "largest over the face"
+        return "minimum over the face width" if key in ("film", "ratio") else "maximum over the face width"
 
     return word
 
@@ -118,7 +118,7 @@ def _compared(
                 si=lambda seen: seen.data.drawn_extreme(key),
             ),
             Line(
-                quantity, "mean over the face", "series:0", x=x, look={"dash": "dot", "markers": False},
+                quantity, "mean over the face width", "series:0", x=x, look={"dash": "dot", "markers": False},
                 si=lambda seen: seen.data.drawn_mean(key),
             ),
             Line(
@@ -154,29 +154,29 @@ def _over_face(quantity: str, title: str, **options: Any) -> Over:
 _UNDER, _STANDARD, _FLASH, _FILM = "{d.under}", "ISO/TS 6336-20, X_{{Γ}}", "ISO/TS 6336-20", "ISO/TS 6336-22"
 FIGURES = (
     Chart(
-        "surface_sliding_{name}", "Sliding and curvature of the flanks of pair {name}",
-        "Pair {name}: speed of both flanks through the contact and their difference, specific sliding of either flank "
-        "(negative where it is dragged; on the base circle it goes to minus infinity), and radii of curvature. At C "
-        "nothing slides.",
+        "surface_sliding_{name}", "Sliding velocity and radius of curvature, pair {name}",
+        "Pair {name}: speed of both flanks through the contact and their difference, specific sliding of both flanks "
+        "(negative in the dedendum, tends to minus infinity at the base circle), and radii of curvature. No sliding "
+        "at C.",
         (
             _along(
                 Axis("speed", "m/s"), _speed("rolling_driver", "driver", "driver"),
                 _speed("rolling_driven", "driven", "driven"),
-                _speed("sliding", "sliding, driver less driven", "ink", "dash"),
+                _speed("sliding", "sliding velocity, driver minus driven", "ink", "dash"),
             ),
             _along(Axis("specific sliding ζ"), _shares("driver"), _shares("driven")),
             _along(
                 Axis("radius of curvature", "mm", zero=True), _speed("radius_driver", "driver", "driver"),
                 _speed("radius_driven", "driven", "driven"),
-                _speed("relative_radius", "relative radius, normal section", "ink", "dash"),
+                _speed("relative_radius", "relative radius of curvature, normal section", "ink", "dash"),
             ),
         ),
         under=_UNDER,
     ),
     Chart(
         "surface_pressure_{name}", "Load and pressure on the flanks of pair {name}",
-        "Pair {name}: load per face width and Hertzian pressure on a tooth pair from A to E with the load factors: by "
-        "the computed load, and by the load sharing factor of the standard.",
+        "Pair {name}: line load and Hertzian pressure of a tooth pair from A to E including load factors: FE load "
+        "sharing and load sharing factor of the standard.",
         (_compared("line_load", _STANDARD), _compared("pressure", _STANDARD)),
         under=_UNDER,
     ),
@@ -197,9 +197,9 @@ FIGURES = (
         under=_UNDER,
     ),
     Chart(
-        "surface_map_{name}", "Flank surface of pair {name} over the face",
-        "Pair {name}: contact temperature and film ratio over path and face, by the computed load; blank where nothing "
-        "touches.",
+        "surface_map_{name}", "Flank surface of pair {name} over the face width",
+        "Pair {name}: contact temperature and specific film thickness over path of contact and face width, FE load; "
+        "blank: no contact.",
         (
             _over_face("computed.contact", "Contact temperature", si=lambda seen: seen.data.computed.contact.T),
             _over_face("mapped_ratio", "Film ratio λ_{{GF}}"),

@@ -97,8 +97,8 @@ class ToothLossData:
     nominal: int
     error: float
     load: Array = shown("N", "load along the line of action")
-    ohlendorf: float = shown("", "H_V, two pairs share alike, spur gears", name="loss_factor_ohlendorf")
-    wimmer: float = shown("", "H_V of rigid gears, load even along the lines", name="loss_factor_wimmer")
+    ohlendorf: float = shown("", "H_V, equal sharing of two pairs, spur gears", name="loss_factor_ohlendorf")
+    wimmer: float = shown("", "H_V of rigid gears, uniform load along the contact lines", name="loss_factor_wimmer")
 
     @property
     def found(self) -> ToothLoss:
@@ -106,7 +106,7 @@ class ToothLossData:
         return self.over_loads[self.nominal]
 
     @property
-    @shows("deg", "of the driver")
+    @shows("deg", "roll angle of the driver")
     def roll_angle(self) -> Array:
         """At each place on the path [rad]."""
         return np.asarray(self.pair.roll_angle(self.found.x, "driver"))
@@ -118,7 +118,7 @@ class ToothLossData:
         return np.array([one.loss_factor for one in self.over_loads])
 
     @property
-    @shows("%", "power lost")
+    @shows("%", "power loss")
     def lost(self) -> Array:
         """Share of the power, under every load."""
         return np.array([1.0 - one.efficiency for one in self.over_loads])
@@ -208,7 +208,7 @@ _LAW = "law {asked.friction.law}"
 _SHEET = Sheet(
     tables=(
         Rows(
-            "tooth_loss_{name}", "Friction loss of a tooth pair of {name} along the path of contact",
+            "tooth_loss_{name}", "Power loss of a tooth pair of {name} along the path of contact",
             ("found.x", "roll_angle", "found.load", Cell("found.coefficient", meaning=_LAW), "found.power"),
         ),
         Rows(
@@ -222,7 +222,7 @@ _SHEET = Sheet(
     ),
     values=(
         Number("found.loss", lambda seen: seen.data.error * seen.data.found.loss),
-        Number("found.transmitted", exact, meaning="load times speed of the base circle"),
+        Number("found.transmitted", exact, meaning="power: load times base circle speed"),
         Number(
             "found.efficiency", lambda seen: seen.data.error * (seen.data.found.loss / seen.data.found.transmitted),
             name="tooth_efficiency", further=f": {_NEGLECTED}",
@@ -234,7 +234,7 @@ _SHEET = Sheet(
     ),
     figures=(
         Chart(
-            "tooth_loss_{name}", "Friction loss of pair {name}", _caption,
+            "tooth_loss_{name}", "Power loss of pair {name}", _caption,
             (
                 _along_the_path("load", "blue"), _along_the_path("coefficient", "green"),
                 _along_the_path("power", "red"),
@@ -242,7 +242,7 @@ _SHEET = Sheet(
             under="{asked.load:.5g} N, {asked.speed:.5g}",
         ),
         Chart(
-            "tooth_loss_loads_{name}", "Tooth loss of pair {name} over the load",
+            "tooth_loss_loads_{name}", "Gear mesh power loss of pair {name} over load",
             "Pair {name}: loss factor H_V by the computed load and of rigid gears, and share of the power that the "
             "teeth lose by the law {asked.friction.law}. Under little load reliefs stay open, tips unloaded.",
             (
@@ -269,7 +269,7 @@ _SHEET = Sheet(
             f"Pair {{name}}: loss of sliding teeth only; {_NEGLECTED}. Loads are those without friction."
         ),
         Remark(
-            "Pair {name}: no friction law is given, so it is Schlenk's with the lubricant of the case.",
+            "Pair {name}: friction law not specified; Schlenk with the lubricant of the case assumed.",
             when=lambda seen: not seen.asked.given,
         ),
         Remark(
@@ -278,7 +278,7 @@ _SHEET = Sheet(
             when="on_corners",
         ),
         Remark(
-            "Pair {name}: Ohlendorf's H_V is for contact ratios between 1 and 2.",
+            "Pair {name}: H_V of Ohlendorf is valid for contact ratios between 1 and 2.",
             when=lambda seen: math.isnan(seen.data.ohlendorf),
         ),
     ),
@@ -292,7 +292,7 @@ _SHEET = Sheet(
 
 def _cites(scene: Scene, name: str) -> Iterator[Citation]:
     yield Citation("ohlendorf", "loss factor H_V of equal sharing")
-    yield Citation("wimmer", "loss factor H_V of even load along contact lines")
+    yield Citation("wimmer", "loss factor H_V of uniform load along contact lines")
     part = scene.case.pair[name].friction
     law = "schlenk" if part is None else part.name
     if law in _WORKS:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.case.built.solid_influence import check_ends
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.loaded_teeth import LoadHistory
@@ -86,7 +87,7 @@ def _also(of: type, key: str, si: str, error: str, further: str = "") -> Number:
 
 _DRAWN_LINE = {"dash": "solid", "markers": False}
 _DASHED = {"dash": "dash", "markers": False}
-_FACE_TITLE = "Load over the face of pair {name}"
+_FACE_TITLE = "Load distribution over the face width of pair {name}"
 _TABLES = (
     Rows(
         "load_distribution_{name}", "Line load and pressure on the flanks of pair {name}",
@@ -107,7 +108,7 @@ _TABLES = (
         of="over_face",
     ),
     Rows(
-        "load_distribution_roll_{name}", "Shares and transmission error of pair {name}",
+        "load_distribution_roll_{name}", "Load shares and transmission error of pair {name}",
         (
             "pair.found.lines.roll", "pair.found.transmission_error",
             Off("pair.found.transmission_error", "over_roll.te_error"), "unloaded", "mesh_stiffness",
@@ -120,7 +121,7 @@ _TABLES = (
         of="over_roll",
     ),
     Rows(
-        "load_distribution_loads_{name}", "Pair {name} under every load",
+        "load_distribution_loads_{name}", "Pair {name} for every load",
         (
             Cell("total_load", "pair.found.load", lambda _: ErrorOverPitch, name="load"),
             *_over_loads("mean", " over a base pitch"), *_over_loads("peak_to_peak"), *_over_loads("face_load_factor"),
@@ -186,8 +187,8 @@ _FIGURES = (
         of="over_face", under="{load:.5g} N",
     ),
     Chart(
-        "load_over_face_loads_{name}", "Load over the face of pair {name} under every load",
-        "Pair {name}: load per face width, averaged over a base pitch, over its mean; the largest of it is K_Hβ.",
+        "load_over_face_loads_{name}", "Load distribution over the face width of pair {name} for every load",
+        "Pair {name}: line load, averaged over a base pitch, relative to its mean; the maximum is K_Hβ.",
         (
             Over(
                 "found.lines.z",
@@ -218,31 +219,32 @@ def _remarks(seen: Seen) -> list[str]:
         tips = lines.edges is not None
         remarks.append(
             f"Pair {name}: "
-            + ("sharp tip edges carry" if tips else "contact lines end at tips or form circles under")
-            + f" up to {edge * 1e-3:.4g} N/mm. A sharp edge has no largest pressure: the value next to it grows with "
-            "the number of panels, and largest_hertz_pressure excludes it. "
+            + ("sharp tip edges carry" if tips else "contact lines end at tip or form circles with")
+            + f" up to {edge * 1e-3:.4g} N/mm. Pressure at a sharp edge is singular (it rises with the number of "
+            "panels) and is excluded from largest_hertz_pressure. "
             + (
-                "Round the tips (tip_radius_rounding) to give it one."
+                "Specify tip_radius_rounding for a finite pressure."
                 if tips
-                else "Relieve the tips, or set effects.corner_contact = true for what their edges carry."
+                else "Specify tip relief, or set effects.corner_contact = true."
             )
         )
     if lines.edges is not None:
         gap = np.where(load > 0.0, lines.edges.gap, 0.0)
         on = (found.contact.force[:, :, i] * (lines.edges.gap > 0.0)).sum(axis=1) / found.load[i]
         remarks.append(
-            f"Pair {name}: tip edges carry up to {float(on.max()):.2%} of the load, {float(found.lines.mean(on)):.2%} "
-            f"on the average over a base pitch, and touch up to {float(gap.max()) * 1e6:.3g} um beyond the path."
+            f"Pair {name}: corner contact carries up to {percent(float(on.max()))} of the load, "
+            f"{percent(float(found.lines.mean(on)))} on average over a base pitch, gap outside the path of contact "
+            f"up to {float(gap.max()) * 1e6:.3g} um."
         )
     ends = np.isclose(np.abs(lines.z), lines.high, rtol=1e-9) & lines.present
     if (end := float(np.where(ends, load, 0.0).max())) > 0.0:
         remarks.append(
-            f"Pair {name}: the ends of the face carry up to {end * 1e-3:.4g} N/mm. They are sharp; what is "
-            "stated there is an average over the last half panel."
+            f"Pair {name}: line load up to {end * 1e-3:.4g} N/mm at the face ends (sharp edge; mean over the last "
+            "half panel)."
         )
     active = (found.contact.force[:, :, i] > 0.0).sum() / lines.present.sum()
     if active < 1.0:
-        remarks.append(f"Pair {name}: {1.0 - active:.1%} of the stations on the contact lines do not touch.")
+        remarks.append(f"Pair {name}: no contact at {percent(1.0 - active)} of the points on the contact lines.")
     return [*remarks, *limit_remarks(name, found, i)]
 
 
@@ -253,9 +255,9 @@ def limit_remarks(name: str, found: LoadedFlanks, i: int) -> tuple[str, ...]:
         return ()
     width = float(found.cells[1] - found.cells[0])
     said = (
-        f"Pair {name}: K_Hbeta is {largest:.4g}, and cannot exceed {most}: loads per face width are averaged over "
-        f"{width * 1e3:.4g} mm of it, half a module or less, and all of the load may stand on so little. A larger "
-        "misalignment or crown shows in largest_line_load and largest_hertz_pressure, not in K_Hbeta."
+        f"Pair {name}: K_Hbeta is {largest:.4g}, the maximum that can be resolved ({most}): line loads are averaged "
+        f"over {width * 1e3:.4g} mm of face width (half a module or less). A larger misalignment or crown shows in "
+        "largest_line_load and largest_hertz_pressure, not in K_Hbeta."
     )
     return (said,)
 
@@ -273,8 +275,8 @@ flank_stage = partial(Stage, subjects=distributed_pairs, needs=needs_flanks)
 def _check(scene: Scene, name: str) -> None:
     if scene.case.pair[name].width == "plane":
         raise InputError(
-            f"pair.{name}.width", '"plane"', 'contradicts results = ["load-distribution"], which is over the face',
-            'write width = "solid" or "slices", or remove it',
+            f"pair.{name}.width", '"plane"', 'contradicts results = ["load-distribution"] (3D)',
+            'set width = "solid" or "slices", or remove it',
         )  # fmt: skip
     for gear in gears_of(scene, name).values():
         check_ends(scene, gear, distributed_pairs(scene))

@@ -70,7 +70,7 @@ class FlankLoadFactorsData:
     exponent: float
     gap: float = shown("um", "straight part of the gap over the face")
     by_iso: Array | None = shown("", "closed formula of ISO 6336-1", name="K_Hbeta_iso")
-    transverse: Array = shown("", "largest load on a tooth pair over that of perfect flanks", name="K_Halpha")
+    transverse: Array = shown("", "maximum tooth pair load / value for ideal flanks", name="K_Halpha")
 
     @property
     @shows("", "K_Hbeta to the power N_F", name="K_Fbeta_iso")
@@ -144,7 +144,7 @@ _SHEET = Sheet(
     nominal="loaded.at",
     tables=(
         Rows(
-            "load_factors_{name}", "Load factors of pair {name} under every load",
+            "load_factors_{name}", "Load factors of pair {name} for every load",
             (
                 Cell("total_load", si="loaded.found.load", of=lambda _: ErrorOverPitch, name="load"),
                 Cell("face_load_factor", si="loaded.stated.face_load_factor", of="loaded.error"),

@@ -43,7 +43,7 @@ class Stations:
         return self.at(values[:, None] if values.ndim == 1 else values)
 
     @property
-    @shows("", "number of the roll position")
+    @shows("", "number of the mesh position")
     def position(self) -> Array:
         """From 1."""
         return self.at(np.arange(1, self.found.lines.roll.size + 1)[:, None])
@@ -59,13 +59,13 @@ class Stations:
         return self.at(self.found.pressure[:, :, self.case])
 
     @property
-    @shows("um", "of the contact that goes with it")
+    @shows("um", "contact half-width")
     def half_width(self) -> Array:
         """[m]."""
         return self.at(self.found.known.half_width(self.found.line_load)[:, :, self.case])
 
     @property
-    @shows("", "1 where the flanks touch")
+    @shows("", "1: flanks in contact")
     def active(self) -> Array:
         """As a number."""
         return (self.line_load > 0.0).astype(float)
@@ -75,7 +75,7 @@ class Stations:
 class FaceAtRoll:
     """Load over the face at one roll position."""
 
-    roll: float = shown("mm", "roll position")
+    roll: float = shown("mm", "mesh position")
     z: Array = shown("mm", "along the face, from its middle")
     load: Array = shown("N/mm", "load per face width")
 
@@ -110,13 +110,13 @@ class LoadOverFace:
         return float(self.found.load[self.case] / (self.found.cells[-1] - self.found.cells[0]))
 
     @property
-    @shows("", "mean_line_load over load per face width")
+    @shows("", "mean_line_load / load per face width")
     def factor(self) -> Array:
         """Of every cell."""
         return np.asarray(self.found.mean_over_face[:, self.case] / self.even)
 
     @property
-    @shows("", "load per face width over its mean")
+    @shows("", "line load / mean")
     def relative(self) -> Array:
         """Under every load, shape (cells, L)."""
         return np.asarray(
@@ -162,13 +162,13 @@ class OverRoll:
         return np.asarray(self.pair.error.transmission_error[:, self.pair.at])
 
     @property
-    @shows("um", "of rigid flanks: what is left of te as the load goes to zero", name="te_unloaded")
+    @shows("um", "transmission error of rigid flanks (limit for zero load)", name="te_unloaded")
     def unloaded(self) -> Array:
         """[m]."""
         return self.pair.unloaded
 
     @property
-    @shows("N/um", "of the stations that touch: tangent")
+    @shows("N/um", "tangent stiffness of the contact points")
     def mesh_stiffness(self) -> Array:
         """[N/m]."""
         return np.asarray(self.pair.found.contact.stiffness[:, self.pair.at])

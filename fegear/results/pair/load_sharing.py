@@ -36,10 +36,10 @@ class CornerLoads:
     """
 
     total_load: Array = shown("N", "mesh force")
-    corner_load: Array = shown("N", "largest load on one tooth pair whose tip corner touches off the path")
+    corner_load: Array = shown("N", "maximum load of a tooth pair in corner contact outside the path of contact")
 
     @property
-    @shows("", "corner_load over total_load")
+    @shows("", "corner_load / total_load")
     def share(self) -> Array:
         """Shape (L,)."""
         return self.corner_load / self.total_load
@@ -61,7 +61,7 @@ class LoadSharingData:
         return CornerLoads(loads, (corner[:, None] * self.history.found.load).max(axis=0))
 
     @property
-    @shows("N", "carried by tip corners off the path, at the nominal load")
+    @shows("N", "load carried by corner contact outside the path of contact, at nominal load")
     def on_corners(self) -> float:
         """[N]."""
         h = self.history
@@ -92,7 +92,7 @@ _SHEET = Sheet(
             "load_sharing_loads_{name}", _TITLE + " for every load", (Every("path"),), "history.found", OVER_LOADS
         ),
         Rows(
-            "tip_corner_loads_{name}", "Load on tip corners of {name} for every load",
+            "tip_corner_loads_{name}", "Corner contact load of {name} for every load",
             ("total_load", "corner_load", "share"), of="corners",
         ),
     ),
@@ -107,8 +107,8 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "load_sharing_{name}", "Load on a tooth pair of pair {name}",
-            "Pair {name}: one tooth pair from its first to its last contact; A to E: points of the path"
-            "{d.history.where}. {d.teeth.about}",
+            "Pair {name}: one tooth pair from first to last contact; A to E: points of the path of "
+            "contact{d.history.where}. {d.teeth.about}",
             tuple(
                 Over(
                     LINE_OF_ACTION, (line,), options={"zero": True},
@@ -122,8 +122,9 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(
-            "Pair {name}: tip corners touch off the path and carry up to {d.on_corners:.4g} "
-            "({d.share_on_corners:.1%}); hertz_pressure there is that of smooth flanks, the true one is higher.",
+            "Pair {name}: corner contact outside the path of contact, up to {d.on_corners:.4g} "
+            "({percent(d.share_on_corners)}); hertz_pressure there is for smooth flanks and underestimates the "
+            "pressure at the tip edge.",
             when="on_corners",
         ),
     ),
@@ -146,6 +147,6 @@ LOAD_SHARING = teeth_stage(
     inputs=Subject.of,
     compute=_compute,
     present=_SHEET.present,
-    cites=citing(Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ),
+    cites=citing(Citation("mark", "load sharing of the tooth pairs", "Appendix A"), HERTZ),
     forecast=_forecast,
 )

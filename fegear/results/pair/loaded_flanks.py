@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from fegear.base.printed import percent
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
@@ -103,8 +104,8 @@ def _sliced(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     if not data.missed:
         return ()
     told = (
-        f"Pair {name}: coupled slices of the plane section are used instead of solid gears. Their "
-        f"compliances miss those of solids by up to {data.missed:.0%}, which the estimated errors count."
+        f"Pair {name}: coupled slices used instead of 3D gears; compliance differs from 3D by up to "
+        f"{percent(data.missed)}, included in the estimated errors."
     )
     return (told,)
 
@@ -115,9 +116,9 @@ def _beside(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     if data.beside <= _UNREMARKED * mean:
         return ()
     remark = (
-        f"Pair {name}: where modifications or errors are steep the flanks touch beside the contact lines of "
-        f"unmodified ones, which moves gaps by up to {data.beside * 1e6:.3g} um; the mean transmission error is "
-        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{name} contains it; loads neglect it."
+        f"Pair {name}: steep modifications or deviations shift the contact away from the theoretical contact lines, "
+        f"changing gaps by up to {data.beside * 1e6:.3g} um (mean transmission error {mean * 1e6:.4g} um). Included "
+        f"in te_unloaded of load_distribution_roll_{name}, neglected in loads."
     )
     return (remark,)
 
@@ -130,8 +131,8 @@ def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
         return ()
     i = int(fewest.argmin())
     remark = (
-        f"Pair {name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll "
-        "position, too few to resolve how the load spreads between them. Raise load_distribution.panels."
+        f"Pair {name}: at {found.load[i]:.4g} N only {fewest[i]} points are in contact at a roll position, too few "
+        "to resolve the load distribution. Increase load_distribution.panels."
     )
     return (remark,)
 

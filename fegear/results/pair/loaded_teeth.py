@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 #: What declares the column of loads of a table for every load.
 OVER_LOADS = (ErrorOverPitch, "total_load")
 #: Abscissa of figures over one base pitch.
-BASE_PITCH = Axis("roll position over one base pitch", "mm")
+BASE_PITCH = Axis("mesh position over one base pitch", "mm")
 
 
 @dataclass(frozen=True)

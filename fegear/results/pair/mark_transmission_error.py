@@ -34,12 +34,12 @@ _ROUND_OFF = 1e-17
 class SeriesHarmonics:
     """Harmonics 1 to N of the transmission error: exactly and by Mark's series [m]."""
 
-    n: NDArray[np.int64] = shown("", "harmonic of the tooth-mesh frequency", table="series")
-    exact: Array = shown("um", "0-peak, load sharing and quadrature, evenly spaced teeth", table="series")
-    series: Array = shown("um", "0-peak, Mark's series, exact products")
-    convolved: Array = shown("um", "0-peak, products cut off")
-    limit: Array = shown("um", "0-peak, what the series converges to: pairs never part")
-    truncation: Array = shown("um", "size of series less limit, 0-peak")
+    n: NDArray[np.int64] = shown("", "harmonic of the mesh frequency", table="series")
+    exact: Array = shown("um", "amplitude, load sharing and quadrature, uniform pitch", table="series")
+    series: Array = shown("um", "amplitude, Mark's series, exact products")
+    convolved: Array = shown("um", "amplitude, truncated products")
+    limit: Array = shown("um", "limit of the series (no loss of contact), amplitude")
+    truncation: Array = shown("um", "difference between series and limit, amplitude")
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ class SpacingHarmonics:
     """Rotational harmonics, those of the mesh left out: by (1.28) and by exact load sharing [m]."""
 
     n: NDArray[np.int64] = shown("")
-    mesh_order: Array = shown("", "frequency over the tooth-mesh frequency")
-    exact: Array = shown("um", "0-peak, by load sharing")
-    closed_form: Array = shown("um", "0-peak (Mark 1.28, 1.29)")
+    mesh_order: Array = shown("", "frequency / mesh frequency")
+    exact: Array = shown("um", "amplitude, load sharing")
+    closed_form: Array = shown("um", "amplitude (Mark 1.28, 1.29)")
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class MarkData:
         return int(np.flatnonzero(self.series.reciprocal.terms == self.series.terms)[0])
 
     @property
-    @shows("um", "0-peak, by Mark's series")
+    @shows("um", "amplitude, Mark's series")
     def te_first_harmonic_series(self) -> float:
         """[m]."""
         return float(self.series.pointwise.amplitude[0])
@@ -155,8 +155,8 @@ MARK_TABLES = (
         "transmission_error_series_{name}", "Harmonics of the transmission error of {name} by Mark's series",
         (
             "n", "exact",
-            Cell("series", meaning="0-peak, Mark's series, M = {d.by_mark.series.terms}, exact products"),
-            Cell("convolved", meaning="0-peak, products cut off at {d.by_mark.count} harmonics"),
+            Cell("series", meaning="amplitude, Mark's series, M = {d.by_mark.series.terms}, exact products"),
+            Cell("convolved", meaning="amplitude, products truncated at {d.by_mark.count} harmonics"),
             "limit", "truncation",
         ),
         of="by_mark.harmonics",
@@ -167,7 +167,7 @@ MARK_TABLES = (
     ),
     Rows(
         "transmission_error_rotational_series_{name}",
-        "Rotational harmonics of the transmission error of {name} by Mark's closed form",
+        "Rotational harmonics of the transmission error of {name} by Mark's closed-form solution",
         (Cell("n", meaning="harmonic of {d.by_mark.cycles} base pitches"), "mesh_order", "exact", "closed_form"),
         of="by_mark.between",
     ),
@@ -179,17 +179,17 @@ MARK_VALUES = (
     Number(
         "pointwise_error", exact, _RECIPROCAL, name="series_error",
         si=lambda seen: seen.data.by_mark and seen.data.by_mark.series.reciprocal.pointwise_error[seen.data.by_mark.at],
-        meaning="of 1/K's coefficients after {d.by_mark.series.terms} terms, over the mean",
+        meaning="error of the coefficients of 1/K after {d.by_mark.series.terms} terms, relative to the mean",
     ),
     Number(
         "convolved_error", exact, _RECIPROCAL, name="series_error_convolved",
         si=lambda seen: seen.data.by_mark and seen.data.by_mark.series.reciprocal.convolved_error[seen.data.by_mark.at],
-        meaning="the same with products cut off",
+        meaning="error with truncated products",
     ),
     Number(
         "convolved_error", exact, _RECIPROCAL, name="series_error_convolved_limit",
         si=lambda seen: seen.data.by_mark and seen.data.by_mark.series.reciprocal.convolved_error[-1],
-        meaning=lambda seen: f"after {seen.data.by_mark.series.reciprocal.terms[-1]} terms: what cutting off leaves",
+        meaning=lambda seen: f"after {seen.data.by_mark.series.reciprocal.terms[-1]} terms: truncation error",
     ),
     Number("smallest", exact, _RECIPROCAL, name="series_smallest_k"),
     Number("largest", exact, _RECIPROCAL, name="series_largest_k"),
@@ -201,41 +201,42 @@ def _where_the_closed_form_holds(seen: Seen) -> str:
     from fegear.contact.plane.mark_series import SPACING_RANGE
 
     return (
-        f"Pair {seen.name}: Mark's closed form of spacing errors holds for contact ratios from {SPACING_RANGE[0]:g} to "
-        f"{SPACING_RANGE[1]:g}; here it is {seen.data.by_mark.contact_ratio:.4g}. The exact method holds."
+        f"Pair {seen.name}: Mark's closed-form solution for pitch deviations is valid for contact ratios "
+        f"{SPACING_RANGE[0]:g} to {SPACING_RANGE[1]:g} (here {seen.data.by_mark.contact_ratio:.4g}); use the exact "
+        "method."
     )
 
 
 MARK_REMARKS = (
     Remark(
-        "Pair {name}: Mark's series does not converge: the mesh stiffness reaches "
-        "{d.by_mark.series.reciprocal.largest:.3g} of its mean, and it has to stay below 2. The exact method holds.",
+        "Pair {name}: Mark's series does not converge: maximum mesh stiffness "
+        "{d.by_mark.series.reciprocal.largest:.3g} of its mean (must be below 2); use the exact method.",
         when=lambda seen: seen.data.by_mark and not seen.data.by_mark.series.reciprocal.converges,
     ),
     Remark(
-        "Pair {name}: a tooth pair on the path of contact carries nothing somewhere. Mark's series takes every pair on "
-        "the path as loaded, so it keeps a difference from the exact method whatever its terms.",
+        "Pair {name}: a tooth pair on the path of contact is unloaded at some positions. Mark's series assumes all "
+        "pairs on the path in contact; the difference from the exact method does not vanish with more terms.",
         when="by_mark.parted",
     ),
     Remark(
-        "Pair {name}: tips touch before or after the path of contact (corner_contact). Mark's series knows the path "
-        "alone, so it keeps a difference from the exact method whatever its terms.",
+        "Pair {name}: corner contact is not covered by Mark's series, so a difference to the exact method remains "
+        "for any number of terms.",
         when="by_mark.corners",
     ),
     Remark(_where_the_closed_form_holds, when="by_mark.outside_range"),
 )
-_AMPLITUDE = Axis("amplitude of the transmission error", "um, 0-peak", log=True)
+_AMPLITUDE = Axis("amplitude of the transmission error", "um (amplitude)", log=True)
 MARK_FIGURES = (
     Chart(
         "transmission_error_series_{name}", "Transmission error of pair {name} by Mark's series",
-        "Pair {name}: harmonics of the static transmission error, exactly and by Mark's series for the reciprocal mesh "
+        "Pair {name}: harmonics of the static transmission error, exact and by Mark's series for the reciprocal mesh "
         "stiffness with M = {d.by_mark.series.terms}.",
         (
             Over("n",
                 (
                     Line("exact", "exact", "ink", kind="bars", first=_BARS),
                     Line("series", "series, M = {d.by_mark.series.terms}", kind="bars", first=_BARS),
-                    Line("convolved", "products cut off", "orange", kind="bars", first=_BARS),
+                    Line("convolved", "truncated products", "orange", kind="bars", first=_BARS),
                 ),
                 _AMPLITUDE, x_options={"whole": True},
             ),
@@ -245,29 +246,30 @@ MARK_FIGURES = (
     Chart(
         "transmission_error_convergence_{name}", "Convergence of Mark's series for pair {name}",
         "Pair {name}: largest error of the coefficients of the reciprocal mesh stiffness, over their mean. The bound "
-        "is the geometric series where the stiffness is farthest from its mean; products of Fourier series that are "
-        "cut off leave an error that no term takes away.",
+        "is the geometric series where the stiffness is farthest from its mean; truncated products of Fourier series "
+        "leave an error that does not vanish with more terms.",
         (
             Over(
                 Axis("terms M of the series", whole=True, zero=True),
                 (
                     Line("bound", "bound", "grey", x="terms", look={"dash": "dot"}),
                     Line("pointwise_error", "exact products", x="terms"),
-                    Line("convolved_error", "products cut off", "orange", x="terms"),
+                    Line("convolved_error", "truncated products", "orange", x="terms"),
                 ),
-                Axis("largest error over the mean", log=True, limits=(_ROUND_OFF, 1.0)),
+                Axis("maximum error / mean", log=True, limits=(_ROUND_OFF, 1.0)),
             ),
         ),
         of=_RECIPROCAL,
     ),
     Chart(
-        "transmission_error_rotational_series_{name}", "Spacing errors of pair {name} by Mark's closed form",
+        "transmission_error_rotational_series_{name}", "Pitch deviations of pair {name}, Mark's closed-form solution",
         "Pair {name}: rotational harmonics of the transmission error, by exact load sharing and by (1.28) with the "
-        "transfer function (1.29), which knows the contact ratio alone. Harmonics of the mesh are not drawn.",
+        "transfer function (1.29), which depends on the contact ratio only. Mesh harmonics are not drawn.",
         (
             Over(
                 "mesh_order",
-                (Line("exact", "exact", "ink", kind="points"), Line("closed_form", "closed form", kind="points")),
+                (Line("exact", "exact", "ink", kind="points"), Line("closed_form",
+                    "closed-form solution", kind="points")),
                 _AMPLITUDE,
             ),
         ),

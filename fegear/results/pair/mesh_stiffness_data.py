@@ -32,23 +32,23 @@ class MeshOverRoll:
     kappa_error: Array
     mu_error: Array
     half_width: float
-    roll: Array = shown("mm", "roll position")
+    roll: Array = shown("mm", "mesh position")
     stiffness: Array = shown(
         "N/um", "tangent stiffness along the tooth normal, over all pairs", name="K_M", label="K_M"
     )
-    kappa: Array = shown("", "lever of the stiffness in the plane of action over half the face width", label="kappa")
-    mu: Array = shown("", "rotary stiffness over K_M b^2", label="mu")
+    kappa: Array = shown("", "lever of the stiffness in the plane of action / half face width", label="kappa")
+    mu: Array = shown("", "rotational stiffness / (K_M b^2)", label="mu")
     transverse: Array = shown("N/um", "dW/dzeta along the transverse line of action", name="transverse_stiffness")
     lever: Array = shown("mm", "lever of the normal force in the plane of action", name="force_lever")
 
     @property
-    @shows("", "lever of the force over b")
+    @shows("", "lever of the force / b")
     def relative_lever(self) -> Array:
         """In halves of the face width."""
         return self.lever / self.half_width
 
     @property
-    @shows("mm", "the normal force wanders so far over the face", name="force_lever_peak_to_peak")
+    @shows("mm", "range of axial shuttling of the normal force", name="force_lever_peak_to_peak")
     def lever_peak_to_peak(self) -> float:
         """[m]."""
         return float(np.ptp(self.lever))
@@ -61,7 +61,7 @@ class MatrixColumn:
     name: str
     force: Array = shown(
         "N/um",
-        "force on the coordinate of the row per motion of this one; rotations as arcs at b or the base radius",
+        "force on the coordinate of the row per motion of this coordinate; rotations as arcs at b or the base radius",
     )
 
 
@@ -71,7 +71,7 @@ class MeanMatrix:
 
     matrix: Array = shown("N/um", "stiffness")
     place: Array = shown("", "number of the coordinate")
-    coordinate: NDArray[np.str_] = shown("", "right-handed axes through the gear's own axis")
+    coordinate: NDArray[np.str_] = shown("", "right-handed coordinates at the gear axis")
 
     @property
     def columns(self) -> list[MatrixColumn]:
@@ -90,10 +90,10 @@ class StiffnessHarmonics:
 
     n: NDArray[np.int64] = shown("", "harmonic of the mesh frequency", table="harmonics")
     stiffness: Array = shown("N/um", "0-peak", name="K_M", table="harmonics")
-    coupling: Array = shown("N/um", "0-peak, coupling of translation and tilt", name="kappa_K_M", table="harmonics")
-    rotary: Array = shown("N/um", "0-peak, rotary stiffness over b^2", name="mu_K_M", table="harmonics")
+    coupling: Array = shown("N/um", "amplitude, coupling of translation and tilt", name="kappa_K_M", table="harmonics")
+    rotary: Array = shown("N/um", "amplitude, rotational stiffness / b^2", name="mu_K_M", table="harmonics")
     lever: Array = shown(
-        "mm", "0-peak: the force wanders over the face under a constant load", name="force_lever", table="harmonics"
+        "mm", "amplitude of the axial shuttling of the force at constant load", name="force_lever", table="harmonics"
     )
 
 
@@ -102,9 +102,9 @@ class StiffnessOverLoads:
     """Mean stiffness of a mesh under every load, arrays of shape (L,)."""
 
     load: Array = shown("N", "along the transverse line of action", table="loads")
-    stiffness: Array = shown("N/um", "of the mean matrix", name="K_M", table="loads")
-    kappa: Array = shown("", "of the mean matrix", table="loads")
-    mu: Array = shown("", "of the mean matrix", table="loads")
+    stiffness: Array = shown("N/um", "value of the mean matrix", name="K_M", table="loads")
+    kappa: Array = shown("", "value of the mean matrix", table="loads")
+    mu: Array = shown("", "value of the mean matrix", table="loads")
     lever: Array = shown("mm", "mean over the base pitch", name="force_lever", table="loads")
 
 
@@ -119,16 +119,16 @@ class MeanStiffness:
     lever_error: float
     stiffness: float = shown("N/um", "mean mesh stiffness along the tooth normal", name="K_M")
     kappa: float = shown(
-        "", "mean lever of the mesh stiffness about the pitch axis over half the face width", name="mesh_kappa"
+        "", "mean lever of the mesh stiffness about the pitch axis / half face width", name="mesh_kappa"
     )
-    mu: float = shown("", "mean rotary stiffness over K_M b^2", name="mesh_mu")
-    mu_even: float = shown("", "mu of contact lines that are everywhere equally stiff", name="mesh_mu_even")
-    kappa_even: float = shown("", "kappa of the same", name="mesh_kappa_even")
+    mu: float = shown("", "mean rotational stiffness / (K_M b^2)", name="mesh_mu")
+    mu_even: float = shown("", "mu for uniform stiffness along the contact lines", name="mesh_mu_even")
+    kappa_even: float = shown("", "kappa of uniformly stiff contact lines", name="mesh_kappa_even")
     tilt: float = shown("N.m", "moment per radian: K_M mu b^2", name="mesh_tilt_stiffness")
-    kappa_driver: float = shown("", "kappa about the driver's own axis", name="mesh_kappa_driver")
-    kappa_driven: float = shown("", "kappa about the driven gear's own axis", name="mesh_kappa_driven")
-    mu_driver: float = shown("", "mu about the driver's own axis", name="mesh_mu_driver")
-    mu_driven: float = shown("", "mu about the driven gear's own axis", name="mesh_mu_driven")
+    kappa_driver: float = shown("", "kappa about the driver axis", name="mesh_kappa_driver")
+    kappa_driven: float = shown("", "kappa about the driven axis", name="mesh_kappa_driven")
+    mu_driver: float = shown("", "mu about the driver axis", name="mesh_mu_driver")
+    mu_driven: float = shown("", "mu about the driven axis", name="mesh_mu_driven")
     lever: float = shown("mm", "mean lever of the normal force", name="force_lever")
 
     @property

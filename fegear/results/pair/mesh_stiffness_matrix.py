@@ -60,7 +60,7 @@ def _over_pitch(quantity: str, *levels: Line) -> Over:
 
 
 #: Contact lines of the same stiffness everywhere, in the legend; the load that figures hold for.
-_EVEN, _UNDER = "lines equally stiff", "{d.flanks.nominal:.5g} N"
+_EVEN, _UNDER = "uniformly stiff lines", "{d.flanks.nominal:.5g} N"
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -78,8 +78,8 @@ def needs_wide_pair(scene: Scene, name: str, result: str) -> None:
 
     if name not in scene.wide_pairs:
         raise InputError(
-            f"pair.{name}.width", '"plane"', f"knows no motion along the face, which {result} is about",
-            'write width = "solid"',
+            f"pair.{name}.width", '"plane"', f"has no axial variation, which {result} requires",
+            'set width = "solid"',
         )  # fmt: skip
 
 
@@ -104,7 +104,7 @@ _SHEET = Sheet(
             (Every("harmonics"),), of="harmonics",
         ),
         Rows(
-            "mesh_stiffness_loads_{name}", "Mean mesh stiffness of pair {name} under every load",
+            "mesh_stiffness_loads_{name}", "Mean mesh stiffness of pair {name} for every load",
             (Every("loads"),), of="over_loads", when=lambda seen: seen.data.found.load.size > 1,
         ),
     ),
@@ -127,13 +127,13 @@ _SHEET = Sheet(
             "mesh_stiffness_matrix_{name}", "Mesh stiffness of pair {name} over a base pitch",
             "Pair {name}: stiffness along the tooth normal K_M, its lever kappa and rotary stiffness mu in halves of "
             "the face width b; bands are estimated errors, grey what contact lines would have that are everywhere "
-            "equally stiff. The lever of the force wanders though the load is constant.",
+            "equally stiff. The force lever varies (shuttling) at constant load.",
             (
                 _over_pitch("stiffness", _level("stiffness", "mean", "ink")),
                 _over_pitch(
                     "kappa", _level("kappa", "mean", "ink"), _level("kappa_even", _EVEN, "grey"),
                     Line(
-                        "over_roll.relative_lever", "lever of the force over b", "orange", x="over_roll.roll",
+                        "over_roll.relative_lever", "lever of the force / b", "orange", x="over_roll.roll",
                         look={"dash": "dot"},
                     ),
                 ),
@@ -144,8 +144,8 @@ _SHEET = Sheet(
         Chart(
             "mesh_stiffness_mean_{name}", "Mean stiffness matrix of the mesh of pair {name}",
             "Pair {name}: force on the coordinate of the row by motion along that of the column; 1 is the driver, 2 "
-            "the driven gear, each turning about right-handed axes through its own. Rotations are arcs at half the "
-            "face width b and at the base radius r.",
+            "the driven gear, right-handed coordinates at each gear axis. Rotations are arcs at half the face width "
+            "b and at the base radius r.",
             (
                 Over(
                     Axis("motion", categories=_NAMES),
@@ -183,5 +183,5 @@ MESH_STIFFNESS_MATRIX = Stage(
     check=_check,
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
     forecast=lambda _scene, _name: Forecast({}, 0.1),
-    why_external="its signs of rotations and tilts are those of axes on either side of the pitch point",
+    why_external="signs of rotation and tilt apply to external pairs only",
 )

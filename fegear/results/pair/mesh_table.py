@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.sheet.rows import Cell, Rows
@@ -42,7 +43,7 @@ class EvenMesh:
     local_stiffness: Array
     te_error: Array | None
     lost: dict[str, float]
-    driver_angle: Array = shown("deg", "of the driver, from where the curve of the base pitch begins")
+    driver_angle: Array = shown("deg", "roll angle of the driver, from the start of the base pitch curve")
 
 
 def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
@@ -52,7 +53,7 @@ def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
     te, secant, local = (over_pitch(e.x, getattr(e, key)[:, e.at], pitch, part) for key in _NAMES)
     lost = {
         "transmission error": te.mean() / float(e.te_mean[e.at]) - 1.0,
-        "slope stiffness": local.mean() / float(e.local_stiffness_mean[e.at]) - 1.0,
+        "tangent stiffness": local.mean() / float(e.local_stiffness_mean[e.at]) - 1.0,
     }
     error = None if e.te_error is None else over_pitch(e.x, e.te_error, pitch, part)
     return EvenMesh(te, secant, local, error, lost, part * pitch / e.pair.driver.base_radius)
@@ -67,12 +68,11 @@ def over_pitch(x: Array, values: Array, pitch: float, part: Array) -> Array:
 
 def _what_even_steps_lose(seen: Seen) -> str:
     mesh: EvenMesh = seen.data.even
-    means = " and ".join(f"that of the {what} by {share:+.1e}" for what, share in mesh.lost.items())
+    means = " and ".join(f"the {what} by {percent(share, signed=True)}" for what, share in mesh.lost.items())
     return (
-        f"Pair {seen.name}: the table mesh_table_{seen.name} has {mesh.te.size} even steps over one tooth of the "
-        f"driver, {np.degrees(seen.data.found.pair.base_pitch / seen.data.found.pair.driver.base_radius):.6g} degrees, "
-        f"and repeats from there. Its means differ from those of the curves: {means}; more even_positions bring them "
-        "nearer."
+        f"Pair {seen.name}: the table mesh_table_{seen.name} has {mesh.te.size} equal steps over one driver tooth "
+        f"({np.degrees(seen.data.found.pair.base_pitch / seen.data.found.pair.driver.base_radius):.6g} deg, "
+        f"periodic). Means differ from the curves: {means}; increase even_positions to reduce this."
     )
 
 

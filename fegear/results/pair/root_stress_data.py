@@ -205,7 +205,7 @@ class StressedTooth:
         return self.sources[0].stress
 
     @property
-    @shows("s", "from the first position")
+    @shows("s", "time from the first position")
     def t(self) -> Array | None:
         """Time, where a speed is given [s]."""
         return None if self.rate is None else (self.first.x - self.first.x[0]) / self.rate

@@ -183,17 +183,17 @@ _TABLES = Each(
                 ),
             ),
             _place("tension.z", "pulled_z", "stress_face_position",
-                   "where stress is largest along the face, from its middle"),
+                   "face position of the maximum, from mid-face"),
             _place("tension.radius", "pulled_radius", "stress_radius", "and its distance from the axis"),
             _place("compression.z", "pressed_z", "compression_face_position",
-                   "where compression is largest along the face"),
+                   "face position of the maximum compression"),
         ),
     ),
     Rows(
         "root_stress_over_face_{one.label}", "Root stress of gear {one.gear} along its face in the mesh",
         (
             Cell("tension.x", "over_face.x"), _row("tension", "z"), _row("tension", "value"), _row("tension", "radius"),
-            _row("compression", "value", "compression", "most negative stress up the other fillet"),
+            _row("compression", "value", "compression", "minimum stress in the opposite fillet"),
             _row("compression", "radius", "compression_radius"),
         ),
         of="over_face",
@@ -223,7 +223,7 @@ _VALUES = Each(
 )  # fmt: skip
 _FIGURES = (
     Chart(
-        "root_stress_history_{name}", "Root stress through the mesh of pair {name}",
+        "root_stress_history_{name}", "Root stress over the mesh cycle of pair {name}",
         "Pair {name} at {load:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
         "neighbours' added. A to E: points of the path of contact. Largest tension {d.largest}.",
         (
@@ -247,9 +247,9 @@ _FIGURES = (
         of=lambda seen: seen.data.sources[0], under="{load:.5g} N",
     ),
     Chart(
-        "root_stress_over_face_{name}", "Root stress over the face of pair {name}",
-        "Pair {name}: largest tension up the fillet of a tooth of either gear along its face, on its way through the "
-        "mesh; the position is that of its contact line in the middle of the face.",
+        "root_stress_over_face_{name}", "Root stress over the face width of pair {name}",
+        "Pair {name}: root stress (tension side) of one tooth of each gear over the face width and the engagement; "
+        "position of the contact line at mid-face.",
         (
             Over(
                 "x", (Map("value", "z", limits=lambda seen: (0.0, seen.data.top)),), each="maps",
@@ -302,7 +302,7 @@ def _check(scene: Scene, name: str) -> None:
 
 def _cites(scene: Scene, name: str) -> Iterator[Citation]:
     yield from ROOT_STRESS_CITATIONS[FINITE_ELEMENTS] if name in scene.wide_pairs else cited_sources(scene, name)
-    yield Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")
+    yield Citation("mark", "root stress history of a tooth in mesh", "section 3, Appendix B")
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -360,7 +360,9 @@ def formula_remarks(pair: str, notes: Mapping[str, Mapping[str, tuple[str, ...]]
     ]
     alone = dict.fromkeys(source for found in notes.values() for source in found if source != FINITE_ELEMENTS)
     if coupled and alone:
-        remarks.append(f"Pair {pair}: root stress by {', '.join(alone)} is that of a tooth's own load alone.")
+        remarks.append(
+            f"Pair {pair}: root stress by {', '.join(alone)} does not include the loads on neighbouring teeth."
+        )
     return tuple(remarks)
 
 

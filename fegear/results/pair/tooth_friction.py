@@ -183,7 +183,7 @@ _SHEET = Sheet(
             stacked="at_speeds", when="found",
         ),
         Rows(
-            "friction_loss_{name}", "Friction loss of mesh {name} over speed",
+            "friction_loss_{name}", "Power loss of mesh {name} over speed",
             (
                 Cell("speed", meaning=_SPEED),
                 *(f"over_path.{k}" for k in ("power", "loss", "mean_coefficient", "efficiency", "loss_error")),
@@ -202,9 +202,9 @@ _SHEET = Sheet(
         Chart(
             "tooth_friction_{name}", "Tooth friction of mesh {name}",
             "Mesh {name}: friction coefficient by the law {asked.law.law}, and friction torque of one tooth pair on "
-            "both gears over the path of contact under the static load (dotted: of all pairs in contact then). Sliding "
-            "turns at the pitch point C, where Benedict and Kelley's law is cut at 0.2; a positive torque turns a "
-            "gear on.",
+            "both gears over the path of contact under the static load (dotted: of all pairs in contact then). "
+            "Sliding reverses at the pitch point C (Benedict-Kelley coefficient limited to 0.2); positive torque "
+            "acts in the direction of rotation.",
             (
                 _over_roll("coefficient", zero=True),
                 _over_roll("torque_driver", "total_driver"),
@@ -214,7 +214,7 @@ _SHEET = Sheet(
         ),
     ),
     remarks=(
-        Remark("Mesh {name} carries no mean force, so it has no friction.", when=lambda seen: not seen.data.found),
+        Remark("Mesh {name} has no mean force and therefore no friction.", when=lambda seen: not seen.data.found),
     ),
     settings={"law": lambda seen: seen.asked.law.law if seen.data.found else None},
 )  # fmt: skip
@@ -242,7 +242,7 @@ TOOTH_FRICTION = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    requires=(Need("friction", "it is what this result shows"),),
+    requires=(Need("friction", "required by this result"),),
     cites=_cites,
     forecast=_forecast,
 )

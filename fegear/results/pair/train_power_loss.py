@@ -67,9 +67,9 @@ class TrainLossData:
     factor: Array
     friction: Array
     error: float
-    power: Array = shown("W", "that it transmits")
-    loss: Array = shown("W", "that its teeth lose", name="tooth_loss", label="tooth loss")
-    driving: float = shown("W", "that drives the train", name="power")
+    power: Array = shown("W", "transmitted power")
+    loss: Array = shown("W", "gear mesh power loss", name="tooth_loss", label="gear mesh power loss")
+    driving: float = shown("W", "input power of the train", name="power")
 
     @property
     @shows("", "number of the mesh")
@@ -78,7 +78,7 @@ class TrainLossData:
         return np.arange(self.loss.size, dtype=float)
 
     @property
-    @shows("", "of its teeth", name="efficiency")
+    @shows("", "efficiency of the mesh", name="efficiency")
     def efficiencies(self) -> Array:
         """Of the teeth of every mesh."""
         kept = 1.0 - self.loss / np.maximum(self.power, np.finfo(float).tiny)
@@ -91,7 +91,11 @@ class TrainLossData:
         return float(self.loss.sum())
 
     @property
-    @shows("", "of the teeth alone: bearings, churning, windage and seals are neglected", name="tooth_efficiency")
+    @shows(
+        "",
+        "efficiency of the gear meshes only: bearings, churning, windage and seals are neglected",
+        name="tooth_efficiency",
+    )
     def efficiency(self) -> float:
         """Of the teeth of all meshes together."""
         return 1.0 - self.whole_loss / self.driving
@@ -148,7 +152,7 @@ _SHEET = Sheet(
     name=lambda _asked: "",
     tables=(
         Rows(
-            "train_loss", "Tooth loss of every mesh of the train",
+            "train_loss", "Gear mesh power loss of every mesh of the train",
             (
                 Cell("meshes", lambda seen: np.array(seen.asked.meshes), lambda seen: seen.asked), "power", "loss",
                 Cell("loss_factor", "factor", lambda _: ToothLoss),
@@ -163,7 +167,7 @@ _SHEET = Sheet(
     ),
     figures=(
         Chart(
-            "train_loss", "Tooth loss of the train",
+            "train_loss", "Gear mesh power loss of the train",
             "What the teeth of every mesh lose of the {d.driving:.5g} that drive the train: {d.whole_loss:.4g} "
             "together, an efficiency of {d.efficiency:.5f}. Bearings, churning, windage and seals are neglected.",
             (
@@ -176,11 +180,11 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(
-            "The train's efficiency is that of sliding teeth alone; each mesh transmits the power that it has without "
-            "loss."
+            "Efficiency of the train: sliding loss of the teeth only; power of each mesh computed without losses."
         ),
         lambda seen: [
-            f"Mesh {mesh}: its pair gives another speed than the train; its friction is that at its own speed."
+            f"Mesh {mesh}: the speed of its pair differs from that of the train; friction computed at the speed of "
+            "the pair."
             for mesh in seen.asked.doubtful
         ],
     ),

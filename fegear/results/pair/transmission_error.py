@@ -114,15 +114,15 @@ _VALUES = (
     Number("mesh_compliance_mean", "found.mesh_compliance_error", "found"),
     Number(
         "largest", of="found.rotational_harmonics",
-        meaning="0-peak, harmonic {d.found.rotational_harmonics.at_largest} of {d.found.cycles} base pitches",
+        meaning="amplitude, harmonic {d.found.rotational_harmonics.at_largest} of {d.found.cycles} base pitches",
     ),
 )  # fmt: skip
-_AMPLITUDE = Axis("amplitude of the transmission error", "um, 0-peak")
+_AMPLITUDE = Axis("amplitude of the transmission error", "um (amplitude)")
 _FIGURES = (
     Chart(
         "transmission_error_{name}", "Transmission error of pair {name}",
-        "Pair {name}: loaded transmission error over one base pitch (Harris map of its loads), and the mesh stiffness "
-        "at {load:.5g} N: mean {d.found.local_stiffness_mean:.4g} by the local slope. Peak to peak "
+        "Pair {name}: loaded transmission error over one base pitch (Harris map of its loads), and mesh stiffness at "
+        "{load:.5g} N: mean {d.found.local_stiffness_mean:.4g} (tangent). Peak to peak "
         "{d.found.te_peak_to_peak:.3g}, effective error A_e {d.found.te_effective:.3g}.",
         (
             Over(BASE_PITCH, (Line("te", each=LOADS),), marks=_marks),
@@ -156,29 +156,27 @@ _FIGURES = (
     ),
     Chart(
         "transmission_error_rotational_{name}", "Rotational harmonics of the transmission error of pair {name}",
-        "Pair {name}: harmonics over the {d.found.cycles} base pitches after which the same teeth meet again, at "
-        "{load:.5g} N. Whole numbers are harmonics of the tooth-mesh frequency, the others spacing errors.",
+        "Pair {name}: harmonics over the {d.found.cycles} base pitches until the same teeth mesh again, at "
+        "{load:.5g} N. Integers are mesh harmonics, the others are due to pitch deviations.",
         (Over("mesh_order", (Line("amplitude", kind="stems"),), _AMPLITUDE),),
         of="found.rotational_harmonics", under="{load:.5g} N",
     ),
 )  # fmt: skip
 _REMARKS = (
     Remark(
-        "Pair {name}: {name}.mesh_compliance_mean, Mark's mean of 1/K_T of perfect flanks, is not given: with a "
-        "contact ratio of {d.found.pair.contact_ratio:.4g} tip corners alone carry where no pair is on the path of "
-        "contact.",
+        "Pair {name}: {name}.mesh_compliance_mean, Mark's mean of 1/K_T of ideal flanks, not available: with contact "
+        "ratio {d.found.pair.contact_ratio:.4g} there are positions with corner contact only.",
         when=lambda seen: seen.data.found.mesh_compliance_mean is None,
     ),
     Remark(
-        f"Pair {{name}}: the teeth meet again only after {{d.found.cycles}} base pitches, more than the {MOST_CYCLES} "
-        "over which rotational harmonics of spacing errors are computed, so these are neglected. Give the errors of "
-        "one gear alone to see its harmonics.",
+        "Pair {name}: hunting tooth cycle of {d.found.cycles} base pitches exceeds the maximum of "
+        f"{MOST_CYCLES}; rotational harmonics of pitch deviations are neglected. Specify spacing_errors of one gear "
+        "only to see its harmonics.",
         when=lambda seen: seen.data.found.rotational is None and seen.data.found.cycles > MOST_CYCLES,
     ),
     Remark(
-        "Pair {name}: with spacing errors every base pitch has a transmission error of its own; this is that of base "
-        "pitch {d.found.only}, its harmonics are those of a pair that repeats it, and rotational harmonics are not "
-        "computed over the face.",
+        "Pair {name}: with pitch deviations the transmission error differs for every base pitch; result for base "
+        "pitch {d.found.only}, harmonics of its periodic repetition. Rotational harmonics are not computed in 3D.",
         when=lambda seen: seen.data.found.only is not None,
     ),
     MESH_REMARK,
@@ -215,7 +213,7 @@ def _check(scene: Scene, name: str) -> None:
     if name in scene.wide_pairs and scene.case.transmission_error.method == "mark-series":
         raise InputError(
             "transmission_error.method", '"mark-series"',
-            f"is Mark's series of plane teeth, and pair {name} is loaded with its width", "remove it",
+            f"is defined for the plane (2D) model; pair {name} is 3D", "remove it",
         )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, PHASED_HARMONICS, set_pair
 from fegear.dynamics.planetary.kinematics import axial_forces
@@ -88,8 +89,8 @@ def _check(scene: Scene, name: str) -> None:
     part = planetary_part(scene, name)
     if part.ring is None and part.stiffness.ring_mesh is None:
         raise InputError(
-            f"planetary.{name}.stiffness.ring_mesh", "(not given)", "is needed, for the ring is no gear of the case",
-            'write stiffness = { ring_mesh = "700 N/um" }, or describe the ring and write ring = "its name"',
+            f"planetary.{name}.stiffness.ring_mesh", "(not given)", "is required if the ring is not a gear of the case",
+            'set stiffness = { ring_mesh = "700 N/um" }, or define the ring gear and set ring',
         )  # fmt: skip
 
 
@@ -114,9 +115,9 @@ def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
 def _present_cycle(data: SetCycle, asked: SetInputs) -> Outcome:
     said = []
     if asked.given["ring"] is not None:
-        said.append(f"Set {asked.name}: the mesh stiffness of planet and ring is the given one.")
+        said.append(f"Set {asked.name}: specified planet-ring mesh stiffness used.")
     if asked.run.mesh_efficiency < 1.0:
-        said.append(f"Set {asked.name}: planets share the torque without friction.")
+        said.append(f"Set {asked.name}: planet load sharing without friction.")
     return Outcome(data, remarks=tuple(said))
 
 
@@ -154,7 +155,7 @@ def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
 
 def _present_meshed(data: MeshedSet, asked: SetInputs) -> Outcome:
     solved = [one for mesh, one in zip(MESHES, data.teeth, strict=True) if asked.given[mesh] is None]
-    said = f"Set {asked.name}: for vibration, coupled teeth and contacts off the path are linear about an equal share."
+    said = f"Set {asked.name}: for vibration, coupled teeth and corner contact are linearised at equal load sharing."
     return Outcome(data, remarks=(said,) if any(not one.slotted for one in solved) else ())
 
 
@@ -209,26 +210,27 @@ def _tables(data: PlanetLoads, inputs: LoadInputs) -> tuple[Table, ...]:
 
     cycle = [*columns_of(data, "s"), *over(column_of(data, "te"), lambda one: one.te)]
     for n in range(count):
-        load = Column(f"load_{n + 1}", data.mesh_force[0, n], "N", "in the meshes of this planet, along the line of "
-                      "action")  # fmt: skip
+        load = Column(f"load_{n + 1}", data.mesh_force[0, n], "N", "mesh force of this planet, along the line of "
+                                                                   "action")  # fmt: skip
         cycle += over(load, lambda one, n=n: one.mesh_force[0, n])  # type: ignore[misc]
     pins = data.pin_force @ data.weights
     pins = np.where(np.abs(pins) < _ROUND_OFF * data.mean_force, 0.0, pins)
     of_pins = data.mean_error(lambda one: one.pin_force)
     shares = [
         Column("planet", np.arange(1, count + 1), "", "counter-clockwise"),
-        Column("tangential_error", inputs.errors[1], "um", "of its pin, counter-clockwise"),
-        Column("radial_error", inputs.errors[0], "um", "of its pin, outward"),
+        Column("tangential_error", inputs.errors[1], "um", "tangential displacement of its pin, counter-clockwise"),
+        Column("radial_error", inputs.errors[0], "um", "radial displacement of its pin, outward"),
         *with_error(column_of(data, "shares"), data.shares_error),
         *with_error(column_of(data, "largest_load"), data.largest_load_error),
-        Column("apart_sun", data.lifted[0], "", "share of the cycle without contact with the sun"),
-        Column("apart_ring", data.lifted[1], "", "share of the cycle without contact with the ring"),
-        *with_error(Column("pin_radial", pins[0], "N", "mean force of the pin on the planet, outward"), of_pins[0]),
-        *with_error(Column("pin_tangential", pins[1], "N", "mean force of the pin on the planet, counter-clockwise"),
+        Column("apart_sun", data.lifted[0], "", "fraction of the mesh cycle without contact, sun mesh"),
+        Column("apart_ring", data.lifted[1], "", "fraction of the mesh cycle without contact, ring mesh"),
+        *with_error(Column("pin_radial", pins[0], "N", "mean radial pin force on the planet, outward"), of_pins[0]),
+        *with_error(Column("pin_tangential", pins[1], "N", "mean tangential pin force on the planet, "
+                                                           "counter-clockwise"),
                     of_pins[1]),
     ]  # fmt: skip
     if inputs.tilting:
-        meaning = "mean moment of its meshes on the planet about the tangent of its path, which its pin takes"
+        meaning = "mean tilting moment of its meshes on the planet, carried by its pin"
         shares += with_error(Column("tilting_moment", inputs.tilting * data.shares, "N.m", meaning),
                              abs(inputs.tilting) * data.shares_error)  # fmt: skip
     return (
@@ -253,12 +255,12 @@ def _forces(data: PlanetLoads, inputs: LoadInputs) -> Table:
         def force_of(one: PlanetLoads, member: Central = member) -> Array:
             return force_on(one, member)
 
-        said = f"on the {member} across the axis, root of the sum of squares of both directions, 0-peak"
+        said = f"radial force amplitude on the {member} (root of the sum of squares of both directions)"
         force = Column(f"force_{member}", np.hypot(*_size(data, force_of(data), order)), "N", said)
         columns += [force, error_column(force, 2.0 * np.hypot(*data.harmonics_error(force_of, order)))]
     words = {(True, True): "nothing", (False, True): "te", (True, False): "forces", (False, False): "te and forces"}
     cancelled = [words[t > 0.0, f > 0.0] for t, f in zip(rule.torque, rule.force, strict=True)]
-    said = "what the phases of equal planets cancel: transmission error and torque, forces across the axis, or both"
+    said = "cancelled by phasing (equal planets): transmission error and torque, radial forces, or both"
     columns.append(Column("cancels", np.array(cancelled), "", said))
     title = f"Harmonics of the transmission error and of forces in {inputs.name}"
     return Table(f"planet_forces_{inputs.name}", tuple(columns), title)
@@ -276,11 +278,13 @@ def _present(data: PlanetLoads, inputs: LoadInputs) -> Outcome:
     values = [value_of(data, key, name, getattr(data, f"{key}_error"))
               for key in ("mesh_load_factor", "largest_share", "te_mean", "te_peak_to_peak")]  # fmt: skip
     said = []
-    apart = [f"planet {n + 1} ({share:.0%} of the cycle)" for n, share in enumerate(data.lifted.max(axis=0)) if share]
+    apart = [
+        f"planet {n + 1} ({percent(share)} of the cycle)" for n, share in enumerate(data.lifted.max(axis=0)) if share
+    ]
     if apart:
-        said.append(f"Set {name}: without contact: {', '.join(apart)}.")
+        said.append(f"Set {name}: loss of contact: {', '.join(apart)}.")
     if not data.cycle.off.size:
-        said.append(f"Set {name}: given stiffnesses are taken as exact; errors are those of the places in the cycle.")
+        said.append(f"Set {name}: specified stiffnesses are assumed exact; errors include the mesh positions only.")
     return Outcome(data, _tables(data, inputs), tuple(values), {"positions": int(data.s.size)}, tuple(said),
                    (_over_cycle(name, data), _harmonics(name, data, inputs)))  # fmt: skip
 
@@ -294,8 +298,8 @@ def _over_cycle(name: str, data: PlanetLoads) -> Figure:
     x = axis_of(type(data), "s", "mesh cycle, in base pitches")
     return Figure(
         f"planet_load_sharing_{name}", f"Load sharing of the planets of {name}",
-        f"Set {name}: force in the meshes of each planet over a mesh cycle, and the transmission error of the set at "
-        f"its {data.cycle.driving}. K_gamma = {data.mesh_load_factor:.4g}.",
+        f"Set {name}: mesh forces of each planet over a mesh cycle, and transmission error at the "
+        f"{data.cycle.driving}. K_gamma = {data.mesh_load_factor:.4g}.",
         (
             Panel(x, Axis("mesh force", "N", zero=True), curves),
             Panel(x, axis_of(type(data), "te", "transmission error"), (curve_of(data, "s", "te"),)),
@@ -311,13 +315,13 @@ def _harmonics(name: str, data: PlanetLoads, inputs: LoadInputs) -> Figure:
     )
     none = not any(np.any(bar.y) for bar in bars)
     return Figure(
-        f"planet_forces_{name}", f"Forces across the axis of set {name}",
-        f"Set {name}: harmonics of the forces of the planets on sun, ring and carrier, 0-peak; a member that floats "
-        "feels none.",
+        f"planet_forces_{name}", f"Radial forces on sun, ring and carrier, set {name}",
+        f"Set {name}: harmonics of the forces of the planets on sun, ring and carrier, amplitude; zero for floating "
+        "members.",
         (
             Panel(
                 Axis("mesh harmonic", whole=True), Axis("force", "N", limits=(0.0, 1.0) if none else None), bars,
-                title="none: the forces of the planets cancel each other" if none else "",
+                title="none (planet forces cancel)" if none else "",
             ),
         ),
     )  # fmt: skip

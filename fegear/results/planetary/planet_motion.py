@@ -90,30 +90,31 @@ def _present(data: SetSweep, asked: SetMotionInputs) -> Outcome:
     name, rpm = asked.name, asked.speeds * _RPM
     kinds = np.array([state.kind for state in data.states])
     columns = (
-        Column("speed", asked.speeds, "rpm", f"of the {asked.driving}"),
+        Column("speed", asked.speeds, "rpm", f"speed of the {asked.driving}"),
         *columns_of(
             data, "mesh_frequency", "sun_factor", "ring_factor", "tooth_factor", "error", "apart_sun", "apart_ring",
             "behind", "periods",
         ),
-        Column("motion", kinds, "", "periodic (and stable), or how it wanders"),
+        Column("motion", kinds, "", "periodic (stable), or type of non-periodic motion"),
     )  # fmt: skip
     top = int(np.argmax(data.tooth_factor))
     error = float(data.error[top])
     values = (
         Value(f"{name}.motion_tooth_factor", float(data.tooth_factor[top]), "", None if math.isnan(error) else error,
               declared(type(data), "tooth_factor").meaning + ", over all speeds"),
-        Value(f"{name}.motion_tooth_factor_speed", float(asked.speeds[top]), "rpm", None, "speed at which it stands"),
+        Value(f"{name}.motion_tooth_factor_speed", float(asked.speeds[top]), "rpm", None,
+            "speed at which the maximum occurs"),
     )  # fmt: skip
-    said = [f"Set {name}: all modes are damped alike, teeth as well while they are apart."]
+    said = [f"Set {name}: same damping ratio for all modes, also during loss of contact."]
     apart = np.maximum(data.apart_sun, data.apart_ring)
     if apart.any():
-        said.append(f"Set {name}: teeth part at {np.count_nonzero(apart)} of {rpm.size} speeds, longest at "
+        said.append(f"Set {name}: loss of contact at {np.count_nonzero(apart)} of {rpm.size} speeds, longest at "
                     f"{rpm[int(np.argmax(apart))]:.5g} rpm.")  # fmt: skip
     odd = kinds != "periodic"
     if odd.any():
         where = ", ".join(f"{at:.5g} rpm {kind}" for at, kind in zip(rpm[odd], kinds[odd], strict=True))
-        said.append(f"Set {name}: the motion does not repeat at {np.count_nonzero(odd)} speeds: {where}; factors there "
-                    "are the largest of the periods that were measured.")  # fmt: skip
+        said.append(f"Set {name}: non-periodic motion at {np.count_nonzero(odd)} speeds: {where}; factors there are "
+                    "the maximum of the evaluated periods.")  # fmt: skip
     table = Table(f"planet_motion_{name}", columns, f"Motion of set {name} over speed")
     settings: dict[str, object] = {"tolerance": asked.tolerance, "direction": asked.direction}
     return Outcome(data, (table,), values, settings, tuple(said), (_figure(name, data, asked),))
@@ -131,11 +132,10 @@ def _figure(name: str, data: SetSweep, asked: SetMotionInputs) -> Figure:
 
     return Figure(
         f"planet_motion_{name}", f"Motion of set {name} over speed",
-        f"Set {name}: largest force in a mesh over that of an equal share, and the longest share of the time in which "
-        "a mesh is apart.",
+        f"Set {name}: maximum mesh force / equal share, and maximum fraction of time without contact.",
         (
-            Panel(x, Axis("force over an equal share"), curves("sun_factor", "ring_factor")),
-            Panel(x, Axis("share of the time apart", zero=True), curves("apart_sun", "apart_ring")),
+            Panel(x, Axis("force / equal share"), curves("sun_factor", "ring_factor")),
+            Panel(x, Axis("time fraction without contact", zero=True), curves("apart_sun", "apart_ring")),
         ),
     )  # fmt: skip
 
@@ -154,7 +154,7 @@ def _check(scene: Scene, name: str) -> None:
     check_vibration(scene, name)
     if scene.case.dynamics.method != "shooting":
         raise InputError(
-            "dynamics.method", scene.case.dynamics.method, "is for gear trains, not for planetary gear sets",
+            "dynamics.method", scene.case.dynamics.method, "applies to gear trains, not to planetary gear sets",
             'set dynamics.method = "shooting"',
         )  # fmt: skip
 
@@ -167,8 +167,8 @@ PLANET_MOTION = Stage(
     present=_present,
     check=_check,
     cites=citing(
-        Citation("lin-parker", "model of the set"),
-        Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24"),
+        Citation("lin-parker", "model of the planetary set"),
+        Citation("lin-huston-coy", "contact, loss of contact, back-side contact", "Eqs. 19 to 24"),
     ),
     forecast=_forecast,
 )

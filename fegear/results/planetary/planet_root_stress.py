@@ -112,14 +112,14 @@ def _check(scene: Scene, name: str) -> None:
     part = planetary_part(scene, name)
     if part.ring is None:
         raise InputError(
-            f"planetary.{name}.ring", "(not given)", "is needed, for its teeth bend the planet's to the other side",
-            'describe the ring as a gear with internal = true and write ring = "its name"',
+            f"planetary.{name}.ring", "(not given)", "is required for alternating bending of the planet",
+            "define the ring as a gear with internal = true and set ring",
         )  # fmt: skip
     for pair in (set_pair(name, mesh) for mesh in MESHES):
         first = scene.case.pair[pair].root_stress.source[0]
         if first != "fe":
-            raise InputError(f"pair.{pair}.root_stress.source", f'"{first}"', "knows no stress along the fillet",
-                             'write "fe" first')  # fmt: skip
+            raise InputError(f"pair.{pair}.root_stress.source", f'"{first}"', "gives no stress along the fillet",
+                             'put "fe" first')  # fmt: skip
 
 
 def needs_planet_stress(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -183,10 +183,10 @@ def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> Plan
 
 #: What the rows of the summary are.
 _TEETH = {
-    "planet_sun_side": "fillet of the planet below the flank that meets the sun",
-    "planet_ring_side": "fillet of the planet below the flank that meets the ring",
-    "sun": "fillet of the sun below its loaded flank",
-    "ring": "fillet of the ring below its loaded flank",
+    "planet_sun_side": "planet fillet, sun side",
+    "planet_ring_side": "planet fillet, ring side",
+    "sun": "sun fillet, loaded flank",
+    "ring": "ring fillet, loaded flank",
 }
 
 
@@ -196,7 +196,7 @@ class Tooth:
 
     found: AlternatingStress
     what: str
-    tooth: str = shown("", "of the set, and which of its fillets")
+    tooth: str = shown("", "member and fillet")
 
 
 @dataclass(frozen=True)
@@ -204,11 +204,11 @@ class TurnOfPlanet:
     """Stress of a planet's tooth at both places over a turn in the carrier, shape (Q,)."""
 
     angle: Array = shown(
-        "deg", "that the planet has turned in the carrier since the tooth met the sun at the pitch point",
-        name="planet_angle", label="turn of the planet in the carrier", table="turn",
+        "deg", "rotation of the planet in the carrier since the tooth was at the pitch point with the sun",
+        name="planet_angle", label="rotation of the planet in the carrier", table="turn",
     )  # fmt: skip
-    mesh: NDArray[np.str_] = shown("", "in which the tooth is", table="turn")
-    x: Array = shown("mm", "position of the tooth's contact on the line of action of this mesh", table="turn")
+    mesh: NDArray[np.str_] = shown("", "mesh in which the tooth is loaded", table="turn")
+    x: Array = shown("mm", "contact position of the tooth on the line of action of this mesh", table="turn")
     stress_sun_side: Array = shown(
         "MPa", "at the most pulled place of the fillet below the flank that meets the sun", label="stress", table="turn"
     )
@@ -251,7 +251,7 @@ def _value(quantity: str, said: str) -> Number:
 _SHEET = Sheet(
     tables=(
         Rows(
-            "planet_root_stress_{name}", "Root stress over a turn in set {name}",
+            "planet_root_stress_{name}", "Root stress over one revolution in set {name}",
             (
                 Cell("tooth", of=lambda seen: list(_teeth(seen).values())),
                 *(column for key in _SHOWN for column in (key, Off(key, f"{key}_error"))),
@@ -267,7 +267,7 @@ _SHEET = Sheet(
     ),
     values=(
         Each(
-            _teeth, _value("range", "highest less lowest stress"), _value("mean", "mean stress"), _value("ratio", "R")
+            _teeth, _value("range", "stress range"), _value("mean", "mean stress"), _value("ratio", "R")
         ),
     ),
     figures=(
@@ -279,7 +279,7 @@ _SHEET = Sheet(
                 Over(
                     "angle",
                     tuple(
-                        Line(f"stress_{mesh}_side", f"fillet on the {mesh}'s side", f"series:{row}",
+                        Line(f"stress_{mesh}_side", f"fillet, {mesh} side", f"series:{row}",
                              look={"markers": False})
                         for row, mesh in enumerate(MESHES)
                     ),
@@ -306,6 +306,6 @@ PLANET_ROOT_STRESS = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    cites=citing(Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")),
+    cites=citing(Citation("mark", "root stress history of a tooth in mesh", "section 3, Appendix B")),
     forecast=lambda _scene, _name: forecasts.constant(0.4),
 )

@@ -75,14 +75,14 @@ def _members(asked: SetInputs) -> Table:
     run = asked.run
     speed, torque = (np.array([of[name] for name in CENTRALS]) for of in (run.speed, run.torque))
     columns = [
-        Column("member", np.array(CENTRALS), "", "of the set"),
+        Column("member", np.array(CENTRALS), "", "member of the set"),
         Column("speed", speed, "rpm", "counter-clockwise"),
-        Column("torque", torque, "N.m", "from outside, counter-clockwise"),
-        Column("power", torque * speed, "W", "into the set"),
+        Column("torque", torque, "N.m", "external torque, counter-clockwise"),
+        Column("power", torque * speed, "W", "power into the set"),
     ]
     if asked.base_twist:
         axial = axial_forces(asked.found, run, asked.base_twist).sun * np.array([1.0, -1.0, 0.0])
-        columns.append(Column("axial_force", axial, "N", "of the planets along the axis, toward the observer"))
+        columns.append(Column("axial_force", axial, "N", "axial force of the planets, towards the observer"))
     return Table(f"planet_members_{asked.name}", tuple(columns), f"Speeds and torques of set {asked.name}")
 
 
@@ -93,18 +93,18 @@ def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
     if asked.at_speed:
         tables.append(Table(
             f"planet_passing_{name}",
-            (Column("what", np.array(data.passing.what), "", "what happens"), *columns_of(data.passing, "frequency")),
-            f"How often things meet in set {name}",
+            (Column("what", np.array(data.passing.what), "", "event"), *columns_of(data.passing, "frequency")),
+            f"Characteristic frequencies of set {name}",
         ))  # fmt: skip
         tables.append(Table(
             f"planet_sidebands_{name}", columns_of(data.sidebands, "harmonic", "order", "frequency", "share"),
-            f"Sidebands that a pick-up on the ring of set {name} sees",
+            f"Sidebands measured at the ring of set {name}",
         ))  # fmt: skip
     tables.append(Table(
         f"planet_phases_{name}",
         (Column("planet", np.arange(1, found.count + 1), "", "counter-clockwise"),
          *columns_of(phases, "angle", "sun", "ring")),
-        f"Phases of the meshes of set {name}",
+        f"Mesh phases of set {name}",
     ))  # fmt: skip
     if inputs.checks:
         tables.append(_ring_table(inputs))
@@ -113,7 +113,7 @@ def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
         f"planet_phasing_{name}",
         (*columns_of(rule, "harmonic", "torque", "force"), Column("excites", np.array(rule.excites), "",
                                                                   excites.meaning)),
-        f"What the phases of set {name} leave of each harmonic",
+        f"Planet phasing of set {name}: resultant of each mesh harmonic",
     ))  # fmt: skip
     values = [
         value_of(run, "ratio", name),
@@ -138,10 +138,10 @@ def _ring_table(inputs: PlanetSetInputs) -> Table:
     return Table(
         f"planet_in_ring_{inputs.asked.name}",
         (
-            Column("check", np.array([one.name for one in inputs.checks]), "", "what may meet"),
-            Column("margin", margins, "mm", "room that is left; negative where material meets, blank where none can"),
+            Column("check", np.array([one.name for one in inputs.checks]), "", "possible interference"),
+            Column("margin", margins, "mm", "clearance; negative: interference, blank: not applicable"),
         ),
-        f"What planets and ring of set {inputs.asked.name} may foul each other in",
+        f"Interference checks of planet and ring of set {inputs.asked.name}",
     )
 
 
@@ -149,16 +149,16 @@ def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
     asked = inputs.asked
     name, found = asked.name, asked.found
     teeth = found.sun_teeth + found.ring_teeth
-    said = [f"Set {name}: teeth fit between sun and ring at whole multiples of 360/{teeth} deg."]
+    said = [f"Set {name}: assembly is possible at integer multiples of 360/{teeth} deg."]
     if found.count > 1:
-        said[0] += f" Neighbours clear each other by {found.neighbour_clearance * 1e3:.4g} mm."
+        said[0] += f" Clearance between adjacent planets {found.neighbour_clearance * 1e3:.4g} mm."
     if asked.base_twist:
-        said.append(f"Set {name}: axial forces of sun and ring, and moments that tilt the planets, are carried by "
-                    "bearings taken as rigid.")  # fmt: skip
+        said.append(f"Set {name}: bearings are assumed rigid for axial forces of sun and ring and for tilting "
+                    "moments of the planets.")  # fmt: skip
     said += [f"Set {name}: {one.sentence(inputs.module)}." for one in inputs.checks if one.margin < 0.0]
     if not asked.at_speed:
-        said.append(f"Set {name}: no speed is given; frequencies need planetary.{name}.speed, and speeds of "
-                    "the table of members are those at 1 rad/s of the input.")  # fmt: skip
+        said.append(f"Set {name}: speed not specified: frequencies require planetary.{name}.speed; member speeds are "
+                    "for 1 rad/s input speed.")  # fmt: skip
     return tuple(said)
 
 
@@ -184,8 +184,8 @@ def _drawing(asked: SetInputs) -> Figure:
     plane = Axis("x", "mm"), Axis("y", "mm")
     return Figure(
         f"planet_set_{asked.name}", f"Planetary set {asked.name}",
-        f"Set {asked.name}: working pitch circles, and the phase gamma_sn of each planet's mesh with the sun behind "
-        f"that of planet 1 in base pitches; the meshes with the ring follow by {phases.ring_behind_sun:.4g}.",
+        f"Set {asked.name}: working pitch circles, and phase lag gamma_sn of each sun mesh relative to planet 1, in "
+        f"base pitches; ring meshes lag by {phases.ring_behind_sun:.4g}.",
         (Panel(*plane, (*items, points), equal=True, height=2.0),),
     )  # fmt: skip
 
@@ -193,9 +193,10 @@ def _drawing(asked: SetInputs) -> Figure:
 def _phasing_figure(name: str, rule: Phasing) -> Figure:
     return Figure(
         f"planet_phasing_{name}", f"Phasing of set {name}",
-        f"Set {name}: what is left of each mesh harmonic when all planets are added up, as a torque about the axis and "
-        "as a force across it; where both are zero, planets vibrate alone.",
-        (Panel(axis_of(type(rule), "harmonic", whole=True), Axis("share of the planets' sum", limits=(0.0, 1.05)), (
+        f"Set {name}: resultant of each mesh harmonic over all planets as torque and as radial force; where both are "
+        "zero only planet modes are excited.",
+        (Panel(axis_of(type(rule), "harmonic", whole=True), Axis("resultant / sum of the "
+                                                                 "planets", limits=(0.0, 1.05)), (
             Bars(rule.harmonic, rule.torque, "torque", "series:0"), Bars(rule.harmonic, rule.force, "force",
                                                                          "series:1"),
         )),),
@@ -208,8 +209,8 @@ PLANET_SET = Stage(
     compute=_compute,
     present=_present,
     cites=citing(
-        Citation("parker", "which modes a harmonic of phased planets excites"),
-        Citation("mcfadden-smith", "sidebands of planets that pass a pick-up"),
+        Citation("parker", "modes excited by a harmonic with planet phasing"),
+        Citation("mcfadden-smith", "sidebands of planets passing a sensor"),
     ),
     forecast=lambda _scene, _name: forecasts.constant(0.005),
 )

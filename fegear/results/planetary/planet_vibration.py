@@ -120,17 +120,17 @@ def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
     data, name = linear.modes, inputs.name
     number = np.arange(data.frequency.size)
     columns = (
-        Column("mode", number, "", "by rising frequency"),
+        Column("mode", number, "", "mode number, increasing frequency"),
         *columns_of(data, "frequency"),
         *columns_of(linear, "frequency_error"),
         Column("kind", np.array(data.kind), "", declared(type(data), "kind").meaning),
         Column("speed", data.frequency / inputs.teeth_per_turn * 2.0 * math.pi, "rpm",
-               f"of the {inputs.driving}, at which the mesh frequency meets it"),
+               f"speed of the {inputs.driving} at which the mesh frequency coincides"),
         *columns_of(data, "turning", "moving", "sun_mesh", "ring_mesh"),
     )  # fmt: skip
     values = tuple(
         Value(f"{name}.natural_frequency_{k}", float(data.frequency[k]), "Hz", float(linear.frequency_error[k]),
-              f"undamped, {data.kind[k]}")
+              f"undamped natural frequency, {data.kind[k]}")
         for k in number if data.frequency[k] > 0.0
     ) + tuple(
         Value(f"{name}.{member}.{what}", number, unit, None, f"{meaning}, {source}")
@@ -139,7 +139,7 @@ def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
             ("mass", mass, "kg", "mass"), ("inertia", inertia, "kg.m^2", "moment of inertia about its axis"),
         )
     )  # fmt: skip
-    counted = ", ".join(f"{count} of kind {kind}" for kind, count in Counter(data.kind).items())
+    counted = ", ".join(f"{count} of type {kind}" for kind, count in Counter(data.kind).items())
     table = Table(f"planet_modes_{name}", columns, f"Natural modes of set {name}", printed=True)
     said = f"Set {name}: {counted}; gyroscopic forces of the carrier's rotation are neglected."
     return Outcome(linear, (table,), values, {}, (said,), (_modes_figure(name, data),))
@@ -150,18 +150,18 @@ def _modes_figure(name: str, data: SetModes) -> Figure:
     other = np.append(True, np.diff(data.frequency) > 1e-8 * data.frequency[-1])  # pairs of one frequency stand once
     own = np.flatnonzero(moving & other)
     words = tuple(f"{data.frequency[k] * 1e-3:.3g}\n{data.kind[k][0].upper()}" for k in own)
-    parts = {"meshes with the sun": data.sun_mesh, "meshes with the ring": data.ring_mesh}
+    parts = {"sun meshes": data.sun_mesh, "ring meshes": data.ring_mesh}
     parts["pins and bearings"] = 1.0 - data.sun_mesh - data.ring_mesh
     bars = tuple(
         Bars(np.arange(own.size), one[own], word, f"series:{k}") for k, (word, one) in enumerate(parts.items())
     )
     return Figure(
         f"planet_modes_{name}", f"Natural modes of set {name}",
-        f"Set {name}: where each mode deforms, as shares of its strain energy. R: sun, ring and carrier turn; T: they "
-        "move across the axis, two modes of one frequency; P: planets move alone; M: mixed.",
+        f"Set {name}: strain energy distribution of the modes. R: rotational, T: translational (double), P: planet, "
+        "M: mixed mode.",
         (Panel(
-            Axis("natural frequency [kHz] and kind", categories=words),
-            Axis("share of strain energy", limits=(0.0, 1.0)), bars, stacked=True,
+            Axis("natural frequency [kHz] and type", categories=words),
+            Axis("strain energy share", limits=(0.0, 1.0)), bars, stacked=True,
         ),),
     )  # fmt: skip
 
@@ -173,7 +173,7 @@ PLANET_MODES = Stage(
     compute=_linear,
     present=_present_modes,
     check=check_masses,
-    cites=citing(Citation("lin-parker", "model of the set and kinds of its modes")),
+    cites=citing(Citation("lin-parker", "model of the planetary set and mode types")),
     forecast=lambda _scene, _name: forecasts.constant(0.3),
 )
 
@@ -183,8 +183,8 @@ def check_vibration(scene: Scene, name: str) -> None:
     check_masses(scene, name)
     if planetary_part(scene, name).speeds is None:
         raise InputError(
-            f"planetary.{name}.speeds", "(not given)", "is needed for this result",
-            'write speeds = { start = "200 rpm", stop = "6000 rpm", count = 200 }',
+            f"planetary.{name}.speeds", "(not given)", "is required for this result",
+            'set speeds = { start = "200 rpm", stop = "6000 rpm", count = 200 }',
         )  # fmt: skip
 
 
@@ -198,14 +198,14 @@ def _vibration(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> Forc
 
 def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome:
     name = inputs.name
-    speed = Column("speed", inputs.speeds, "rpm", f"of the {inputs.driving}")
+    speed = Column("speed", inputs.speeds, "rpm", f"speed of the {inputs.driving}")
     columns = [speed, *columns_of(data, "mesh_frequency")]
     for key in ("sun_force", "ring_force", "least_share"):
         column = column_of(data, key)
         columns += [column, error_column(column, data.shift(lambda one, key=key: getattr(one, key)))]  # type: ignore[misc]
     for member in CENTRALS:
         for axis, word in enumerate(_ALONG):
-            said = "root of the sum of squares of its harmonics, 0-peak" + (
+            said = "amplitude: root of the sum of squares of its harmonics" + (
                 "; at the base circle or the pins" if axis == 2 else "")  # fmt: skip
             column = Column(f"{member}_{word}", data.amplitude(member, axis), "um", said)
             off = data.shift(lambda one, member=member, axis=axis: one.amplitude(member, axis))  # type: ignore[misc]
@@ -214,15 +214,16 @@ def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome
     off = data.shift(lambda one: one.largest_force)
     values = (
         Value(f"{name}.dynamic_force", float(data.largest_force[top]), "N", float(off[top]),
-              "largest dynamic force in a mesh over all speeds"),
-        Value(f"{name}.dynamic_force_speed", float(inputs.speeds[top]), "rpm", None, "speed at which it stands"),
+              "maximum dynamic mesh force over all speeds"),
+        Value(f"{name}.dynamic_force_speed", float(inputs.speeds[top]), "rpm", None,
+            "speed at which the maximum occurs"),
     )  # fmt: skip
-    remarks = [f"Set {name}: linear about the mean load, all modes damped by {inputs.damping_ratio:.3g} of critical."]
+    remarks = [f"Set {name}: linearised at the mean load, damping ratio of all modes {inputs.damping_ratio:.3g}."]
     low = int(np.argmin(data.least_share))
     if data.least_share[low] < 0.0:
         remarks.append(
-            f"Set {name}: at {inputs.speeds[low] * 30.0 / math.pi:.5g} rpm the linear mesh force falls to "
-            f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; planet-motion has it."
+            f"Set {name}: linear mesh force falls to {data.least_share[low]:.3g} of its mean at "
+            f"{inputs.speeds[low] * 30.0 / math.pi:.5g} rpm (loss of contact, not modelled here); use planet-motion."
         )
     table = Table(f"planet_vibration_{name}", tuple(columns), f"Vibration of set {name} over speed")
     return Outcome(
@@ -240,7 +241,7 @@ def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
     rpm = inputs.speeds * 30.0 / math.pi
     x = Axis(f"speed of the {inputs.driving}", "rpm")
     forces = tuple(
-        Curve(rpm, force, f"mesh with the {one}", role, markers=False)
+        Curve(rpm, force, f"{one} mesh", role, markers=False)
         for force, one, role in ((data.sun_force, "sun", "series:0"), (data.ring_force, "ring", "series:1"))
     )
     across = [np.hypot(data.amplitude(member, 0), data.amplitude(member, 1)) for member in CENTRALS]
@@ -252,12 +253,11 @@ def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
     )
     return Figure(
         f"planet_vibration_{name}", f"Vibration of set {name} over speed",
-        f"Set {name}: largest dynamic force in the meshes above the mean force of {data.mean_force:.5g} N, and motion "
-        "of sun, ring and carrier across the axis (0-peak), excited by the transmission errors of the meshes with "
-        "their phases.",
+        f"Set {name}: maximum dynamic mesh force above the mean of {data.mean_force:.5g} N, and radial motion "
+        "amplitude of sun, ring and carrier, excited by the transmission errors of the meshes with their phases.",
         (
             Panel(x, Axis("dynamic mesh force", "N", zero=True), forces),
-            Panel(x, Axis("motion across the axis", "um", zero=True), moves),
+            Panel(x, Axis("radial motion", "um", zero=True), moves),
         ),
     )  # fmt: skip
 
@@ -270,7 +270,8 @@ PLANET_VIBRATION = Stage(
     present=_present_vibration,
     check=check_vibration,
     cites=citing(
-        Citation("lin-parker", "model of the set"), Citation("mark", "linear train with transmission errors", "2.9b")
+        Citation("lin-parker", "model of the planetary set"),
+        Citation("mark", "linear train with transmission errors", "2.9b"),
     ),
     forecast=lambda _scene, _name: forecasts.constant(3.0),
 )

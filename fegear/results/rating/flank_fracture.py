@@ -100,13 +100,15 @@ class GearExposure:
 
     found: Exposure
     place: float
-    depth: Array = shown("mm", "y, below the flank", label="depth below the flank")
+    depth: Array = shown("mm", "depth y below the flank", label="depth below the flank")
     hardness: Array = shown("", "HV(y), Vickers")
-    residual: Array = shown("MPa", "sigma_RS(y) along profile and face", name="residual_stress")
-    most: float = shown("", f"largest material exposure, {PERMISSIBLE:g} at most", name="A_FF")
-    most_load: float = shown("", "largest exposure without residual stress, its bound", name="A_FF_load")
-    at_depth: float = shown("mm", "how deep the largest exposure is", name="A_FF_depth")
-    crushing: float = shown("mm", "Eht_c of ISO 6336-5, least against crushing")
+    residual: Array = shown(
+        "MPa", "residual stress sigma_RS(y), uniform over profile and face width", name="residual_stress"
+    )
+    most: float = shown("", f"maximum material exposure (permissible {PERMISSIBLE:g})", name="A_FF")
+    most_load: float = shown("", "maximum exposure without residual stress (upper bound)", name="A_FF_load")
+    at_depth: float = shown("mm", "depth of the maximum exposure", name="A_FF_depth")
+    crushing: float = shown("mm", "Eht_c of ISO 6336-5, minimum against case crushing")
     least_agma: float = shown("mm", "h_e,min of AGMA 2101 with ISO's sigma_H")
 
 
@@ -147,7 +149,7 @@ def _inputs(scene: Scene, name: str) -> FlankFractureInputs | NotRated:
 
 
 def _not_rated(name: str, error: FegearError) -> NotRated:
-    return NotRated(f"Flank fracture of pair {name} is not evaluated: {error}")
+    return NotRated(f"Flank fracture of pair {name} not evaluated: {error}")
 
 
 def _described(scene: Scene, name: str) -> FlankFractureInputs | InputError:
@@ -276,7 +278,7 @@ def _path(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
     for member in MEMBERS:
         gear = data.gears[member]
         counted = np.where(gear.depth >= data.half_width[:, None], gear.found.exposure, -np.inf)
-        columns.append(Column(f"exposure_{member}", counted.max(axis=1), "", f"A_FF, largest below b_H, {member} gear"))
+        columns.append(Column(f"exposure_{member}", counted.max(axis=1), "", f"A_FF, maximum below b_H, {member} gear"))
     return Table(f"flank_fracture_{name}", tuple(columns), f"Flank fracture of pair {name} over the path of contact")
 
 
@@ -306,14 +308,14 @@ def _depths(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
     gears = [data.gears[member] for member in MEMBERS]
     columns = (
         Column("gear", np.array(inputs.asked.gears), "", "driver, driven"),
-        Column("case_depth", np.array([case.case_depth for case in inputs.cases]), "mm", "CHD at 550 HV, of the case"),
-        Column("usual_from", least, "mm", "least usual one, .15 normal modules"),
-        Column("usual_to", most, "mm", "largest usual one, .25 normal modules"),
-        Column("largest", largest, "mm", "not to exceed: .4 normal modules, at most 6 mm"),
+        Column("case_depth", np.array([case.case_depth for case in inputs.cases]), "mm", "CHD at 550 HV (case)"),
+        Column("usual_from", least, "mm", "usual minimum, 0.15 m_n"),
+        Column("usual_to", most, "mm", "usual maximum, 0.25 m_n"),
+        Column("largest", largest, "mm", "upper limit: 0.4 m_n, at most 6 mm"),
         column_over(gears, "crushing"),
         column_over(gears, "least_agma"),
     )
-    return Table(f"case_depth_{name}", columns, f"Case depths of pair {name} and their limits", printed=True)
+    return Table(f"case_depth_{name}", columns, f"Case depths of pair {name} and limits", printed=True)
 
 
 def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Value, ...]:
@@ -323,12 +325,12 @@ def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tup
         key, gear = f"{inputs.asked.name}.{member}", data.gears[member]
         found += [
             value_of(gear, "most", key),
-            Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"its inverse, {1.0 / PERMISSIBLE:g} at least"),
+            Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"its inverse (minimum {1.0 / PERMISSIBLE:g})"),
             value_of(gear, "most_load", key),
             value_of(gear, "at_depth", key),
-            Value(f"{key}.case_depth", case.case_depth, "mm", None, "at 550 HV, of the case"),
-            Value(f"{key}.case_depth_crushing", gear.crushing, "mm", None, "least against crushing, ISO 6336-5"),
-            Value(f"{key}.case_depth_agma", gear.least_agma, "mm", None, "least of AGMA 2101, with sigma_H of ISO"),
+            Value(f"{key}.case_depth", case.case_depth, "mm", None, "at 550 HV (case)"),
+            Value(f"{key}.case_depth_crushing", gear.crushing, "mm", None, "minimum against case crushing, ISO 6336-5"),
+            Value(f"{key}.case_depth_agma", gear.least_agma, "mm", None, "minimum of AGMA 2101, with sigma_H of ISO"),
         ]  # fmt: skip
     return tuple(value for value in found if math.isfinite(value.si))
 
@@ -347,42 +349,43 @@ def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tu
         needed = float(np.nanmax([found.crushing, found.least_agma, 0.0]))
         if case.case_depth < needed:
             told.append(
-                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is less than the {needed * 1e3:.3g} mm "
-                "needed against crushing."
+                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is below the {needed * 1e3:.3g} mm "
+                "required against case crushing."
             )
         if case.case_depth > largest:
             told.append(
-                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is more than {largest * 1e3:.3g} mm, "
-                ".4 normal modules and 6 mm at most."
+                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm exceeds {largest * 1e3:.3g} mm (0.4 "
+                "m_n, at most 6 mm)."
             )
         if inputs.materials[i] != "case-hardened-steel":
             told.append(
-                f"Gear {gear}: ISO/TS 6336-4 is for case-carburized steel; of {inputs.materials[i]} its exposure is an "
-                "extrapolation."
+                f"Gear {gear}: ISO/TS 6336-4 covers case-carburized steel only; the exposure for "
+                f"{inputs.materials[i]} is an extrapolation."
             )
         for what, measured, rule in (
             ("hardness over depth", case.measured, "hardness_profile"),
             ("residual stress", case.residual, "residual_stress"),
         ):
             if measured is None:
-                told.append(f"Gear {gear}: {what} is by Lang's rule, which is recalled ({rule} of strength).")
+                told.append(f"Gear {gear}: {what} by Lang, not verified against a printed source (strength.{rule}).")
     if inputs.asked.levels:
         told.append(
-            f"Pair {name}: exposure and case depths are those of the largest level of the spectrum, "
-            f"{data.load / inputs.asked.load:.4g} times the load, for which they are meant as for endurance."
+            f"Pair {name}: exposure and case depths are for the maximum level of the load spectrum, "
+            f"{data.load / inputs.asked.load:.4g} times the load."
         )
     told += inputs.said
     told.append(
         f"Pair {name}: structure, symbols and scope of A_FF (case-carburized external gears) are those that printed "
-        f"sources give of ISO/TS 6336-4. Recalled without a source are K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa per "
-        f"HV, c_1 = {CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; "
+        f"sources give of ISO/TS 6336-4. Not verified against a source: K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa "
+        f"per HV, c_1 = {CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; "
         f"K_material = {inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). tau_eff is the mean "
-        "shear over all planes below a Hertzian contact without friction, in the place of the standard's fitted "
-        "formulas. What the residual stress takes off decides within the case: A_FF_load is without it."
+        "shear over all planes below a Hertzian contact without friction, instead of the standard's fitted formulas. "
+        "Residual stress reduces the exposure in the case; A_FF_load excludes it."
     )
     told.append(
-        f"Pair {name}: limits of the case depth are recalled: .15 to .25 and .4 m_n, U_H of ISO 6336-5 (66,000 N/mm^2 "
-        "of MQ and ME, 44,000 of ML) and of AGMA 2101 (44,000 carburized, 30,000 induction-hardened)."
+        f"Pair {name}: limits of the case depth are not verified against a printed source: 0.15 to 0.25 and 0.4 m_n, "
+        "U_H of ISO 6336-5 (66,000 N/mm^2 of MQ and ME, 44,000 of ML) and of AGMA 2101 (44,000 carburized, 30,000 "
+        "induction-hardened)."
     )
     return tuple(dict.fromkeys(told))
 
@@ -406,15 +409,15 @@ def _figure(member: Member, data: FlankFractureData, inputs: FlankFractureInputs
         for n, (letter, k) in enumerate(data.points.items())
     ]
     stresses = [
-        Curve(depth, gear.found.load_stress[worst] * _MPA, "load alone", "series:1", dash="dash", markers=False),
+        Curve(depth, gear.found.load_stress[worst] * _MPA, "load only", "series:1", dash="dash", markers=False),
         Curve(depth, gear.found.stress[worst] * _MPA, "with residual stress", "series:0", markers=False),
         Curve(depth, gear.found.strength * _MPA, "strength", "ink", markers=False),
     ]
     hardness = [Curve(depth, gear.hardness, "hardness", "ink", markers=False)]
     caption = (
-        f"Gear {inputs.asked.gears[i]} ({member}) of pair {name}: material exposure A_FF over the depth below points "
-        f"A to E, {PERMISSIBLE:g} at most; equivalent shear stress where the exposure is largest, "
-        f"at {gear.place * 1e3:.3g} mm from the pitch point, with the local strength; and hardness."
+        f"Gear {inputs.asked.gears[i]} ({member}) of pair {name}: material exposure A_FF over depth below points A "
+        f"to E (permissible {PERMISSIBLE:g}); equivalent shear stress at the maximum exposure, "
+        f"{gear.place * 1e3:.3g} mm from the pitch point, with local strength; hardness."
     )
     return Figure(
         f"flank_fracture_{name}_{member}", f"Flank fracture of gear {inputs.asked.gears[i]}", caption,
@@ -438,8 +441,8 @@ FLANK_FRACTURE = Stage(
         Citation("iso-ts-6336-4", "material exposure over the depth below the contact"),
         Citation("johnson", "stresses below a line contact", "Eqs. 4.47 to 4.49"),
         Citation("iso-6336-5", "case depth"),
-        Citation("agma-2101", "least effective case depth"),
+        Citation("agma-2101", "minimum effective case depth"),
     ),
     forecast=lambda _scene, _name: Forecast({"places": _PLACES, "depths": _DEPTHS}, 0.05),
-    why_external="ISO/TS 6336-4 is written for external teeth",
+    why_external="ISO/TS 6336-4 applies to external gears",
 )

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.printed import percent
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
@@ -57,8 +58,8 @@ _SINGLE = 2.0
 
 
 _NO_SINGLE = (
-    "plane teeth with a contact ratio of 2 and more have no single pair contact, at which their root stress would be "
-    'computed. Write width = "solid" for it.'
+    "no single pair contact for root stress in the plane (2D) model with contact ratio 2 and above. Set width = "
+    '"solid".'
 )
 
 
@@ -128,7 +129,7 @@ def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingDat
         named = at(f"pair.{inputs.asked.name}", error)
         if inputs.alone:
             raise named from None
-        return NotRated(f"Pair {inputs.asked.name} is not rated: {named}")
+        return NotRated(f"Pair {inputs.asked.name} not rated: {named}")
 
 
 def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
@@ -144,7 +145,7 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     try:
         spectrum = rate_spectrum(conditions, levels, own) if levels else None
     except RangeError as error:  # a level outside of a formula's range leaves the rating at the nominal load
-        reasons.append(f"no rating under the load spectrum: {error}")
+        reasons.append(f"rating with load spectrum not possible: {error}")
         asked, levels = replace(asked, levels=()), []
     single = asked.width != "plane" or asked.pair.contact_ratio < _SINGLE
     if inputs.computed and single:
@@ -155,7 +156,7 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
         stands = [None if one is None else _standing(one, own) for one in of_levels]
         spectrum_found = rate_spectrum(of_found, levels, stands) if levels else None
     agma, why_not = _agma(inputs)
-    reasons += [f"no rating by AGMA 2101: {why_not}"] if why_not else []
+    reasons += [f"rating to AGMA 2101 not possible: {why_not}"] if why_not else []
     if inputs.computed and not single:
         reasons.append(_NO_SINGLE)
     return RatingData(
@@ -274,15 +275,15 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
     found = [
         Citation("iso-6336-1", "load factors K", "clauses 5 to 9"),
-        Citation("iso-6336-2", "contact stress and what flanks bear"),
-        Citation("iso-6336-3", "root stress and what roots bear"),
+        Citation("iso-6336-2", "contact stress and permissible contact stress"),
+        Citation("iso-6336-3", "tooth root stress and permissible tooth root stress"),
         Citation("iso-6336-5", "stress numbers of materials", "table 1"),
-        Citation("iso-1328-1", "deviations by tolerance class"),
+        Citation("iso-1328-1", "tolerances by class"),
     ]
     if any(part.operation.spectrum for part in scene.case.pair.values()):
         found.append(Citation("iso-6336-6", "load spectra", "clauses 4 and 5, annex A"))
     if "agma-2101" in scene.case.rating.beside:
-        found.append(Citation("agma-2101", "the same by AGMA"))
+        found.append(Citation("agma-2101", "geometry factors of AGMA"))
     if "computed" in scene.case.rating.beside:
         found += citing(*RING)(scene, _name)
     return tuple(found)
@@ -299,11 +300,12 @@ _NEAR_ONE, _WORTH_SAYING = 0.1, 0.05
 #: Which S-N line the flanks have under a spectrum.
 _SPECTRUM_LINE = {
     "part-2": (
-        "Pair {name}: under the spectrum the flanks have the S-N line of ISO 6336-2, whose film factors come in "
-        "between static strength and reference; that of annex C of ISO 6336-6 has them at all load "
-        "cycles and is the lower one where they are below 1 (operation.spectrum_line)."
+        "Pair {name}: pitting under the load spectrum uses the S-N curve of ISO 6336-2, in which Z_L Z_v Z_R apply "
+        "in full only at the reference life; ISO 6336-6 annex C applies them at all load cycles (lower if they are "
+        'below 1): operation.spectrum_line = "annex-c".'
     ),
-    "annex-c": "Pair {name}: under the spectrum the flanks have the S-N line of the example in annex C of ISO 6336-6.",
+    "annex-c": "Pair {name}: pitting under the load spectrum uses the S-N curve of the example in annex C of ISO "
+    "6336-6.",
 }
 
 
@@ -312,29 +314,29 @@ def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
     found, told = data.spectrum, []
     if found is not None:
         told = [
-            f"Pair {asked.name}: a level of the spectrum has the {what} of gear {gear} above their static strength."
+            f"Pair {asked.name}: {what} of gear {gear} exceed the static strength at one level of the spectrum."
             for what, sums in (("flanks", found.contact_damage), ("roots", found.bending_damage))
             for member, gear in zip(MEMBERS, asked.gears, strict=True)
             if math.isinf(sums[asked.of(member)])
         ]
     contact = data.formula.contact_safety if found is None else found.contact_safety
     bending = data.formula.bending_safety if found is None else found.bending_safety
-    under = "" if found is None else " under the spectrum"
+    under = "" if found is None else " under the load spectrum"
     for member, gear in zip(MEMBERS, asked.gears, strict=True):
         for symbol, safety, least in zip(("S_H", "S_F"), (contact, bending), asked.conditions.required, strict=True):
             value = safety[asked.of(member)]
             if value < least:
                 told.append(
-                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the required "
-                    f"{least:g}."
+                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the "
+                    f"minimum {least:g}."
                 )
     levels = [] if found is None else [one.rating for one in found.levels if one.rating is not None]
     most = max(one["K_v"].value for one in (levels or [data.formula]))
     if most > _SHAKEN and "K_v" not in asked.given:
         told.append(
-            f"Pair {asked.name}: K_v = {most:.4g} of ISO 6336-1 is above {_SHAKEN:g}: flank deviations excite forces "
-            "many times the load, under which teeth part and for which its formula is not meant; check the load, or "
-            "give dynamic_factor (operation)."
+            f"Pair {asked.name}: K_v = {most:.4g} of ISO 6336-1 is above {_SHAKEN:g}: dynamic forces from flank "
+            "deviations are many times the load (loss of contact), outside the scope of the formula; check the load "
+            "or set operation.dynamic_factor."
         )
     return tuple(told)
 
@@ -352,19 +354,17 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
         return tuple(dict.fromkeys(told))
     if asked.width == "plane":
         told.append(
-            f"Pair {asked.name}: computed is the root stress of the plane teeth at the outer point of single pair "
-            "contact, in the place of Y_F Y_S Y_B; load factors are those of the formulas. Write width = "
-            '"solid" for a computed load distribution.'
+            f"Pair {asked.name}: FE root stress (2D) at the outer point of single pair contact replaces Y_F Y_S Y_B; "
+            'load factors from the formulas. Set width = "solid" for an FE load distribution.'
         )
         if data.bent is not None and data.by_computed is not None:
             told.append(bending_said(asked.name, data.bent, data.by_computed["Y_M"].values))
     else:
         load, pressure = data.computed.load, data.computed.pressure * 1e-6
         told.append(
-            f"Pair {asked.name}: load distribution and root stress were computed at {load:.5g} N along the line of "
-            f"action (K_A, K_gamma and K_v included), where the largest pressure is {pressure:.4g} MPa. The computed "
-            "root stress holds load sharing, face distribution and helix already: it stands for Y_F Y_S Y_beta Y_B "
-            "Y_DT K_Fbeta K_Falpha together."
+            f"Pair {asked.name}: load distribution and root stress computed by FE at {load:.5g} N along the line of "
+            f"action (including K_A, K_gamma, K_v), maximum pressure {pressure:.4g} MPa. The FE root stress replaces "
+            "Y_F Y_S Y_beta Y_B Y_DT K_Fbeta K_Falpha."
         )
         told += _aligned(data, asked)
     return tuple(dict.fromkeys(told))
@@ -376,8 +376,8 @@ def _recalled(data: RatingData, asked: PairToRate) -> list[str]:
         return []
     values = ", ".join(f"{value:.3g}" for value in data.formula["Y_M"].values)
     told = (
-        f"Pair {asked.name}: Y_M = {values} (pinion, wheel) takes mean stress ratios M of annex B of ISO 6336-3 which "
-        "are recalled: no printed source was at hand (operation.mean_stress_factor; .7 of idlers is printed)."
+        f"Pair {asked.name}: Y_M = {values} (pinion, wheel): mean stress ratios M of ISO 6336-3 annex B are not "
+        "verified against a printed source, except 0.7 for idlers (operation.mean_stress_factor)."
     )
     return [told]
 
@@ -398,11 +398,11 @@ def _beside_the_jump(asked: PairToRate) -> list[str]:
         return []
     if max(abs(jump) for jump in jumps.values()) < _WORTH_SAYING:
         return []
-    sizes = ", ".join(f"{jump:+.0%} (gear {gear})" for gear, jump in jumps.items())
+    sizes = ", ".join(f"{percent(jump, signed=True)} (gear {gear})" for gear, jump in jumps.items())
     told = (
-        f"Pair {asked.name}: its axial contact ratio is {ratio:.3f}, and at 1 the J of AGMA 908, and S_F with it, "
-        f"jumps by {sizes} as the face widens: above it counts the load at the tip with C_h and K_psi, up to it that "
-        "of single tooth contact with C_psi."
+        f"Pair {asked.name}: axial contact ratio {ratio:.3f}: at 1, J of AGMA 908 and S_F change abruptly by {sizes} "
+        "with increasing face width (load at the tip with C_h and K_psi above, single tooth contact with C_psi "
+        "below)."
     )
     return [told]
 
@@ -414,9 +414,8 @@ def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
         return []
     gap = f"{counted[0] * 1e6:.3g} um"
     told = (
-        f"Pair {asked.name}: the computed flanks are aligned, while ISO 6336 counts a misalignment of F_betay = {gap} "
-        f'after running in. The same for both: pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and '
-        "effects.misalignment = true."
+        f"Pair {asked.name}: the FE load distribution has no misalignment, ISO 6336 uses F_betay = {gap}. For the "
+        f'same input set pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and effects.misalignment = true.'
     )
     return [told]
 

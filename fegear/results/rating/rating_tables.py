@@ -78,14 +78,14 @@ def _factor_columns(
     members = list(zip(MEMBERS, places, strict=True))
     found = [_of_factors(rows, units, member, i, "", f"of the {member} gear") for member, i in members]
     if beside:
-        said = "with computed load factors and root stress"
+        said = "with FE load factors and root stress"
         found += [_of_factors(beside, units, member, i, "_computed", said) for member, i in members]
     return [
-        _texts("symbol", (one.symbol for one in rows), "as the standard writes it"),
+        _texts("symbol", (one.symbol for one in rows), "symbol in the standard"),
         *found,
-        _texts("unit", units, "of the numbers in this row"),
-        _texts("clause", (one.clause for one in rows), "where the standard gives it"),
-        _texts("meaning", (one.shown.meaning for one in rows), "what it is"),
+        _texts("unit", units, "unit of the values in this row"),
+        _texts("clause", (one.clause for one in rows), "clause of the standard"),
+        _texts("meaning", (one.shown.meaning for one in rows), "meaning"),
     ]
 
 
@@ -96,21 +96,21 @@ def factor_table(data: RatingData, asked: PairToRate) -> Table:
     beside = [computed.get(one.symbol) for one in rows] if computed else []
     columns = (
         *_factor_columns(rows, [asked.of(member) for member in MEMBERS], beside),
-        _texts("remark", (remark_of(one, asked) for one in rows), "what lies outside a range, or was given"),
+        _texts("remark", (remark_of(one, asked) for one in rows), "note: outside a range, or specified"),
     )
-    return Table(f"rating_{asked.name}", columns, f"Rating of pair {asked.name} by ISO 6336, factor by factor")
+    return Table(f"rating_{asked.name}", columns, f"Rating of pair {asked.name} to ISO 6336, all factors")
 
 
 def remark_of(one: Factor, asked: PairToRate) -> str:
     """A factor's remark, which says of a given one that it was given."""
     given = one.symbol in asked.given or (one.symbol == "K_Falpha" and "K_Halpha" in asked.given)
-    return "as given by the case" if given and _STANDS_IN in one.remark else one.remark
+    return "as specified in the case" if given and _STANDS_IN in one.remark else one.remark
 
 
 def safety_table(data: RatingData, asked: PairToRate) -> Table:
     """Stresses and safeties of every method, a row each."""
     rows = methods(data, asked)
-    columns = [_texts("method", (row.name for row in rows), "what the stresses come from")]
+    columns = [_texts("method", (row.name for row in rows), "source of the stresses")]
     for symbol, own, error in (
         ("sigma_H", "contact", False), ("S_H", "s_h", False), ("sigma_F", "bending", False), ("S_F", "s_f", False),
         ("S_H", "s_h_error", True), ("S_F", "s_f_error", True),
@@ -124,7 +124,7 @@ def safety_table(data: RatingData, asked: PairToRate) -> Table:
                 Column(f"{symbol}_error_{member}", np.array(found), "", said) if error
                 else _column(symbol, member, found)
             )  # fmt: skip
-    return Table(f"rating_safety_{asked.name}", tuple(columns), f"Safeties of pair {asked.name}", printed=True)
+    return Table(f"rating_safety_{asked.name}", tuple(columns), f"Safety factors of pair {asked.name}", printed=True)
 
 
 def spectrum_table(found: SpectrumRating, asked: PairToRate, computed: SpectrumRating | None = None) -> Table:
@@ -138,10 +138,10 @@ def spectrum_table(found: SpectrumRating, asked: PairToRate, computed: SpectrumR
         return np.array([np.nan if one.rating is None else one.rating[symbol].value for one in levels])
 
     columns = [
-        Column("level", np.arange(1, len(levels) + 1), "", "of the spectrum"),
-        Column("torque", np.array(torque), "N.m", "of the driver"),
-        Column("speed", np.array([level.speed * turn for level in asked.levels]), "rpm", "of the driver"),
-        Column("share", np.array([level.share for level in asked.levels]), "", "of the life"),
+        Column("level", np.arange(1, len(levels) + 1), "", "level of the spectrum"),
+        Column("torque", np.array(torque), "N.m", "torque of the driver"),
+        Column("speed", np.array([level.speed * turn for level in asked.levels]), "rpm", "speed of the driver"),
+        Column("share", np.array([level.share for level in asked.levels]), "", "share of the life"),
         *(Column(one, factor(one), "", ISO_6336[one].meaning) for one in ("K_v", "K_Hbeta", "K_Halpha")),
     ]
     for member in MEMBERS:
@@ -168,14 +168,14 @@ def _computed_levels(
     wide = asked.width != "plane"
     for one in ("K_Hbeta", "K_Halpha") if wide else ():
         values = [math.nan if level.rating is None else level.rating[one].value for level in found.levels]
-        yield f"{one}_computed", "", f"{ISO_6336[one].meaning}, computed at the load of the level", np.array(values)
+        yield f"{one}_computed", "", f"{ISO_6336[one].meaning}, FE at the load of the level", np.array(values)
     for member in MEMBERS:
         i = asked.of(member)
         if wide:
             contact = np.array([level.contact[i].stress for level in found.levels])
-            yield f"sigma_H_{member}_computed", "MPa", "contact stress by the computed load distribution", contact
+            yield f"sigma_H_{member}_computed", "MPa", "contact stress, FE load distribution", contact
         bending = np.array([level.bending[i].stress for level in found.levels])
-        yield f"sigma_F_{member}_computed", "MPa", "computed root stress", bending
+        yield f"sigma_F_{member}_computed", "MPa", "FE root stress", bending
 
 
 def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
@@ -194,9 +194,9 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
         if data.by_computed is not None and data.computed is not None:
             s_h, s_f = data.by_computed.contact_safety[i], data.by_computed.bending_safety[i]
             if data.computed.replacement.K_Hbeta is not None:
-                error, said = s_h * data.computed.contact_error, " with the computed load distribution"
+                error, said = s_h * data.computed.contact_error, " with FE load distribution"
                 found.append(_value(key, "S_H", s_h, said, error, "_computed"))
-            error, said = s_f * data.computed.bending_error[i], " with the computed root stress"
+            error, said = s_f * data.computed.bending_error[i], " with FE root stress"
             found.append(_value(key, "S_F", s_f, said, error, "_computed"))
         if data.agma is not None:
             j = data.agma.members.index(member)
@@ -209,19 +209,19 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
         if data.spectrum_computed is not None:
             flanks, roots = data.spectrum_computed.contact_safety[i], data.spectrum_computed.bending_safety[i]
             if asked.width != "plane":
-                said = " under the spectrum, loads of all levels computed"
+                said = " with load spectrum, FE load distribution of all levels"
                 found.append(_value(key, "S_H", flanks, said, ending="_spectrum_computed"))
-            said = " under the spectrum, root stresses computed"
+            said = " with load spectrum, FE root stress"
             found.append(_value(key, "S_F", roots, said, ending="_spectrum_computed"))
     for symbol in ("K_v", "K_Hbeta", "K_Halpha"):
         found.append(_value(name, symbol, data.formula[symbol].value, ", ISO 6336", ending="_rated"))
     if data.computed is not None and data.computed.replacement.K_Hbeta is not None:
         for symbol in ("K_Hbeta", "K_Halpha"):
-            value, said = getattr(data.computed.replacement, symbol), ", computed at the load with K_A, K_gamma and K_v"
+            value, said = getattr(data.computed.replacement, symbol), ", FE at the load with K_A, K_gamma and K_v"
             found.append(_value(name, symbol, value, said, ending="_computed"))
         found.append(
             Value(f"{name}.largest_pressure_computed", data.computed.pressure, "MPa", None,
-                  "over the computed flanks at the load with K_A, K_gamma and K_v, without tips and form circles")
+                  "FE flank contact at the load with K_A, K_gamma and K_v, excluding tip and form circles")
         )  # fmt: skip
     return (*found, *life_values(data, asked))
 
@@ -229,7 +229,7 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
 def agma_table(found: AgmaRating, asked: PairToRate) -> Table:
     """Every factor of ANSI/AGMA 2101-D04 with its clause."""
     columns = tuple(_factor_columns(found.factors, [found.members.index(member) for member in MEMBERS]))
-    title = f"Rating of pair {asked.name} by ANSI/AGMA 2101-D04, factor by factor"
+    title = f"Rating of pair {asked.name} to ANSI/AGMA 2101-D04, all factors"
     return Table(f"rating_agma_{asked.name}", columns, title)
 
 
@@ -245,8 +245,8 @@ def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, 
     of_flank = equivalent_torque(torque, cycles, 0.5 * wohler_exponent(flank), flank.cycles[-2])
     of_root = equivalent_torque(torque, cycles, wohler_exponent(root), root.cycles[-2])
     found = [
-        _value(key, "S_H", spectrum.contact_safety[i], " under the spectrum", ending="_spectrum"),
-        _value(key, "S_F", spectrum.bending_safety[i], " under the spectrum", ending="_spectrum"),
+        _value(key, "S_H", spectrum.contact_safety[i], " under the load spectrum", ending="_spectrum"),
+        _value(key, "S_F", spectrum.bending_safety[i], " under the load spectrum", ending="_spectrum"),
         _value(key, "damage_H", spectrum.contact_damage[i]),
         _value(key, "damage_F", spectrum.bending_damage[i]),
         _value(key, "equivalent_torque_H", of_flank, f", over {flank.cycles[-2]:g} load cycles"),
@@ -379,7 +379,7 @@ def methods(data: RatingData, asked: PairToRate) -> tuple[Method, ...]:
             for values in (data.agma.contact, data.agma.bending, data.agma.S_H, data.agma.S_F)
         )
         found.append(Method("AGMA 2101-D04", contact, bending, s_h, s_f))
-    for name, under in (("ISO 6336, spectrum", data.spectrum), ("computed, spectrum", data.spectrum_computed)):
+    for name, under in (("ISO 6336, spectrum", data.spectrum), ("FE, spectrum", data.spectrum_computed)):
         if under is not None:
             flanks = under is data.spectrum or data.computed is None or data.computed.replacement.K_Hbeta is not None
             contact = under.contact_safety if flanks else _UNKNOWN
@@ -418,13 +418,13 @@ def _safeties(data: RatingData, asked: PairToRate) -> Figure:
             items.append(
                 Bars(np.arange(2.0), height, method.name, f"series:{number}", error * height if known else None)
             )
-        mark = Mark("y", least, f"required {least:g}")
+        mark = Mark("y", least, f"minimum {least:g}")
         panels.append(Panel(Axis(categories=names, limits=_ROOM), Axis(label, zero=True), tuple(items), (mark,)))
     caption = (
-        f"Safeties of pair {asked.name} against pitting and tooth breakage by every method; the dotted line is what is "
-        "required."
+        f"Safety factors of pair {asked.name} against pitting and tooth breakage by every method; dotted: required "
+        "safety."
     )
-    return Figure(f"rating_{asked.name}", f"Safeties of pair {asked.name}", caption, tuple(panels))
+    return Figure(f"rating_{asked.name}", f"Safety factors of pair {asked.name}", caption, tuple(panels))
 
 
 def _line(curve: Knots) -> tuple[list[float], list[float]]:
@@ -442,7 +442,7 @@ def _sn_lines(data: RatingData, asked: PairToRate) -> Figure:
             i = asked.of(member)
             curve = (data.curves.contact if contact else data.curves.bending)[i]
             stress = (data.formula.contact_stress if contact else data.formula.bending_stress)[i]
-            items.append(Curve(*_line(curve), f"{gear} ({member}) bears", f"series:{number}", markers=False))
+            items.append(Curve(*_line(curve), f"{gear} ({member}), limit stress", f"series:{number}", markers=False))
             cycles = asked.conditions.duty.cycles[i]
             if data.spectrum is None:
                 shown = [(cycles, stress)]
@@ -455,14 +455,14 @@ def _sn_lines(data: RatingData, asked: PairToRate) -> Figure:
             if data.by_computed is not None and data.spectrum is None and (not contact or _computed_flanks(data)):
                 own = (data.by_computed.contact_stress if contact else data.by_computed.bending_stress)[i]
                 marks.append(
-                    Points([cycles], [own * _MPA], f"{gear} ({member}), computed", f"series:{number}", "diamond", 8.0)
+                    Points([cycles], [own * _MPA], f"{gear} ({member}), FE", f"series:{number}", "diamond", 8.0)
                 )
         panels.append(Panel(Axis("load cycles", log=True), Axis(label, "MPa", log=True), (*items, *marks)))
     caption = (
-        f"What flanks and roots of pair {asked.name} bear over load cycles for a safety of 1, by ISO 6336 parts 2 and "
-        "3, and the points of operation."
+        f"S-N curves (limit stresses) of flanks and roots of pair {asked.name}, ISO 6336-2 and -3, and operating "
+        "points."
     )
-    return Figure(f"rating_sn_{asked.name}", f"S-N lines of pair {asked.name}", caption, tuple(panels))
+    return Figure(f"rating_sn_{asked.name}", f"S-N curves of pair {asked.name}", caption, tuple(panels))
 
 
 def _computed_flanks(data: RatingData) -> bool:

@@ -97,8 +97,8 @@ def bent_so(asked: PairToRate, ratio: tuple[float, float]) -> PairToRate:
 def bending_said(name: str, ratio: tuple[float, float], factors: tuple[float, ...]) -> str:
     """Which Y_M follow from the computed R, in words."""
     least, values = min(ratio), ", ".join(f"{value:.3g}" for value in factors)
-    beyond = f"; annex B ends at R = {_MOST}, which counts" if least < _MOST else ""
+    beyond = f"; limited to R = {_MOST} (annex B)" if least < _MOST else ""
     return (
-        f"Pair {name}: Y_M of the computed rating is {values} (pinion, wheel) with R = {least:.4g} of the planet by "
-        f"planet-root-stress, in the place of -1.2{beyond}."
+        f"Pair {name}: Y_M of the FE rating is {values} (pinion, wheel) with R = {least:.4g} of the planet from "
+        f"planet-root-stress, instead of -1.2{beyond}."
     )

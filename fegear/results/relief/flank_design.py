@@ -82,17 +82,15 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
             raise InputError("flank_design.pair", f'"{named}"', "is no pair of this case")
         return (named,)
     if len(wide) > 1:
-        raise InputError(
-            "flank_design.pair", "(not given)", "is needed where several pairs have a width", "name one of them"
-        )
+        raise InputError("flank_design.pair", "(not given)", "is required with several 3D pairs", "name one of them")
     return wide or tuple(scene.pairs)
 
 
 def _check(scene: Scene, name: str) -> None:
     if name not in scene.wide_pairs:
         raise InputError(
-            f"pair.{name}.width", '"plane"', "leaves no flanks to design over the face",
-            f'write pair.{name}.width = "solid", or ask for the result relief',
+            f"pair.{name}.width", '"plane"', "is not available for flank design (3D)",
+            f'set pair.{name}.width = "solid", or request relief',
         )  # fmt: skip
     _task(_part(scene), scene.pairs[name], 1.0)
 
@@ -132,8 +130,8 @@ def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignT
     slack = 1e-9 * pair.base_pitch
     if zone.x_start < pair.x_start - slack or zone.x_end > pair.x_end + slack:
         raise InputError(
-            "flank_design.centre", f"{centre * 1e3:.6g} mm", "puts the loading beyond the path of contact",
-            "choose a shorter design length, or leave centre out",
+            "flank_design.centre", f"{centre * 1e3:.6g} mm", "places the loading outside the path of contact",
+            "choose a shorter design length, or remove centre",
         )  # fmt: skip
     load = part.load or nominal
     loads = tuple(sorted(part.loads)) if part.loads else (load,)
@@ -186,17 +184,17 @@ def _remarks(data: FlankDesignData, inputs: FlankDesignInputs) -> tuple[str, ...
     remarks = []
     for state in (design.best, *design.robust):
         keys = "; ".join(keys_of(design.found[state.label].relief, data.pair, inputs.gears))
-        remarks.append(f"Pair {name}, {state.label}: as keys of the gears, {keys or 'nothing'}.")
+        remarks.append(f"Pair {name}, {state.label}: keys of the gears: {keys or 'none'}.")
     if data.on_shafts:
         remarks.append(
-            f"Pair {name}: designs hold the shafts as its present flanks tilt them under each load; with the keys of a "
-            "design in the case they are solved anew."
+            f"Pair {name}: shaft deflection is kept at that of the present flanks during the design; rerun with the "
+            "designed modification to update it."
         )
     unproven = [label for label, one in design.found.items() if not one.proven]
     if unproven:
         remarks.append(
             f"Pair {name}: {', '.join(unproven)}: too many combinations come so near the least that not all of them "
-            "were loaded exactly; the least of the grid is likely, not proven. A coarser grid would be."
+            "were computed exactly; the optimum is likely but not proven. A coarser grid can be proven."
         )
     return tuple(remarks)
 
@@ -283,10 +281,10 @@ def _topography(name: str, data: FlankDesignData, gears: Mapping[Member, str]) -
     )  # fmt: skip
     return Figure(
         f"flank_topography_{name}",
-        f"Relief over the flanks of pair {name}",
-        f"Pair {name}: material that both gears together are relieved by, over the roll angle of {gears['driver']} "
-        f"(driver, tip to the right) and over the face. Exact topography: leaves no transmission error at the design "
-        "load; the others are the best that can be ground.",
+        f"Flank modification of pair {name}",
+        f"Pair {name}: total modification of both gears over roll angle of {gears['driver']} (driver, tip at right) "
+        "and face width. Exact topography: zero transmission error at the design load; others: best grindable "
+        "modifications.",
         views=views,
         under=f"{design.task.load:.5g} N",
     )
@@ -322,7 +320,7 @@ def _charts(name: str, data: FlankDesignData, gears: Mapping[Member, str]) -> Fi
         f"flank_charts_{name}",
         f"Profile and lead charts of pair {name}",
         f"Pair {name}: relief of both gears together in three sections across the axis (profile) and on three "
-        f"diameters of {gears['driver']} (lead), as a measuring machine draws them; counted from the highest point.",
+        f"diameters of {gears['driver']} (lead), as in a gear inspection report, relative to the highest point.",
         tuple(panels),
         columns=2,
         under=f"{design.task.load:.5g} N",
@@ -336,20 +334,20 @@ def _left(name: str, data: FlankDesignData) -> Figure:
     names = Axis(categories=tuple(s.label.replace("-", " ") for s in states))
     ripple = np.array([s.judged.peak_to_peak.value for s in states]) * 1e6
     factor = np.array([s.judged.face_load_factor.value for s in states])
-    left = [Points(ripple, place, "aligned as given", "series:0", size=9)]
-    shares = [Points(factor, place, "aligned as given", "series:0", size=9)]
-    caption = f"Pair {name} at the design load: what each relief leaves of the transmission error, and K_Hβ."
+    left = [Points(ripple, place, "alignment as specified", "series:0", size=9)]
+    shares = [Points(factor, place, "alignment as specified", "series:0", size=9)]
+    caption = f"Pair {name} at the design load: remaining transmission error with each relief, and K_Hβ."
     scatter = design.task.scatter
     if scatter.over_face.size > 1:
         mean = np.array([s.judged.mean_over_scatter.value for s in states]) * 1e6
         left.append(Points(mean, place, "mean over the scatter", "series:1", size=9))
         worst = np.array([s.judged.factor_over_scatter.value for s in states])
-        shares.append(Points(worst, place, "95 % of the scatter", "series:3", size=9))
+        shares.append(Points(worst, place, "95th percentile of the scatter", "series:3", size=9))
         deviation = design.task.deviation
-        caption += f" Scatter: misalignments of {deviation * 1e6:.3g} µm over the face (standard deviation)."
+        caption += f" Scatter: misalignment over the face width, standard deviation {deviation * 1e6:.3g} µm."
     return Figure(
         f"flank_designs_{name}",
-        f"What reliefs of pair {name} leave",
+        f"Transmission error with each modification, pair {name}",
         caption,
         (
             Panel(Axis("transmission error, peak to peak", "um", log=True), names, tuple(left)),
@@ -362,12 +360,18 @@ def _left(name: str, data: FlankDesignData) -> Figure:
 
 def _roll(name: str, data: FlankDesignData) -> Figure:
     design = data.design
-    y, x = Axis("transmission error less its mean", "um"), Axis("roll position", "mm")
+    y, x = Axis("transmission error minus mean", "um"), Axis("mesh position", "mm")
     small = _SMALL * design.unrelieved.judged.peak_to_peak.value
     panels = []
     for title, chosen in (
-        ("reliefs that leave most of it", [s for s in design.states if s.judged.peak_to_peak.value >= small]),
-        ("reliefs that leave little", [s for s in design.states if s.judged.peak_to_peak.value < small]),
+        (
+            "modifications with high transmission error",
+            [s for s in design.states if s.judged.peak_to_peak.value >= small],
+        ),
+        (
+            "reliefs with small remaining transmission error",
+            [s for s in design.states if s.judged.peak_to_peak.value < small],
+        ),
     ):
         curves = tuple(
             Curve(design.roll * 1e3, (s.te - s.te.mean()) * 1e6,
@@ -380,8 +384,8 @@ def _roll(name: str, data: FlankDesignData) -> Figure:
     return Figure(
         f"flank_design_roll_{name}",
         f"Transmission error of pair {name} with each relief",
-        f"Pair {name}: transmission error over a base pitch less its mean, at roll positions that the exact "
-        "topography has not seen. In the legend: peak to peak.",
+        f"Pair {name}: transmission error minus mean over a base pitch, at mesh positions not used in the design. "
+        "Legend: peak to peak.",
         tuple(panels),
         under=f"{design.task.load:.5g} N",
     )
@@ -393,7 +397,7 @@ def _map(name: str, data: FlankDesignData) -> Figure:
     shown = [design.unrelieved, *_drawn(data)]
     ripple = max(float(s.mapped.peak_to_peak.max()) for s in shown) * 1e6
     factor = max(float(s.mapped.face_load_factor.max()) for s in shown)
-    x, y = Axis("misalignment over the face", "um"), Axis("load", "N")
+    x, y = Axis("misalignment over the face width", "um"), Axis("load", "N")
     views = tuple(
         View(s.label, (
             Panel(x, y, (HeatMap(over_face, loads, s.mapped.peak_to_peak.T * 1e6, "peak to peak", "um", numbers=True,
@@ -421,7 +425,7 @@ FLANK_DESIGN = Stage(
     needs=_needs,
     check=_check,
     cites=citing(
-        Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.14"),
+        Citation("mark", "relief with zero transmission error at the design load", "Eqs. 4.6 to 4.14"),
         *RING, HERTZ, INVOLUTE,
     ),
     forecast=_forecast,

@@ -46,11 +46,16 @@ def topography_table(name: str, gear: str, member: Member, share: float, data: F
     task = design.task
     columns = (
         Column("roll_angle", np.asarray(pair.roll_angle(x, member)), "deg", "of the flank point"),
-        Column("z", own, "mm", "along the gear's face, from its middle"),
-        Column("removal", share * design.removal.ravel(), "um", "material to remove, along the normal in the section"),
+        Column("z", own, "mm", "face position of the gear, from mid-face"),
+        Column(
+            "removal",
+            share * design.removal.ravel(),
+            "um",
+            "amount of modification, normal to the flank in the transverse section",
+        ),
         Column("diameter", 2.0 * np.asarray(pair.radius(x, member)), "mm", "of the flank point"),
         column_of(ReliefTable, "x", x),
-        Column("line_load", task.load * task.loading.line_load(x, z), "N/mm", "design load on the pair per face width"),
+        Column("line_load", task.load * task.loading.line_load(x, z), "N/mm", "design line load of the pair"),
     )
     return Table(f"flank_topography_{name}_{gear}", columns, f"Topographic relief of gear {gear} in pair {name}")
 
@@ -62,7 +67,7 @@ def designs_table(name: str, data: FlankDesignData) -> Table:
     design = data.design
     states, found = design.states, design.found
     counted = [found.get(s.label) for s in states]
-    columns = [Column("relief", np.array([s.label for s in states]), "", "what is ground")]
+    columns = [Column("relief", np.array([s.label for s in states]), "", "type of modification")]
     for key in _JUDGED:
         numbers = [getattr(s.judged, key) for s in states]
         column = column_of(states[0].judged, key, [one.value for one in numbers])
@@ -70,16 +75,19 @@ def designs_table(name: str, data: FlankDesignData) -> Table:
     ground = [s.relief or GroundRelief() for s in states]
     columns += [column_over(ground, key) for key in NUMBERS]
     columns += [
-        Column("combinations", np.array([one.candidates if one else 0 for one in counted]), "", "of the grid, tried"),
-        Column("loaded_exactly", np.array([one.exact if one else 0 for one in counted]), "", "of them"),
+        Column("combinations", np.array([one.candidates if one else 0 for one in counted]), "",
+            "number of combinations evaluated"),
+        Column("loaded_exactly", np.array([one.exact if one else 0 for one in counted]), "", "computed exactly"),
         Column("best_on_grid", np.array([one.value_on_grid if one else 0.0 for one in counted]), "um",
-               "what the best combination of the grid leaves, before the descent; 0 where nothing is searched"),
+               "best value on the grid before local optimisation; 0: no search"),
         Column("quick_error", np.array([one.quick_error if one else 0.0 for one in counted]), "um",
-               "by which the quick way that all combinations were tried in was too high, as far as seen"),
+               "largest observed overestimate of the approximate method used to screen the combinations"),
         Column("proven", np.array([float(one.proven) if one else 1.0 for one in counted]), "",
-               "1: no other combination can be better with such an error"),
+               "1: optimum on the grid proven"),
     ]  # fmt: skip
-    return Table(f"flank_designs_{name}", tuple(columns), f"Reliefs of the flanks of pair {name} and what they leave")
+    return Table(
+        f"flank_designs_{name}", tuple(columns), f"Flank modifications of pair {name} and remaining transmission error"
+    )
 
 
 def map_table(name: str, design: FlankDesign) -> Table:
@@ -89,9 +97,9 @@ def map_table(name: str, design: FlankDesign) -> Table:
     over_face, loads = np.array(design.task.map_over_face), np.array(design.task.map_loads)
     per, states = over_face.size * loads.size, design.states
     columns = (
-        Column("relief", np.repeat(np.array([s.label for s in states]), per), "", "what is ground"),
+        Column("relief", np.repeat(np.array([s.label for s in states]), per), "", "type of modification"),
         Column("over_face", np.tile(np.repeat(over_face, loads.size), len(states)), "um",
-               "misalignment besides the given one: gap at +b/2 less that at -b/2"),
+               "additional misalignment: gap at +b/2 minus gap at -b/2"),
         column_of(ReliefChart, "loads", np.tile(loads, len(states) * over_face.size), name="load"),
         *(
             column_of(states[0].mapped, key, np.concatenate([getattr(s.mapped, key).ravel() for s in states]))
@@ -115,7 +123,7 @@ def values_of(name: str, design: FlankDesign) -> tuple[Value, ...]:
     """Single values: without relief, of the exact topography, and of the best that can be ground."""
     values = [
         Value(f"{name}.topography_depth", float(np.ptp(design.removal)), "um", None,
-              "largest removal of the exact topography, by both gears together"),
+              "maximum amount of the ideal topography (sum of both gears)"),
     ]  # fmt: skip
     for state in design.states:
         key = state.label.replace("-", "_").replace(" ", "_")

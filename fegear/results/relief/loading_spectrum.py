@@ -84,7 +84,7 @@ class OwnVibration:
     response: tuple[ToothResponse, ...]
     member: Member = shown("", "driver or driven", name="gear")
     frequency: float = shown("Hz", "lowest natural frequency of a tooth")
-    order: float = shown("", "natural frequency of the tooth over the tooth-mesh frequency")
+    order: float = shown("", "natural frequency of the tooth / mesh frequency")
 
 
 @dataclass(frozen=True)
@@ -102,17 +102,17 @@ class LoadingData:
     trade_off: SlopeTradeOff
     response: tuple[ToothResponse, ...]
     teeth: tuple[OwnVibration, ...]
-    order: Array = shown("", "frequency over the tooth-mesh frequency")
+    order: Array = shown("", "frequency / mesh frequency")
     spectrum: Array = shown(
-        "", "modulus over design load times base pitch", label="spectrum over design load and base pitch"
+        "", "modulus / (design load times base pitch)", label="spectrum / (design load times base pitch)"
     )
-    asymptote: Array = shown("", "what it tends to at high frequency (4.20)")
-    envelope: Array = shown("", "largest size of that (4.22)")
+    asymptote: Array = shown("", "high-frequency asymptote (4.20)")
+    envelope: Array = shown("", "envelope of the asymptote (4.22)")
     q: Array = shown("", "cycles over the width of the ramp", label="q = (L - A) g")
     factor: Array = shown("", "1 at q = 0", label="modulus of the factor")
     factor_asymptote: Array = shown("", "s sinc(q)", name="asymptote")
     sum_misfit: float = shown(
-        "", "largest difference of the loads of all pairs from the design load, over it", name="loading_sum_misfit"
+        "", "maximum relative deviation of the total load of all pairs from the design load", name="loading_sum_misfit"
     )
 
 
@@ -128,7 +128,7 @@ def _inputs(scene: Scene, name: str) -> LoadingInputs:
     length = part.length or (part.contact_ratio * pair.base_pitch if part.contact_ratio else pair.path_length)
     load = part.load or scene.case.pair[name].normal_load(pair)
     if load is None:
-        raise InputError("loading.load", "(not given)", "is needed with a pair that has no load", 'write load = "1 kN"')
+        raise InputError("loading.load", "(not given)", "is required for a pair without load", 'set load = "1 kN"')
     gears, middle = pair if part.speed else None, 0.5 * (pair.x_start + pair.x_end)
     return LoadingInputs(part, length, pair.base_pitch, middle, load, pair.path_length, name, gears)
 
@@ -141,13 +141,13 @@ def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
     if part.contact_ratio is not None and ratio < 1.0:
         raise RangeError(
             "loading.contact_ratio", part.contact_ratio,
-            "is below 1: no pair is left to carry the load at some positions", "choose at least 1",
+            "is below 1: no tooth pair in contact at some positions", "choose at least 1",
         )  # fmt: skip
     if ratio > _LARGEST_RATIO:
         given = "contact_ratio" if part.contact_ratio is not None else "length"
         raise RangeError(
-            f"loading.{given}", f"{ratio:.6g} base pitches", "is a contact ratio that no gears have",
-            f"choose at most {_LARGEST_RATIO:g}",
+            f"loading.{given}", f"{ratio:.6g} base pitches", "is not a plausible contact ratio",
+            f"use at most {_LARGEST_RATIO:g}",
         )  # fmt: skip
     exponents = (part.exponents or [_EXPONENT]) if part.family == "polynomial" else [None]
     try:
@@ -170,8 +170,8 @@ def _check(scene: Scene, name: str) -> None:
     if asked.gears is not None and asked.gears.internal and asked.part.tooth_frequency is None:
         raise InputError(
             "loading.tooth_frequency", "(not given)",
-            "is needed with an internal pair: the beam that gives it has the foot of an external tooth",
-            'write tooth_frequency = "30 kHz", or no speed',
+            "is required for an internal pair (the beam model is for external teeth)",
+            'set tooth_frequency = "30 kHz", or no speed',
         )  # fmt: skip
 
 
@@ -232,16 +232,16 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
     tables = [
         _long(
             data, f"loading_families{end}", "Loading of a ramp, from -1 to 1",
-            Column("x", x, "", "roll distance over half the ramp, from its middle"),
-            Column("load", ramps, "", "twice the load over the design load, less 1"),
+            Column("x", x, "", "roll distance / half ramp length, from its middle"),
+            Column("load", ramps, "", "2 (load / design load) - 1"),
         ),
         _long(
             data, f"loading_functions{end}", "Load of one tooth pair",
             Column("x", data.x, length, f"roll distance{base_pitches}"),
-            Column("load", data.load.ravel() * asked.load, *(("", "over the design load") if shares else ("N", ""))),
+            Column("load", data.load.ravel() * asked.load, *(("", "load / design load") if shares else ("N", ""))),
         ),
         _long(
-            data, f"loading_spectrum_factors{end}", "Spectrum of the ramp: the braces of Mark's (4.15b) and (4.16)",
+            data, f"loading_spectrum_factors{end}", "Spectrum of the ramp: braces of Mark (4.15b) and (4.16)",
             column_of(data, "q"), *all_of("factor", "factor_asymptote"),
         ),
         _long(
@@ -249,7 +249,7 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
             column_of(data, "order"), *all_of("spectrum", "asymptote", "envelope"),
         ),
         _long(
-            data, f"loading_tooth_response{end}", "Answer of a tooth by itself, over its deflection at rest",
+            data, f"loading_tooth_response{end}", "Response of a single tooth / static deflection",
             column_of(OwnVibration, "order", data.order),
             *stacked([columns_of(one, "residual", "envelope", "largest") for one in data.response]),
         ),
@@ -258,35 +258,39 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
     ]  # fmt: skip
     ratio, of = asked.length / asked.base_pitch, f"{asked.name}." if asked.name else ""
     values = [
-        Value(f"{of}loading_contact_ratio", ratio, "", 0.0, "length of the loaded path over the base pitch"),
+        Value(f"{of}loading_contact_ratio", ratio, "", 0.0, "length of the loaded path / base pitch"),
         value_of(data, "sum_misfit", asked.name, 0.0),
     ]  # fmt: skip
     if asked.name:
         outer = first.terms[0][2]
         values += [
             Value(f"{of}loading_base_pitch", asked.base_pitch, "mm", 0.0, "A"),
-            Value(f"{of}loading_path", asked.path, "mm", 0.0, "of contact of the pair"),
-            Value(f"{of}loading_length", asked.length, "mm", 0.0, "L, over which a pair is loaded"),
-            Value(f"{of}loading_ramp", outer, "mm", 0.0, "over which the load rises at initiation"),
+            Value(f"{of}loading_path", asked.path, "mm", 0.0, "path of contact of the pair"),
+            Value(f"{of}loading_length", asked.length, "mm", 0.0, "L, loaded length of a pair"),
+            Value(f"{of}loading_ramp", outer, "mm", 0.0, "ramp length at initiation"),
         ]
         for own in data.teeth:
             key = f"{of}tooth_frequency_{own.member}"
-            given = "given" if asked.part.tooth_frequency else "lowest natural one of a tooth, a beam on its foundation"
+            given = (
+                "given"
+                if asked.part.tooth_frequency
+                else ("lowest natural frequency of a tooth (beam on elastic foundation)")
+            )
             values.append(Value(key, own.frequency, "Hz", None, f"{given}; order {own.order:.5g} of the tooth mesh"))
     remarks = []
     if data.teeth:
         remarks.append(
-            f"Pair {asked.name}: a tooth's own vibration neglects damping, its neighbours and the mate that it touches."
+            f"Pair {asked.name}: single tooth response without damping, neighbouring teeth and mating tooth."
         )
     if any(f.ramp.slope == 0.0 for f in data.functions):
         remarks.append(
-            "Loading that starts with slope zero has no asymptote of second order: its spectrum falls faster than the "
+            "Loading with zero initial slope has no second-order asymptote: its spectrum decreases faster than the "
             "square of the frequency."
         )
     if any(math.isinf(f.initial_slope()) for f in data.functions):
         remarks.append(
-            "The loaded path is a whole number of base pitches, so the load starts with a jump: its initial slope is "
-            "infinite and its spectrum falls with the frequency only."
+            "Integer number of base pitches in the loaded path: the load starts with a step (infinite slope) and its "
+            "spectrum decreases only with the frequency."
         )
     figures = _figures(data, asked)
     return Outcome(data, tuple(tables), tuple(values), {"load": asked.load}, tuple(remarks), figures)
@@ -315,12 +319,12 @@ def _own_table(name: str, data: LoadingData) -> tuple[Table, ...]:
         *repeated((gear,), each), *tiled(_which(data, 1), len(data.teeth)), *repeated((order,), each),
         *(column_of(responses[0], key, [getattr(r, key)[0] for r in responses]) for key in ("residual", "largest")),
     )  # fmt: skip
-    return (Table(name, columns, "Answer of the teeth by themselves at the case's speed"),)
+    return (Table(name, columns, "Response of single teeth at the speed of the case"),)
 
 
 def _trade_off_table(name: str, data: LoadingData, asked: LoadingInputs, unit: str) -> Table:
     found, inverse = data.trade_off, f"1/{unit}" if unit else ""
-    start = "change of the load over the design load, at initiation" + ("" if unit else ", per base pitch")
+    start = "slope of load / design load at initiation" + ("" if unit else ", per base pitch")
     above = asked.part.content_above
     return Table(
         name,
@@ -328,12 +332,12 @@ def _trade_off_table(name: str, data: LoadingData, asked: LoadingInputs, unit: s
             *_which(data, 1),
             Column("initial_slope", found.initial_slope, inverse, start),
             Column("length_per_load", found.length_per_load, unit,
-                   "by how much the loaded length changes when the load grows by its own size"
+                   "change of the loaded length for a relative load change of 1"
                    + ("" if unit else ", in base pitches")),
             Column("high_frequency_content", found.high_frequency_content, "",
                    f"root mean square of the spectrum from order {above:g} to {10.0 * above:g}"),
         ),
-        "What the slope at initiation buys and costs",
+        "Trade-off of the slope at initial contact",
     )  # fmt: skip
 
 
@@ -371,8 +375,7 @@ def _families(data: LoadingData, chosen: _Chosen, end: str) -> Figure:
     family = "polynomial" if data.functions[0].ramp.exponent else "sinusoidal"
     return Figure(
         f"loading_families{end}", f"Normalised tooth loading, {family} family",
-        "How a tooth pair takes over load where two pairs share it: from none (-1) to all (1), with slope s at both "
-        "ends; s = 1 is the straight line.",
+        "Load transfer between two pairs: from none (-1) to all (1), slope s at both ends; s = 1: linear.",
         (panel,),
     )  # fmt: skip
 
@@ -380,7 +383,7 @@ def _families(data: LoadingData, chosen: _Chosen, end: str) -> Figure:
 def _functions(data: LoadingData, asked: LoadingInputs, chosen: _Chosen, end: str, of: str) -> Figure:
     scale, pitch, first = (1e3 if asked.name else 1.0), asked.base_pitch, data.functions[0]
     x = Axis("roll distance", "mm") if asked.name else Axis("roll distance from the middle of contact", "base pitches")
-    y = Axis("load of a tooth pair", "N", zero=True) if asked.name else Axis("load over the design load", zero=True)
+    y = Axis("load of a tooth pair", "N", zero=True) if asked.name else Axis("load / design load", zero=True)
     items = []
     for i, word, role in chosen:
         items.append(Curve(data.x * scale, data.load[i] * asked.load, word, role, width=2.4, markers=False))
@@ -388,12 +391,12 @@ def _functions(data: LoadingData, asked: LoadingInputs, chosen: _Chosen, end: st
         at = (data.x + side * pitch) * scale
         near = np.abs(data.x + side * pitch - first.centre) <= 0.5 * (first.length + pitch)
         load = np.where(near, data.load[chosen[0][0]] * asked.load, np.nan)
-        items.append(Curve(at, load, "next pairs", "grey", dash="dash", width=1.2, markers=False))
+        items.append(Curve(at, load, "adjacent pairs", "grey", dash="dash", width=1.2, markers=False))
     marks = (Mark("x", first.x_start * scale, "initiation"), Mark("x", first.x_end * scale, "end"))
     return Figure(
         f"loading_functions{end}", f"Tooth loading functions{of}",
-        f"Load of one tooth pair over its path, contact ratio {asked.length / pitch:.4g}; dashed: the pairs before "
-        f"and behind it, with the loading {chosen[0][1]}. All pairs together carry the design load at every position.",
+        f"Load of one tooth pair over its path, contact ratio {asked.length / pitch:.4g}; dashed: adjacent pairs "
+        f"with the loading {chosen[0][1]}. The total load is constant.",
         (Panel(x, y, tuple(items), marks),),
     )  # fmt: skip
 
@@ -408,7 +411,7 @@ def _factors(data: LoadingData, words: list[str], end: str) -> Figure:
                 Curve(
                     q, np.abs(data.factor_asymptote[i]), "asymptote", "orange", dash="dash", width=2.2, markers=False
                 ),
-                Curve(q, slope / (np.pi * q), "its envelope", "grey", dash="dot", width=1.3, markers=False),
+                Curve(q, slope / (np.pi * q), "envelope", "grey", dash="dot", width=1.3, markers=False),
             ]
         curves.append(Curve(q, np.abs(data.factor[i]), "spectrum factor", "blue", width=1.4, markers=False))
         panels.append(Panel(
@@ -417,8 +420,8 @@ def _factors(data: LoadingData, words: list[str], end: str) -> Figure:
         ))  # fmt: skip
     return Figure(
         f"loading_spectrum_factors{end}", "Spectrum factors of the tooth loading functions",
-        "What the shape of the ramp adds to the spectrum of a tooth's load (the braces of Mark's 4.15b and 4.16), over "
-        "the frequency in cycles per width of the ramp. At high frequency only the slope s at initiation counts.",
+        "Ramp factor of the load spectrum (braces of Mark 4.15b and 4.16) over frequency in cycles per ramp length. "
+        "At high frequency it depends on the slope s at initiation only.",
         tuple(panels), columns=2 if len(panels) > 1 else 1,
     )  # fmt: skip
 
@@ -435,9 +438,8 @@ def _spectra(data: LoadingData, chosen: _Chosen, end: str, of: str) -> Figure:
     top = 2.0 * float(max(data.spectrum[i].max() for i, _, _ in chosen))
     return Figure(
         f"loading_spectra{end}", f"Spectra of the tooth loading functions{of}",
-        "Spectrum of the load of one tooth pair over frequency, in units of design load times base pitch; dashed: the "
-        "envelope of its high-frequency asymptote (Mark 4.22). At whole orders it vanishes, for the loads of all pairs "
-        "add up to a constant.",
+        "Spectrum of the load of one tooth pair over frequency, in units of design load times base pitch; dashed: "
+        "the envelope of its high-frequency asymptote (Mark 4.22). Zero at integer orders (constant total load).",
         (Panel(
             axis_of(data, "order", log=True),
             axis_of(data, "spectrum", log=True, limits=(_LEAST * top, top)), tuple(curves),
@@ -456,9 +458,9 @@ def _response(data: LoadingData, chosen: _Chosen, end: str, of: str) -> Figure:
     order, answer = axis_of(OwnVibration, "order", log=True), data.response[0]
     marks = tuple(Mark("x", own.order, own.member) for own in data.teeth)
     return Figure(
-        f"loading_tooth_response{end}", f"Answer of a tooth by itself{of}",
-        "A tooth as an oscillator without damping under the load of one passage: the vibration left when contact ends, "
-        "and the largest deflection during contact, both over the deflection under the design load at rest.",
+        f"loading_tooth_response{end}", f"Vibration of a single tooth{of}",
+        "Single tooth as an undamped oscillator under the load of one engagement: residual vibration after contact "
+        "and maximum deflection during contact, both relative to the static deflection under the design load.",
         (
             Panel(order, axis_of(answer, "residual", log=True, limits=(1e-4, 4.0)), left, marks),
             Panel(order, axis_of(answer, "largest", zero=True), largest, marks),

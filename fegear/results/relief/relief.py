@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.printed import percent
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
 from fegear.case.built.pair_spec import pair_spec
@@ -90,7 +91,7 @@ def design_pairs(scene: Scene) -> tuple[str, ...]:
     if named is not None:
         return (named,)
     if len(scene.spur_pairs) > 1:
-        raise InputError("design.pair", "(not given)", "is needed where there are several pairs", "name one of them")
+        raise InputError("design.pair", "(not given)", "is required with several pairs", "specify one of them")
     return tuple(scene.spur_pairs)
 
 
@@ -112,12 +113,14 @@ def _loading(part: DesignPart, p: GearPair) -> LoadingFunction:
 def _check(scene: Scene, name: str) -> None:
     peak = design_part(scene).peak
     if isinstance(peak, str) and scene.case.pair[name].compliance.source != "fe":
-        raise InputError("design.peak", f'"{peak}"', "needs root stresses", f'set pair.{name}.compliance.source = "fe"')
+        raise InputError(
+            "design.peak", f'"{peak}"', "requires root stresses", f'set pair.{name}.compliance.source = "fe"'
+        )
     from fegear.design.loading import refuse_beyond_path
 
     pair, part = scene.pairs[name], design_part(scene)
     if pair.contact_ratio < 1.0 and part.length is None and part.contact_ratio is None:
-        rule = "is below 1: relief shares the load over the whole path of contact"
+        rule = "is below 1: relief design requires at least 1"
         raise InputError(f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", rule, "increase the contact ratio")
     refuse_beyond_path(_loading(part, pair), pair)
     for member in MEMBERS:
@@ -126,7 +129,7 @@ def _check(scene: Scene, name: str) -> None:
             if not min(ends) - 1e-9 <= roll <= max(ends) + 1e-9:
                 raise RangeError(
                     "design.roll_angles", f"{math.degrees(roll):.6g} deg",
-                    f"is off the active profile of the {member}, {math.degrees(min(ends)):.6g} to "
+                    f"is outside the active profile of the {member}, {math.degrees(min(ends)):.6g} to "
                     f"{math.degrees(max(ends)):.6g} deg",
                 )  # fmt: skip
 
@@ -193,14 +196,16 @@ def _remarks(data: ReliefData, inputs: ReliefInputs) -> tuple[str, ...]:
     remarks, te, name = [], data.design.te, inputs.asked.name
     if inputs.part.film is not None:
         remarks.append(
-            f"Pair {name}: each relief makes up for half the oil film at the design load, and what is left counts the "
-            "film, as thick at every other load; tip reliefs to grind were searched without it."
+            f"Pair {name}: each relief compensates half the oil film at the design load; the remaining transmission "
+            "error includes the film, assumed equally thick at all loads. Grindable tip reliefs are searched without "
+            "it."
         )
     if "diagonal only" in te:
         d, n = te["diagonal only"].peak_to_peak, te["no relief"].peak_to_peak
         remarks.append(
-            f"Pair {name}: a design without the neighbours' loads (Mark 5.4) would leave {d * 1e6:.3g} um, "
-            f"{d / te['diagonal only'].mean:.1%} of the mean, peak to peak, and {d / n:.0%} of what no relief leaves."
+            f"Pair {name}: relief designed without tooth coupling (Mark 5.4) gives a peak-to-peak transmission error "
+            f"of {d * 1e6:.3g} um, {percent(d / te['diagonal only'].mean)} of the mean and {percent(d / n)} of the "
+            "value without relief."
         )
     return (*remarks, *design_remarks(name, data.neglected, inputs.effects, inputs.tolerance))
 
@@ -281,14 +286,14 @@ def what_it_leaves(results: Results, how: How) -> str:
     before = f"of {te['no relief']:.3g} um peak to peak without relief, at {load}"
     if how == "exact":
         left = "nothing" if te["designed"] < _NOTHING else f"{te['designed']:.3g} um"
-        return f"Eq. 4.6 leaves {left} {before}."
+        return f"Eq. 4.6: transmission error {left} {before}."
     shape, best = best_ground(design)
     others = [f"{one} ones {te[f'{one} tip relief']:.3g} um" for one in design.ground if one != shape]
     beside = f"; {', '.join(others)}" if others else ""
     return (
-        f"The best {shape} tip reliefs leave {te[f'{shape} tip relief']:.3g} um {before}{beside}. "
-        f"Two independent searches after a scan of {best.candidates:,} reliefs find the least to "
-        f"{best.least_error / best.least if best.least > 0.0 else 0.0:.1g} of it."
+        f"Best {shape} tip relief: transmission error {te[f'{shape} tip relief']:.3g} um {before}{beside}. Two "
+        f"independent searches (after a scan of {best.candidates:,} reliefs) agree within "
+        f"{percent(best.least_error / best.least if best.least > 0.0 else 0.0)}."
     )
 
 
@@ -328,9 +333,9 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
     return Figure(
         f"relief_{name}",
         f"Profile relief of pair {name}",
-        f"Pair {name}: relief of both gears for {data.design.task.load:.5g} N over the active profile, and the load of "
-        "the tooth. Shaded: the design zone, where the tooth is loaded at the design load. Ground reliefs are at the "
-        "tips only; a constant over the whole flank makes no difference.",
+        f"Pair {name}: relief of both gears for {data.design.task.load:.5g} N over the active profile, and the load "
+        "of the tooth. Shaded: the design zone, where the tooth is loaded at the design load. Grindable reliefs are "
+        "tip reliefs only; a constant offset has no effect.",
         (*reliefs, *loads),
         columns=2,
         under=f"{data.design.task.load:.5g} N",
@@ -353,12 +358,12 @@ def _points_figure(name: str, data: ReliefData, gears: Sequence[str]) -> Figure:
     panels = (
         Panel(roll, axis_of(some, "load", zero=True), curves("load")),
         Panel(roll, axis_of(some, "deflection", zero=True), curves("deflection")),
-        Panel(roll, axis_of(some, "relief", "relief from the least", zero=True), curves("relief", from_least=True)),
+        Panel(roll, axis_of(some, "relief", "relief from the minimum", zero=True), curves("relief", from_least=True)),
     )
     return Figure(
         f"relief_points_{name}", f"Loads, deflections and relief of pair {name}",
-        f"Pair {name}: at the roll angles asked for, the load of the design, the deflection of the flank under it, and "
-        "the relief that makes up for it, counted from the least of these points.",
+        f"Pair {name}: at the roll angles asked for, design load, flank deflection and compensating relief, relative "
+        "to the minimum of these points.",
         panels, under=f"{data.design.task.load:.5g} N",
     )  # fmt: skip
 
@@ -373,17 +378,17 @@ def _candidates_figure(name: str, data: ReliefData) -> Figure:
         curves.append(Curve(curve.x * 1e3, te, f"{label}: {size} peak to peak", label, markers=False))
     load = f"{data.design.task.load:.5g} N"
     marks = pitch_marks(data.pair.engagement.pair, next(iter(data.design.curves.values())).x)
-    caption = f"Pair {name}: what each relief leaves of the transmission error at the design load, {load}."
+    caption = f"Pair {name}: remaining transmission error with each relief at the design load, {load}."
     if "diagonal only" in data.design.te:
         caption += (
-            " Diagonal only: relief designed without the neighbours' loads (Mark, Eq. 5.4), on teeth that do deflect "
-            "each other."
+            " Diagonal only: relief designed without the neighbours' loads (Mark, Eq. 5.4), applied to teeth with "
+            "coupling."
         )
     return Figure(
         f"relief_candidates_{name}",
         f"Transmission error of pair {name} with and without relief",
         caption,
-        (Panel(BASE_PITCH, Axis("transmission error less its mean", "um"), tuple(curves), marks),),
+        (Panel(BASE_PITCH, Axis("transmission error minus mean", "um"), tuple(curves), marks),),
         under=load,
     )
 
@@ -411,7 +416,7 @@ RELIEF = relief_stage(
     present=_present,
     check=_check,
     cites=citing(
-        Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.16, 5.4"),
+        Citation("mark", "relief with zero transmission error at the design load", "Eqs. 4.6 to 4.16, 5.4"),
         Citation("lin-townsend-oswald", "linear and parabolic tip relief"),
         Citation("harris", "Harris maps"),
     ),

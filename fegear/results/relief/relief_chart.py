@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.printed import percent
 from fegear.base.shown import declared
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, columns_on_grid, drawn, stacked, value_of
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 
 #: How the single best of a chart is found.
-_BEST = "equal tip reliefs, worst load, by A_e"
+_BEST = "equal tip reliefs, maximum over the loads, by A_e"
 
 
 @dataclass(frozen=True)
@@ -116,10 +117,10 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
     for member in MEMBERS:
         values += tip_values(f"{name}.{member}.optimum_", best, member)
     left = float(getattr(best, metric)[-1])
-    values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "left at the largest load"))
+    values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "remaining at the maximum load"))
     settings = {
         "shape": asked.shape, "metric": metric, "candidates": best.candidates, "starts": best.starts,
-        "apart": f"two independent searches by {best.least_error * 1e6:.1g} um",
+        "apart": f"difference between two independent searches {best.least_error * 1e6:.1g} um",
     }  # fmt: skip
     return Outcome(data, tables, tuple(values), settings, figures=_chart_figures(name, data))
 
@@ -179,8 +180,8 @@ def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outco
     name, metric, values = inputs.name, inputs.metric, []
     for label, r in data.candidates.items():
         factor, spacing, depth = r.worst_case
-        where = f"load x {factor:g}, spacing error {spacing * 1e6:g} um, relief {depth:+.0%}"
-        where = f"worst of the {r.values.size} combinations asked for, which bounds no others: {where}"
+        where = f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} um, relief {percent(depth, signed=True)}"
+        where = f"maximum of the {r.values.size} combinations: {where}"
         values.append(
             Value(f"{name}.worst_{metric}.{label.replace(' ', '_')}", r.worst, "um", None, f"{label}, {where}")
         )
@@ -189,7 +190,7 @@ def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outco
     *over, excitation = stacked([columns_on_grid(r, axes, "values") for r in data.candidates.values()])
     table = Table(
         f"robustness_{name}",
-        (Column("candidate", labels, "", "which relief"), *over, replace(excitation, name=metric)),
+        (Column("candidate", labels, "", "relief"), *over, replace(excitation, name=metric)),
         f"Robustness of the reliefs of {name}",
     )
     figure = _robustness_figure(name, data.candidates, metric)
@@ -212,16 +213,16 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
         items = (
             HeatMap(chart.lengths, amounts, error[:, :, i], effective.label, effective.unit,
                     limits=(float(error.min()), float(error.max()))),
-            Curve(length, amounts, "length of least A_{e}", "over map", width=2.2, markers=False),
+            Curve(length, amounts, "length with minimum A_{e}", "over map", width=2.2, markers=False),
         )  # fmt: skip
         axes = axis_of(chart, "lengths"), axis_of(chart, "amounts")
         word = " (nominal)" if float(load) == data.pair.nominal else ""
         views.append(View(f"{load:.5g} N{word}", (Panel(*axes, items, (Mark("y", data.delta * 1e6, "Δ"),)),)))
     figure = Figure(
         f"relief_chart_{name}",
-        f"Chart of tip reliefs of pair {name}",
-        f"Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length with the "
-        f"least A_e for each amount. Dotted: {meaning_of_unit(data.pair.pair)} at {data.pair.nominal:.5g} N, "
+        f"Tip relief chart of pair {name}",
+        f"Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length with "
+        f"minimum A_e for each amount. Dotted: {meaning_of_unit(data.pair.pair)} at {data.pair.nominal:.5g} N, "
         f"{data.delta * 1e6:.4g} µm.",
         views=tuple(views),
     )
@@ -240,7 +241,8 @@ def _robustness_figure(name: str, found: Mapping[str, Robustness], metric: str) 
     return Figure(
         f"robustness_{name}",
         f"Robustness of the reliefs of pair {name}",
-        f"Pair {name}: worst (marked) and least (thin) of all combinations of spacing error and relief tolerance.",
+        f"Pair {name}: maximum (marked) and minimum (thin) over all combinations of pitch deviation and relief "
+        "tolerance.",
         (
             Panel(
                 axis_of(next(iter(found.values())), "load_factors"),

@@ -72,15 +72,15 @@ def _check(scene: Scene, name: str) -> None:
     ratio = scene.pairs[name].contact_ratio
     if not 1.0 <= ratio < 2.0:
         raise InputError(
-            f"pair.{name}", f"contact ratio {ratio:.4f}", "has no highest point of single tooth contact, from which "
-            "lengths of relief count", "ask for relief-chart",
+            f"pair.{name}", f"contact ratio {ratio:.4f}", "has no highest point of single tooth contact (reference "
+                                                          "of the relief length)", "request relief-chart",
         )  # fmt: skip
     part = design_part(scene).chart
     count = len(part.amounts or part.amounts_over_delta or [1.0]) * len(part.lengths or [1.0])
     if count > _MOST:
         raise InputError(
-            "design.chart", f"{count} reliefs", f"are more than the {_MOST} that relief-curves draws",
-            "give fewer amounts or lengths",
+            "design.chart", f"{count} reliefs", f"exceed the maximum of {_MOST} in relief-curves",
+            "reduce amounts or lengths",
         )  # fmt: skip
 
 
@@ -134,19 +134,19 @@ def _present(data: ReliefCurvesData, inputs: Reads[ChartPart]) -> Outcome:
             *repeated(relief, [curve.history.x.size for curve in curves]),
             *stacked([_along(curve.history) for curve in curves]),
         ),
-        f"Transmission error and load of a tooth pair of {name}, relief by relief, {data.pair.nominal:.6g} N",
+        f"Transmission error and load of a tooth pair of {name} for each relief, {data.pair.nominal:.6g} N",
     )
     series = np.array([curve.error.series.amplitude[:_TOLD] for curve in curves])
     summary = Table(
         f"relief_curves_summary_{name}",
         (
             relief[0],
-            Column("amount_over_delta", amounts / data.delta, "", "over Welbourn's Delta"),
+            Column("amount_over_delta", amounts / data.delta, "", "amount / Welbourn's Delta"),
             relief[1],
             *(column_over([curve.error for curve in curves], key) for key in ("peak_to_peak", "effective_error")),
-            *(Column(f"amplitude_{n + 1}", series[:, n], "um", "harmonic, 0-peak") for n in range(_TOLD)),
+            *(Column(f"amplitude_{n + 1}", series[:, n], "um", "harmonic, amplitude") for n in range(_TOLD)),
         ),
-        f"Transmission error of {name}, relief by relief",
+        f"Transmission error of {name} for each relief",
     )
     value = Value(f"{name}.delta", data.delta, "um", None, meaning_of_unit(data.pair.pair))
     return Outcome(data, (history, summary), (value,), {"reliefs": len(curves) - 1}, figures=(_figure(name, data),))

@@ -104,12 +104,12 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     top = max(_LEAST, 1.25 * float(removal.max()), *(1.25 * y for _, y in points)) if points else _LEAST
     room = 0.06 * (ends[1] - ends[0])
     axis = Axis("roll angle", "deg", limits=(ends[0] - room, ends[1] + room))
-    section = " in any section across the axes" if pair.driver.helix_angle else ""
+    section = " in any transverse section" if pair.driver.helix_angle else ""
     figure = Figure(
         f"relief_of_{name}_{member}",
         f"Relief of gear {gear}",
-        f"Material that is removed from the {member}'s flanks over its active profile{section}; A to E: points of the "
-        f"path of contact.{' The points can be moved.' if points else ''}",
+        f"Modification of the {member} flanks over the active profile{section}; A to E: points of the path of "
+        f"contact.{' The points can be moved.' if points else ''}",
         (Panel(axis, Axis("removal", "um", limits=(-0.06 * top, top)), tuple(items), roll_marks(pair, member)),),
     )
     alone = active_profile(pair, member)

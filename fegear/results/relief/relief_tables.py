@@ -73,17 +73,19 @@ def least_stress_table(name: str, best: StressOptimum, load: float) -> tuple[Tab
     table = Table(
         f"loading_candidates_{name}",
         (
-            Column("family", np.array(labels), "", "of the ramps"),
+            Column("family", np.array(labels), "", "slope of the ramps"),
             Column("peak", np.array(peaks), "", "F, best of its family"),
-            Column("root_tension", np.array(tensions) * load, "MPa", "largest of both gears"),
-            Column("hertz_pressure", np.array(pressures) * at_load, "MPa", "largest over the path"),
+            Column("root_tension", np.array(tensions) * load, "MPa", "maximum of both gears"),
+            Column("hertz_pressure", np.array(pressures) * at_load, "MPa", "maximum over the path of contact"),
         ),
-        f"Loadings of {name} tried for the least stress",
+        f"Loadings of {name} evaluated for minimum stress",
     )
-    about = "largest of both gears, design load"
+    about = "maximum of both gears, design load"
     return table, (
         Value(f"{name}.design_root_tension", best.stress * load, "MPa", None, about),
-        Value(f"{name}.design_hertz_pressure", best.pressure * at_load, "MPa", None, "largest over the path"),
+        Value(
+            f"{name}.design_hertz_pressure", best.pressure * at_load, "MPa", None, "maximum over the path of contact"
+        ),
     )
 
 
@@ -95,7 +97,7 @@ def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list
         t = found.table
         columns = [*columns_of(t, table="flank")]
         if found.diagonal is not None:
-            meaning = "without the neighbours' loads (Mark 5.4)"
+            meaning = "without tooth coupling (Mark 5.4)"
             columns.append(column_of(t, "relief", found.diagonal, name="relief_diagonal", meaning=meaning))
         if found.error is not None:
             columns.append(error_column(column_of(t, "relief"), found.error))
@@ -109,9 +111,9 @@ def points_table(name: str, label: str, gear: str, t: ReliefTable) -> Table:
     above = t.relief - t.relief.min()
     columns = (
         *columns_of(t, "roll_angle", "radius", "x", "load", "deflection", "relief"),
-        column_of(t, "relief", above, name="relief_over_least", meaning="less the least of these rows"),
+        column_of(t, "relief", above, name="relief_over_least", meaning="minus the minimum of these rows"),
     )
-    return Table(f"relief_points_{label}", columns, f"Relief of gear {gear} in pair {name} at the angles asked for")
+    return Table(f"relief_points_{label}", columns, f"Relief of gear {gear} in pair {name} at the requested angles")
 
 
 def grindable_table(
@@ -129,12 +131,12 @@ def grindable_table(
     )
     amount, begin, ripple = (
         column_over(reliefs, "amount"), column_over(reliefs, "start"),
-        column_over(left, "peak_to_peak", meaning="left at design load"),
+        column_over(left, "peak_to_peak", meaning="remaining at design load"),
     )  # fmt: skip
     ends = [
         column_over(one, key, name=name, meaning=meaning)
         for one, key, name, meaning in (
-            (first, "amount", "amount_from", "equally good: up to 1 % above the least"),
+            (first, "amount", "amount_from", "lower end of near-optimum range (within 1 % of the minimum)"),
             (last, "amount", "amount_to", "equally good"),
             (last, "start", "start_from", "equally good, roll angle"),
             (first, "start", "start_to", "equally good, roll angle"),
@@ -145,7 +147,7 @@ def grindable_table(
         for end, which, what, how in zip(ends, (1, 2, 2, 1), (0, 0, 1, 1), ("less", "more") * 2, strict=True)
     ]
 
-    radius = Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius")
+    radius = Column("start_radius", base * np.hypot(1.0, start), "mm", "as radius")
     radius_off = error_column(radius, base * start / np.hypot(1.0, start) * errors[:, 0, 1])
 
     def of(key: str, unit: str, meaning: str) -> Column:
@@ -161,14 +163,14 @@ def grindable_table(
             error_column(
                 ripple, [g.objective_error for *_, g in rows], "estimated error of te_peak_to_peak and te_effective"
             ),
-            column_over(left, "effective_error", meaning="A_e left"),
-            of("least", "um", "left by the best of all"),
-            of("least_error", "um", "two independent searches are so far apart"),
+            column_over(left, "effective_error", meaning="remaining A_e"),
+            of("least", "um", "minimum found"),
+            of("least_error", "um", "difference between two independent searches"),
             *ends[:2], *ends_off[:2], *ends[2:], *ends_off[2:],
-            of("candidates", "", "reliefs scanned"),
-            of("starts", "", "places of them from which searches went out"),
+            of("candidates", "", "number of reliefs scanned"),
+            of("starts", "", "number of start points of the search"),
         ),
-        f"Tip reliefs of {name} that a shop can grind",
+        f"Grindable tip reliefs of {name}",
     )  # fmt: skip
 
 
@@ -185,7 +187,7 @@ def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
     relief, (first, last) = getattr(ground, member), getattr(ground, f"{member}_band")
     low, high = (math.degrees(one.start) for one in (last, first))
     own = ground.error[:2] if member == "driver" else ground.error[2:]
-    amounts = f"to grind; equally good with the rest: {first.amount * 1e6:.4g} to {last.amount * 1e6:.4g} um"
+    amounts = f"amount to grind; equally good: {first.amount * 1e6:.4g} to {last.amount * 1e6:.4g} um"
     starts = f"roll angle; equally good: {low:.5g} to {high:.5g} deg"
     owner, _, head = key.rpartition(".")
     return [
@@ -194,7 +196,7 @@ def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
     ]
 
 
-_BY_RELIEF = "by the last digits to which the search finds both reliefs again"
+_BY_RELIEF = "repeatability of the search"
 
 
 def harris_table(name: str, curves: Mapping[str, Loaded], ground: Mapping[Shape, TipReliefPair]) -> Table:
@@ -205,7 +207,7 @@ def harris_table(name: str, curves: Mapping[str, Loaded], ground: Mapping[Shape,
     n, loads = first.x.size, first.load
     columns = [
         column_of(ReliefChart, "loads", np.repeat(loads, n)),
-        Column("x", np.tile(first.x, loads.size), "mm", "roll position over one base pitch"),
+        Column("x", np.tile(first.x, loads.size), "mm", "mesh position over one base pitch"),
     ]
     for label, curve in curves.items():
         head = "te_" + label.replace(" ", "_")
@@ -233,7 +235,7 @@ def relief_values(name: str, design: ReliefDesign) -> list[Value]:
     values += [
         value_of(
             te, "peak_to_peak", name, si=design.tables_leave, name="te_peak_to_peak.relief_tables",
-            meaning="designed, its relief tables read back linearly, design load",
+            meaning="designed, relief tables interpolated linearly, design load",
         ),
         value_of(te, "mean", name, name="te_mean.designed", meaning="design load"),
     ]  # fmt: skip
@@ -347,7 +349,7 @@ def slider_map(name: str, teeth: LoadedTeeth, greatest: float) -> Figure:
     return Figure(
         f"slider_map_{name}",
         f"Harris map of pair {name}",
-        f"Pair {name}: transmission error over the mesh cycle for loads up to {greatest:.5g} N with the reliefs of the "
-        "case, and below it how far each curve goes from peak to peak; wide, and the large point: the present load.",
+        f"Pair {name}: transmission error over the mesh cycle for loads up to {greatest:.5g} N with the reliefs of "
+        "the case, and peak-to-peak values; thick line and large point: present load.",
         (over_roll, over_load),
     )

@@ -117,13 +117,13 @@ def check_draws(scene: Scene, name: str) -> None:
     part, limits, wide = tolerance_part(scene), limits_of(scene, name, _kinds(scene, name)), name in scene.wide_pairs
     if wide and part.reliefs is not None:
         raise InputError(
-            "robustness.reliefs", "a table", "is for plane teeth",
-            "leave it out; flank-design finds reliefs over the face, for misalignment that scatters too",
+            "robustness.reliefs", "a table", "is defined for the plane (2D) model",
+            "remove it; use flank-design for 3D flanks, including scatter of misalignment",
         )  # fmt: skip
     if not wide and part.deviations and "helix-slope" in part.deviations:
         raise InputError(
-            "robustness.deviations", '"helix-slope"', "has no meaning for plane teeth, which are alike along the face",
-            f'leave it out, or give pair.{name} width = "solid"',
+            "robustness.deviations", '"helix-slope"', "is not used in the plane (2D) model",
+            f'remove it, or set pair.{name}.width = "solid"',
         )  # fmt: skip
     refuse_no_tolerance(scene, name, limits)
     refuse_jammed(pair_spec(scene, name).placed if wide else scene.pairs[name], name, limits)

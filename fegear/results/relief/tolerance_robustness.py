@@ -144,7 +144,7 @@ def _drawn(chunks: Sequence[Chunk], name: str, work: Work) -> list[dict[str, Any
     done = map_points(compute_chunk, chunks, executor, work.cache, key=chunk_content, progress=work.progress)
     for one in done:
         if isinstance(one, Failure):
-            raise FegearError(f"Draws of pair {name} failed: {one.reason}")
+            raise FegearError(f"Samples of pair {name} failed: {one.reason}")
     return list(done)
 
 
@@ -166,7 +166,7 @@ def _reliefs(
 
     wish = asked.part.reliefs
     if wish is None:
-        raise InputError("robustness.reliefs", "(not given)", "is needed to compare reliefs")
+        raise InputError("robustness.reliefs", "(not given)", "is required to compare reliefs")
     pair = own.engagement.pair
     best = grindable(own.engagement.unmodified(), own.load, wish.shape)
     numbers: list[float] = []
@@ -246,17 +246,17 @@ def _distributions(data: ToleranceData, asked: DrawInputs) -> Figure:
         levels = tuple(Mark("y", p.percent, f"{p.value * factor:.4g}") for p in percentiles(data, name))
         views.append(
             View(one.label, (
-                Panel(axis, Axis("draws in a class", "%", zero=True),
+                Panel(axis, Axis("samples per class", "%", zero=True),
                       (Bars(*_histogram(values), "", "blue"),), (mark,), title=one.label),
-                Panel(axis, Axis("draws below", "%", limits=(0.0, 100.0)),
+                Panel(axis, Axis("fraction of samples below", "%", limits=(0.0, 100.0)),
                       (Curve(values, below, "", "blue", markers=False),), (mark, *levels)),
             ))
         )  # fmt: skip
     return Figure(
         f"robustness_distributions_{asked.name}",
-        f"Pair {asked.name} inside its tolerances",
-        f"Pair {asked.name}, {asked.part.draws} draws: how results are spread, and which share lies below. Dotted: the "
-        "pair of the drawing (nominal), and percentiles 5, 50 and 95 with their values.",
+        f"Pair {asked.name} within its tolerances",
+        f"Pair {asked.name}, {asked.part.draws} draws: histogram and cumulative distribution of the results. Dotted: "
+        "the pair of the drawing (nominal), and percentiles 5, 50 and 95 with their values.",
         views=tuple(views),
         under=f"{asked.load:.5g} N",
     )
@@ -274,7 +274,7 @@ def _drawn_influences(data: ToleranceData, asked: DrawInputs) -> Figure:
         across = Axis("", categories=names)
         views.append(
             View(SHOWN[name].label, (
-                Panel(Axis("share of the variance by itself", "%", zero=True), across,
+                Panel(Axis("share of the variance (single deviation)", "%", zero=True), across,
                       (Points(share, places, "", "blue", size=8.0),), title=SHOWN[name].label),
                 Panel(Axis("rank correlation", limits=(-1.0, 1.0)), across,
                       (Points(rank, places, "", "orange", "diamond", size=8.0),), (Mark("x", 0.0),)),
@@ -282,10 +282,9 @@ def _drawn_influences(data: ToleranceData, asked: DrawInputs) -> Figure:
         )  # fmt: skip
     return Figure(
         f"robustness_influences_{asked.name}",
-        f"Which deviations of pair {asked.name} matter",
-        f"Pair {asked.name}: share of a result's variance that each deviation explains by itself (either sign may "
-        "raise the result), and its rank correlation with it. The rest of 100 % is what deviations do together."
-        f"{leading_told(data, asked.gears)}",
+        f"Influence of the deviations of pair {asked.name}",
+        f"Pair {asked.name}: first-order (Sobol) share of the variance and rank correlation; the remainder to 100 % "
+        f"is due to interactions.{leading_told(data, asked.gears)}",
         views=tuple(views),
         most_views=2,
     )
@@ -303,13 +302,13 @@ def _drawn_reliefs(data: ToleranceData, asked: DrawInputs) -> Figure:
     marks.append(Mark("y", percent, f"percentile {percent:g}"))
     return Figure(
         f"robustness_reliefs_{asked.name}",
-        f"Tip reliefs of pair {asked.name} over the draws",
-        f"Pair {asked.name}: share of the draws whose peak-to-peak transmission error lies below, with the relief of "
-        f"the case, the tip reliefs that are best for the drawing, and those that are best at percentile {percent:g}."
-        f"{search_told(data, asked)}",
+        f"Tip reliefs of pair {asked.name} over the samples",
+        f"Pair {asked.name}: fraction of samples with a lower peak-to-peak transmission error, for the relief of the "
+        f"case, the nominal optimum and the optimum at percentile {percent:g}.{search_told(data, asked)}",
         (
             Panel(
-                Axis("peak-to-peak transmission error", "um", zero=True), Axis("draws below", "%", limits=(0.0, 100.0)),
+                Axis("peak-to-peak transmission error", "um", zero=True), Axis(
+                    "fraction of samples below", "%", limits=(0.0, 100.0)),
                 tuple(curves), tuple(marks),
             ),
         ),
@@ -325,8 +324,8 @@ TOLERANCE_ROBUSTNESS = teeth_stage(
     present=_present,
     check=check_draws,
     cites=citing(
-        Citation("iso-1328-1", "tolerances that deviations are drawn inside", "5.3, formulas (5) to (12)"),
-        Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ,
+        Citation("iso-1328-1", "tolerances of the sampled deviations", "5.3, formulas (5) to (12)"),
+        Citation("mark", "load sharing of the tooth pairs", "Appendix A"), HERTZ,
     ),
     forecast=forecast_draws,
     in_points=True,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fegear.base.printed import percent
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 
 #: How states of relief are called, and their columns' endings.
-OWN, NOMINAL, ROBUST = "as the case", "best without deviations", "best in the percentile"
+OWN, NOMINAL, ROBUST = "as in the case", "best without deviations", "best percentile"
 
 
 _ENDING = {OWN: "", NOMINAL: "_nominal_best", ROBUST: "_robust_best"}
@@ -80,18 +81,18 @@ class Shown(NamedTuple):
 #: Of every outcome, by its name in `OUTCOMES` of `fegear.design.robustness.deviated_pair`, `FLANK_OUTCOMES` of
 #: `deviated_flanks`.
 SHOWN = {
-    "te_peak_to_peak": Shown("um", "peak-to-peak transmission error", "over the base pitch in which teeth 0 meet"),
-    "te_mean": Shown("um", "mean transmission error", "over that base pitch"),
+    "te_peak_to_peak": Shown("um", "peak-to-peak transmission error", "over the base pitch with teeth 0 in mesh"),
+    "te_mean": Shown("um", "mean transmission error", "over this base pitch"),
     **{
-        f"te_harmonic_{n}": Shown("um", f"transmission error, harmonic {n}", "0-peak, of that base pitch")
+        f"te_harmonic_{n}": Shown("um", f"transmission error, harmonic {n}", "amplitude, over this base pitch")
         for n in range(1, 5)
     },
-    "driver_root_tension": Shown("MPa", "root tension of the driver", "largest of tooth 0 on its way through the mesh"),
-    "driven_root_tension": Shown("MPa", "root tension of the driven gear", "largest of tooth 0"),
-    "hertz_pressure": Shown("MPa", "Hertzian pressure", "largest between teeth 0, smooth flanks"),
-    "largest_load": Shown("N", "load on one tooth pair", "largest on teeth 0"),
-    "face_load_factor": Shown("", "face load factor K_Hbeta", "largest over mean load over the face"),
-    "largest_line_load": Shown("N/mm", "line load", "largest over the face"),
+    "driver_root_tension": Shown("MPa", "root stress of the driver", "maximum of tooth 0 over the engagement"),
+    "driven_root_tension": Shown("MPa", "root stress of the driven gear", "maximum of tooth 0"),
+    "hertz_pressure": Shown("MPa", "Hertzian pressure", "maximum between teeth 0, smooth flanks"),
+    "largest_load": Shown("N", "load on one tooth pair", "maximum on teeth 0"),
+    "face_load_factor": Shown("", "face load factor K_Hbeta", "maximum / mean load over the face width"),
+    "largest_line_load": Shown("N/mm", "line load", "maximum over the face width"),
 }
 
 
@@ -128,16 +129,21 @@ def percentiles(data: ToleranceData, name: str, state: str = OWN) -> list[Percen
 def deviation_columns(data: ToleranceData, gears: tuple[str, str]) -> Iterator[Column]:
     """Every deviation that was drawn, as columns."""
     d = data.deviations
-    yield Column("centre_distance", d.centre_distance, "um", "more than the drawing's")
+    yield Column("centre_distance", d.centre_distance, "um", "deviation from nominal")
     for i, member in enumerate(MEMBERS):
         of = f"of {gears[i]}"
         yield Column(
-            f"{member}_profile_slope", d.profile_slope[:, i], "um", f"f_Halpha {of}, positive: full at the tip"
+            f"{member}_profile_slope",
+            d.profile_slope[:, i],
+            "um",
+            f"f_Halpha {of}, positive: excess material at the tip",
         )
         yield Column(f"{member}_profile_form", d.profile_form[:, i], "um", f"band of the profile form {of}, f_falpha")
-        yield Column(f"{member}_form_waves", d.waves[:, i], "", f"waves of that over the active profile {of}")
-        yield Column(f"{member}_form_phase", d.phase[:, i], "deg", f"their phase at the start of contact {of}")
-        yield Column(f"{member}_helix_slope", d.helix_slope[:, i], "um", f"f_Hbeta {of}, positive: cut back at end II")
+        yield Column(f"{member}_form_waves", d.waves[:, i], "", f"number of waves over the active profile {of}")
+        yield Column(f"{member}_form_phase", d.phase[:, i], "deg", f"phase of the waves at the start of contact {of}")
+        yield Column(
+            f"{member}_helix_slope", d.helix_slope[:, i], "um", f"f_Hbeta {of}, positive: less material at end II"
+        )
         for k in range(d.pitch.shape[2]):
             gap = -(k // 2 + 1) if k % 2 == 0 else k // 2 + 1
             end, inner = abs(gap), abs(gap) - 1
@@ -194,7 +200,7 @@ def tolerance_tables(data: ToleranceData, asked: DrawInputs) -> tuple[Table, ...
 
 def _draws(data: ToleranceData, asked: DrawInputs) -> Table:
     count = len(data.deviations)
-    columns = [Column("draw", np.arange(count), "", "in the order of the sequence"), *varied(data, asked.gears)]
+    columns = [Column("draw", np.arange(count), "", "sample number"), *varied(data, asked.gears)]
     for state in data.values:
         columns += [
             Column(f"{name}{_ENDING[state]}", outcome(data, name, state), one.unit, f"{one.label}, relief {state}")
@@ -203,12 +209,12 @@ def _draws(data: ToleranceData, asked: DrawInputs) -> Table:
         ]
     if data.reasons:
         why = np.array([data.reasons.get(row, "") for row in range(count)])
-        columns.append(Column("failure", why, "", "why there is no result"))
-    return Table(f"robustness_draws_{asked.name}", tuple(columns), f"Every draw of {asked.name} and what came of it")
+        columns.append(Column("failure", why, "", "reason for missing result"))
+    return Table(f"robustness_draws_{asked.name}", tuple(columns), f"All samples of {asked.name}")
 
 
 def _percentiles(data: ToleranceData, asked: DrawInputs) -> Table:
-    columns = [Column("percentile", np.array(PERCENTS), "", "of the draws")]
+    columns = [Column("percentile", np.array(PERCENTS), "", "percentile of the samples")]
     for name, one in ((key, SHOWN[key]) for key in data.outcomes):
         found = percentiles(data, name)
         columns += [
@@ -216,14 +222,14 @@ def _percentiles(data: ToleranceData, asked: DrawInputs) -> Table:
             Column(f"{name}_low", np.array([p.low for p in found]), one.unit, "95 % interval by order statistics"),
             Column(f"{name}_high", np.array([p.high for p in found]), one.unit, "95 % interval by order statistics"),
         ]
-    return Table(f"robustness_percentiles_{asked.name}", tuple(columns), f"Percentiles of the draws of {asked.name}")
+    return Table(f"robustness_percentiles_{asked.name}", tuple(columns), f"Percentiles of the samples of {asked.name}")
 
 
 def _influences(data: ToleranceData, asked: DrawInputs) -> Table:
     rows = influence_table(data, asked.gears)
     columns = [
-        Column("deviation", np.array([column.name for column, _ in rows]), "", "that was drawn"),
-        Column("meaning", np.array([column.meaning for column, _ in rows]), "", "in words"),
+        Column("deviation", np.array([column.name for column, _ in rows]), "", "sampled deviation"),
+        Column("meaning", np.array([column.meaning for column, _ in rows]), "", "description"),
     ]
     for name in told(data):
         label = SHOWN[name].label
@@ -234,14 +240,14 @@ def _influences(data: ToleranceData, asked: DrawInputs) -> Table:
             ),
             Column(
                 f"{name}_share", np.array([found[name].share for _, found in rows]), "",
-                f"share of the variance of {label} by this deviation alone; about zero to either side: none",
+                f"share of the variance of {label} by this deviation only; values around zero: none",
             ),
             Column(
                 f"{name}_share_error", np.array([found[name].error for _, found in rows]), "",
                 f"standard error of {name}_share",
             ),
         ]  # fmt: skip
-    return Table(f"robustness_influences_{asked.name}", tuple(columns), f"Which deviations of {asked.name} matter most")
+    return Table(f"robustness_influences_{asked.name}", tuple(columns), f"Ranking of the deviations of {asked.name}")
 
 
 def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
@@ -255,9 +261,7 @@ def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
         of = f"tip relief of {asked.gears[i]}"
         columns += [
             Column(f"{member}_amount", np.array([n[2 * i] for n in numbers]), "um", f"{of} ({part.shape})"),
-            Column(
-                f"{member}_length", np.array([n[2 * i + 1] for n in numbers]), "", f"{of}, over the path of contact"
-            ),
+            Column(f"{member}_length", np.array([n[2 * i + 1] for n in numbers]), "", f"{of} / path of contact"),
         ]
     for name in told(data):
         one = SHOWN[name]
@@ -271,7 +275,7 @@ def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
             Column(f"{name}_{percent:g}", np.array([f[k].value for f in found]), one.unit, f"percentile {percent:g}")
             for k, percent in enumerate(PERCENTS)
         ]
-    return Table(f"robustness_reliefs_{asked.name}", tuple(columns), f"Tip reliefs of {asked.name} over the draws")
+    return Table(f"robustness_reliefs_{asked.name}", tuple(columns), f"Tip reliefs of {asked.name} over the samples")
 
 
 def _position_error(data: ToleranceData, name: str) -> float | None:
@@ -293,7 +297,7 @@ def tolerance_values(data: ToleranceData, asked: DrawInputs) -> tuple[Value, ...
             values.append(
                 Value(
                     f"{name}.{key}_{p.percent:g}", p.value, one.unit, half if np.isfinite(half) else None,
-                    f"{one.label}, percentile {p.percent:g} of the draws",
+                    f"{one.label}, percentile {p.percent:g} of the samples",
                 )
             )  # fmt: skip
     for key in told(data) if varied(data, asked.gears) else ():
@@ -302,7 +306,7 @@ def tolerance_values(data: ToleranceData, asked: DrawInputs) -> tuple[Value, ...
             values.append(
                 Value(
                     f"{name}.{key}_interactions", share, "", error,
-                    f"{SHOWN[key].label}: share of the variance that no deviation has alone but several have together",
+                    f"{SHOWN[key].label}: share of the variance due to interactions of deviations",
                 )
             )  # fmt: skip
     if data.relief is not None:
@@ -321,7 +325,7 @@ def tolerance_values(data: ToleranceData, asked: DrawInputs) -> tuple[Value, ...
                 Value(f"{name}.{member}.robust_amount", data.relief.numbers[2 * i], "um", None, f"at the tip, {gear}"),
                 Value(
                     f"{name}.{member}.robust_length", data.relief.numbers[2 * i + 1], "", None,
-                    f"of that relief of {gear}, over the path of contact",
+                    f"length of this relief of {gear} / path of contact",
                 ),
             ]  # fmt: skip
     return tuple(values)
@@ -332,26 +336,24 @@ def tolerance_remarks(data: ToleranceData, asked: DrawInputs) -> tuple[str, ...]
     name, part = asked.name, asked.part
     p = percentiles(data, "te_peak_to_peak")[-1]
     spread = (
-        "the tolerance is three standard deviations and the end"
-        if part.distribution == "normal" else "even over the tolerance"
+        "tolerance = 3 standard deviations, truncated"
+        if part.distribution == "normal" else "uniform over the tolerance"
     )  # fmt: skip
     told = (
-        f"Pair {name}: {part.draws} draws ({part.sequence}, seed {part.seed}; {part.distribution}, {spread}). Profile "
-        "deviations are alike on all teeth of a gear, pitch deviations differ from tooth to tooth. Percentile "
-        f"{p.percent:g} of the peak-to-peak transmission error is {p.value * 1e6:.4g} um, with 95 % confidence "
-        f"{p.low * 1e6:.4g} to {p.high * 1e6:.4g} um, {nominal(data, 'te_peak_to_peak') * 1e6:.4g} um without "
-        "deviations."
+        f"Pair {name}: {part.draws} draws ({part.sequence}, seed {part.seed}; {part.distribution}, {spread}). "
+        "Profile deviations are identical on all teeth of a gear, pitch deviations are individual. Peak-to-peak "
+        f"transmission error, {p.percent:g}th percentile: {p.value * 1e6:.4g} um (95 % confidence interval "
+        f"{p.low * 1e6:.4g} to {p.high * 1e6:.4g} um); without deviations "
+        f"{nominal(data, 'te_peak_to_peak') * 1e6:.4g} um."
     )
     found = [told, *asked.untold]
     if asked.own_spacing:
-        found.append(
-            f"Pair {name}: spacing_errors of its gears do not count in the draws, which have pitches of their own."
-        )
+        found.append(f"Pair {name}: spacing_errors of its gears are not used (pitch deviations are sampled).")
     if data.reasons:
         first = min(data.reasons)
         found.append(
-            f"Pair {name}: {len(data.reasons)} of {part.draws} draws have no result and do not count, the first (draw "
-            f"{first}): {data.reasons[first]}"
+            f"Pair {name}: {len(data.reasons)} of {part.draws} samples have no result and are ignored, the first "
+            f"(sample {first}): {data.reasons[first]}"
         )
     if data.relief is not None and part.reliefs is not None:
         found.append(_held_against_nominal(data, name, part.reliefs.percentile))
@@ -368,12 +370,16 @@ def leading_told(data: ToleranceData, gears: tuple[str, str]) -> str:
     rows = influence_table(data, gears)
     leading = [row for row in sorted(rows, key=share, reverse=True) if row[1][key].resolved][:3]
     if not leading:
-        return " Of the peak-to-peak transmission error no share is resolved by so few draws."
+        return " No variance shares of the peak-to-peak transmission error resolved with so few samples."
     shares = ", ".join(
-        f"{row[0].name.replace('_', ' ')} {share(row):.0%} +- {row[1][key].error:.0%}" for row in leading
+        f"{row[0].name.replace('_', ' ')} {percent(share(row), whole=True)} +- {percent(row[1][key].error, whole=True)}"
+        for row in leading
     )
     rest, error = shared_together(data, gears, key)
-    return f" Of the peak-to-peak transmission error: {shares}; together (interactions) {rest:.0%} +- {error:.0%}."
+    return (
+        f" Variance shares of the peak-to-peak transmission error: {shares}; interactions "
+        f"{percent(rest, whole=True)} +- {percent(error, whole=True)}."
+    )
 
 
 def search_told(data: ToleranceData, asked: DrawInputs) -> str:
@@ -384,11 +390,10 @@ def search_told(data: ToleranceData, asked: DrawInputs) -> str:
     if r is None:
         return ""
     return (
-        f" Those were found with straight contact laws by trying all {r.candidates} combinations of a grid over "
-        f"{min(SCREENING, r.draws)} draws, the best tenth over {r.draws}, and leading the best {LED} and the nominal "
-        f"optimum on; at their ends exact sharing differs by at most {r.quick_error * 1e6:.2g} um. Over these draws "
-        f"they leave {r.left * 1e6:.4g} um, the nominal optimum {r.nominal_left * 1e6:.4g} um; the curves are "
-        f"those of {asked.part.draws} others."
+        f" Search with linear contact laws: all {r.candidates} combinations of a grid over {min(SCREENING, r.draws)} "
+        f"samples, the best tenth over {r.draws}, the best {LED} and the nominal optimum refined; difference from "
+        f"exact load sharing at most {r.quick_error * 1e6:.2g} um. Result over these samples {r.left * 1e6:.4g} um, "
+        f"nominal optimum {r.nominal_left * 1e6:.4g} um; curves from {asked.part.draws} other samples."
     )
 
 
@@ -399,9 +404,9 @@ def _held_against_nominal(data: ToleranceData, name: str, percent: float) -> str
     robust, other = (outcome(data, "te_peak_to_peak", state) for state in (ROBUST, NOMINAL))
     here, there, sure = sure_of_less(robust, other, percent)
     verdict = (
-        f"Pair {name}: percentile {percent:g} over draws that the search has not seen is {here * 1e6:.4g} um with the "
-        f"tip reliefs that are best in it, {there * 1e6:.4g} um with the nominal optimum"
+        f"Pair {name}: percentile {percent:g} over independent samples is {here * 1e6:.4g} um with the tip reliefs "
+        f"optimised for it, {there * 1e6:.4g} um with the nominal optimum"
     )
     if here < there:
-        return f"{verdict}; it is less in {sure:.0%} of resampled sets of draws."
-    return f"{verdict}, which serves as well (or raise robustness.reliefs.draws)."
+        return f"{verdict}; it is lower in {sure * 100.0:.0f} % of resampled sets."
+    return f"{verdict}: no significant difference (or increase robustness.reliefs.draws)."

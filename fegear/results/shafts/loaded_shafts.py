@@ -108,24 +108,25 @@ def _remarks(data: LoadedShafts, bodies: tuple[str, ...]) -> list[str]:
     said = [f"Shafts: {one}." for one in bodies]
     if any(one.shaft.gears for one in data.gearbox.shafts):
         said.append(
-            "Shafts: bodies of gears sit fast on them and carry torque and bending over their seats; of keys and usual "
-            "shrink fits ISO 6336-1 expects scarcely any of it, which stiffens = false of a gear computes."
+            "Shafts: gear bodies are treated as rigidly connected to the shaft over their seats and stiffen it in "
+            "bending and torsion. For keys and normal shrink fits ISO 6336-1 assumes almost no stiffening: set "
+            "stiffens = false."
         )
     meshes = data.gearbox.meshes
     even = [mesh.pair for mesh, feeding in zip(meshes, data.feeding, strict=True) if not feeding]
     if even:
         said.append(
-            f"Shafts: forces of {', '.join(even)} are spread evenly over the face; with the effect misalignment "
-            "flanks of pairs with a width are loaded as the shafts tilt them."
+            f"Shafts: uniform load distribution over the face assumed for {', '.join(even)}; effects.misalignment = "
+            'true couples load distribution and shaft deflection for pairs with width = "solid" or "slices".'
         )
     if any(data.feeding):
         said.append(
-            "Shafts: they follow the load over the face averaged over a base pitch, not the passing of single teeth; "
-            "that the axes part is neglected in the working pressure angle."
+            "Shafts: computed with the load distribution averaged over a base pitch; the change of centre distance "
+            "is neglected in the working pressure angle."
         )
     seats = [seat.bearing for shaft in data.gearbox.shafts for seat in shaft.seats]
     if any(isinstance(one, RollingBearing) and one.kind == "roller" for one in seats):
-        said.append("Shafts: the law of roller contacts (ISO/TS 16281) is recalled, not compared with the standard.")
+        said.append("Shafts: roller contact law (ISO/TS 16281) is not verified against a printed source.")
     return said
 
 

@@ -19,8 +19,8 @@ from fegear.results import forecasts
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
 from fegear.shafts.gearbox import CAUSES, MeshGap, MeshMisalignment, MeshState
 
-_WORDS = {"bearings": "of the rings in their bearings", "housing": "of the bearings' seats",
-          "bending": "of the shafts that bend", "torsion": "of the shafts that twist"}  # fmt: skip
+_WORDS = {"bearings": "bearing deflection", "housing": "deflection of the bearing seats",
+          "bending": "bending of the shafts", "torsion": "torsion of the shafts"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -56,12 +56,12 @@ class MisalignedMesh:
 
     shares: MeshMisalignment
     gap: MeshGap
-    pair: str = shown("", "name of the pair")
+    pair: str = shown("", "gear pair")
     load: float = shown("N", "along the transverse line of action")
-    end: str = shown("", "end of the shafts toward which it lies", name="end_II")
+    end: str = shown("", "end of the shafts to which it refers", name="end_II")
 
     @property
-    @shows("", "what misaligns the mesh")
+    @shows("", "cause of misalignment")
     def cause(self) -> tuple[str, ...]:
         """Names of the rows."""
         return ("all", *CAUSES)
@@ -109,7 +109,7 @@ _SHEET = Sheet(
     name=lambda _asked: "",
     tables=(
         Rows(
-            "misalignment", "Misalignment of the meshes by cause",
+            "misalignment", "Mesh misalignment by cause",
             ("pair", "load", "cause", *(f"shares.{key}" for key in MeshMisalignment.__dataclass_fields__), "end"),
             stacked="under_all",
         ),
@@ -125,7 +125,8 @@ _SHEET = Sheet(
         Number(
             "shares.over_face", si=lambda seen: seen.one.shares.over_face[0], owner="{one.pair}",
             name="shaft_misalignment", each="nominal",
-            meaning="over the face in the plane of action, toward end II, by shafts, bearings and housing",
+            meaning="misalignment over the face width in the plane of action, towards end II, from shafts, bearings "
+                    "and housing",
         ),
     ),
     figures=(
@@ -137,7 +138,7 @@ _SHEET = Sheet(
                 Over(
                     "gap.z",
                     (
-                        Line("gap.gap", "in all", "series:0", look={"markers": False}),
+                        Line("gap.gap", "total", "series:0", look={"markers": False}),
                         *(_line_by(n, cause) for n, cause in enumerate(CAUSES)),
                     ),
                 ),
@@ -150,9 +151,7 @@ _SHEET = Sheet(
 
 def _check(scene: Scene, _name: str) -> None:
     if not mesh_places(scene):
-        raise InputError(
-            "shaft", "(no pair)", "leaves no mesh to misalign", "name both gears of a pair in gears of shafts"
-        )
+        raise InputError("shaft", "(no pair)", "has no mesh to evaluate", "mount both gears of a pair on shafts")
 
 
 MISALIGNMENT = Stage(

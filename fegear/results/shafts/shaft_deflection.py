@@ -38,7 +38,7 @@ class DeflectedShaft:
     bent: Deflection
     loads: BearingLoads
     name: str = shown("", "name of the shaft", name="shaft")
-    bearings: tuple[str, ...] = shown("", "its name", name="bearing")
+    bearings: tuple[str, ...] = shown("", "name", name="bearing")
 
 
 def _inputs(scene: Scene, _name: str) -> DeflectionInputs:

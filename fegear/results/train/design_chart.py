@@ -144,8 +144,8 @@ def _chart(scene: Scene) -> DesignChartPart:
     found = scene.case.dynamics.chart
     if found is None:
         raise InputError(
-            "dynamics.chart", "(not given)", "is needed for design-chart",
-            "write chart = { amounts = [0.5, 1.0], lengths = [0.6, 0.8, 1.0] }",
+            "dynamics.chart", "(not given)", "is required for design-chart",
+            "set chart = { amounts = [0.5, 1.0], lengths = [0.6, 0.8, 1.0] }",
         )  # fmt: skip
     return found
 
@@ -154,7 +154,7 @@ def _mesh(scene: Scene) -> str:
     own = own_meshes(scene)
     name = _chart(scene).mesh or (own[0] if own else "")
     if name not in own:
-        raise InputError("dynamics.chart.mesh", f'"{name}"', "is no mesh of this train with teeth of its own")
+        raise InputError("dynamics.chart.mesh", f'"{name}"', "is not a mesh of this train with its own teeth")
     return name
 
 
@@ -166,8 +166,8 @@ def _check(scene: Scene, subject: str) -> None:
     ratio = scene.pairs[pair].contact_ratio
     if not 1.0 <= ratio < 2.0:
         raise InputError(
-            f"pair.{pair}", f"contact ratio {ratio:.4f}", "has no highest point of single tooth contact, from which "
-            "lengths of relief count",
+            f"pair.{pair}", f"contact ratio {ratio:.4f}", "has no highest point of single tooth contact (reference "
+                                                          "of the relief length)",
         )  # fmt: skip
 
 
@@ -281,8 +281,8 @@ DESIGN_CHART = Stage(
     present=_present,
     check=_check,
     requires=(
-        Need("contact_loss", "reliefs are chosen for the forces at which teeth part"),
-        Need("parametric", "relief acts on single tooth pairs, and without it all are one spring"),
+        Need("contact_loss", "required for reliefs with loss of contact"),
+        Need("parametric", "relief acts on single tooth pairs"),
     ),
     cites=citing(Citation("lin-townsend-oswald", "design charts of tip relief by dynamic factor")),
     forecast=_forecast,

@@ -42,21 +42,21 @@ class DesignChartData:
     Harmonics A_1 to A_4 have the shape (4, amounts, lengths); reasons have the last axis fastest.
     """
 
-    amounts: Array = shown("", "of tip relief over Delta", name="amount")
-    lengths: Array = shown("", "L_n, 1 from the tip to the HPSTC", name="length", label="length of relief L_{n}")
-    dynamic_factor: Array = shown("", "largest over the speeds", label="largest dynamic factor")
+    amounts: Array = shown("", "amount of tip relief / Delta", name="amount")
+    lengths: Array = shown("", "length L_n (1: from tip to HPSTC)", name="length", label="length of relief L_{n}")
+    dynamic_factor: Array = shown("", "maximum over the speeds", label="maximum dynamic factor")
     effective_error: Array = shown("um", "A_e of the static transmission error", label="effective error A_{e}")
-    speed: Array = shown("rpm", "at which the dynamic factor is largest")
-    contact_loss: Array = shown("", "largest over the speeds", name="contact_loss_fraction")
-    unsteady: Array = shown("", "how many speeds have no repeating motion", name="unsteady_speeds")
-    harmonics: Array = shown("um", "of the static transmission error, 0-peak", label="amplitude, 0-peak")
-    reasons: tuple[str, ...] = shown("", "why there is no result", name="failure")
-    unequal: tuple[UnequalRelief, ...] = shown("", "reliefs of their own on each gear")
-    line: FactorLine | None = shown("", "of the dynamic factor over A_e, through all points")
-    unmodified: float = shown("", "largest dynamic factor of perfect involutes")
-    unmodified_error: float = shown("um", "A_e of perfect involutes")
+    speed: Array = shown("rpm", "speed of the maximum dynamic factor")
+    contact_loss: Array = shown("", "maximum over the speeds", name="contact_loss_fraction")
+    unsteady: Array = shown("", "number of speeds with non-periodic motion", name="unsteady_speeds")
+    harmonics: Array = shown("um", "amplitude of the static transmission error", label="amplitude")
+    reasons: tuple[str, ...] = shown("", "reason for missing result", name="failure")
+    unequal: tuple[UnequalRelief, ...] = shown("", "unequal reliefs of both gears")
+    line: FactorLine | None = shown("", "slope of the dynamic factor over A_e, all points")
+    unmodified: float = shown("", "maximum dynamic factor without modification")
+    unmodified_error: float = shown("um", "A_e without modification")
     delta: float = shown("um", "Welbourn's Delta: deflection at the HPSTC under the mean force")
-    speed_of: str = shown("", "body that speeds refer to")
+    speed_of: str = shown("", "body to which speeds refer")
 
     def best_for_all(self) -> tuple[float, float]:
         """Length at which the worst of all amounts is least, and that factor; straight between the chart's lengths.
@@ -90,14 +90,16 @@ class DesignChartData:
 class UnequalRelief:
     """A relief of its own on each gear; nan where there is no result, and the reason for that."""
 
-    driver: float = shown("", "amount on the driver over Delta")
-    driven: float = shown("", "amount on the driven gear over Delta")
-    length: float = shown("", "L_n of both")
-    dynamic_factor: float = shown("", "largest over the speeds")
-    speed: float = shown("rpm", "at which the dynamic factor is largest")
+    driver: float = shown("", "amount on the driver / Delta")
+    driven: float = shown("", "amount on the driven gear / Delta")
+    length: float = shown("", "length L_n of both")
+    dynamic_factor: float = shown("", "maximum over the speeds")
+    speed: float = shown("rpm", "speed of the maximum dynamic factor")
     effective_error: float = shown("um", "A_e of the static transmission error")
-    between: float = shown("", "foretold from A_e between both amounts on both gears (TM-89901, Fig. 11)")
-    reason: str = shown("", "why there is no result", name="failure", default="")
+    between: float = shown(
+        "", "predicted from A_e, interpolated between equal reliefs of either amount (TM-89901, Fig. 11)"
+    )
+    reason: str = shown("", "reason for missing result", name="failure", default="")
 
 
 def _with_body(columns: Iterable[Column], body: str) -> tuple[Column, ...]:
@@ -115,14 +117,14 @@ def chart_tables(chart: DesignChartData, mesh: str) -> tuple[Table, ...]:
                 *(
                     column_of(
                         chart, "harmonics", row.ravel(), name=f"amplitude_{n}",
-                        meaning=f"A_{n} of the static transmission error, 0-peak",
+                        meaning=f"A_{n} of the static transmission error, amplitude",
                     )
                     for n, row in enumerate(chart.harmonics, 1)
                 ),
                 *_foretold(chart.line, chart.effective_error.ravel()),
                 column_of(chart, "reasons"),
             ),
-            f"Dynamic factor of mesh {mesh} against tip relief",
+            f"Dynamic factor of mesh {mesh} over tip relief",
         )
     ]  # fmt: skip
     if chart.unequal:
@@ -133,7 +135,7 @@ def chart_tables(chart: DesignChartData, mesh: str) -> tuple[Table, ...]:
 def _foretold(line: FactorLine | None, error: Array) -> tuple[Column, ...]:
     if line is None:
         return ()
-    return (Column("foretold_factor", line(error), "", "by the straight line over A_e"),)
+    return (Column("foretold_factor", line(error), "", "predicted by the straight line over A_e"),)
 
 
 def _unequal_table(chart: DesignChartData, mesh: str) -> Table:
@@ -143,7 +145,7 @@ def _unequal_table(chart: DesignChartData, mesh: str) -> Table:
     return Table(
         f"design_chart_unequal_{mesh}",
         (*numbers, *foretold, reason),
-        f"Dynamic factor of mesh {mesh} with a relief of its own on each gear",
+        f"Dynamic factor of mesh {mesh} with unequal reliefs",
     )
 
 
@@ -157,16 +159,28 @@ def chart_values(chart: DesignChartData) -> tuple[Value, ...]:
                 Value(f"design_chart.best_length_{a:g}", float(chart.lengths[k]), "", None, f"L_n at {a:g} Delta"),
                 Value(f"design_chart.least_factor_{a:g}", float(row[k]), "", None, f"at {a:g} Delta"),
                 Value(
-                    f"design_chart.flat_from_{a:g}", start, "", None, f"L_n, factor within 1 % of least, {a:g} Delta"
+                    f"design_chart.flat_from_{a:g}",
+                    start,
+                    "",
+                    None,
+                    f"L_n, factor within 1 % of the minimum, {a:g} Delta",
                 ),
-                Value(f"design_chart.flat_to_{a:g}", end, "", None, f"L_n, factor within 1 % of least, {a:g} Delta"),
+                Value(
+                    f"design_chart.flat_to_{a:g}", end, "", None, f"L_n, factor within 1 % of the minimum, {a:g} Delta"
+                ),
             ]
     if chart.amounts.size > 1 and chart.lengths.size > 1 and np.isfinite(chart.dynamic_factor).all():
         length, factor = chart.best_for_all()
         ends = f"{chart.amounts[0]:g} to {chart.amounts[-1]:g} Delta"
         values += [
-            Value("design_chart.best_length_for_all", length, "", None, f"L_n with the least worst factor from {ends}"),
-            Value("design_chart.least_factor_for_all", factor, "", None, f"that factor, {ends}"),
+            Value(
+                "design_chart.best_length_for_all",
+                length,
+                "",
+                None,
+                f"L_n with the minimum of the maximum factor, {ends}",
+            ),
+            Value("design_chart.least_factor_for_all", factor, "", None, f"this factor, {ends}"),
         ]
     if chart.line is not None:
         keys = ("constant", "slope", "scatter", "correlation")
@@ -189,9 +203,9 @@ def line_remark(chart: DesignChartData) -> tuple[str, ...]:
     a, n = np.unravel_index(int(np.nanargmax(np.abs(missed))), missed.shape)
     found, error = chart.dynamic_factor[a, n], chart.effective_error[a, n]
     sentence = (
-        f"Design chart: the line {line.constant:.3g} + {line.slope * 1e-6:.3g} A_e/um through all points leaves "
-        f"{line.scatter:.2g} of the dynamic factor (root mean square; correlation {line.correlation:.3f}). It misses "
-        f"most at {chart.amounts[a]:g} Delta, L_n = {chart.lengths[n]:g}: {found:.3g}, foretold {line(error):.3g}."
+        f"Design chart: the line {line.constant:.3g} + {line.slope * 1e-6:.3g} A_e/um through all points has an rms "
+        f"residual of {line.scatter:.2g} (correlation {line.correlation:.3f}). Maximum deviation at "
+        f"{chart.amounts[a]:g} Delta, L_n = {chart.lengths[n]:g}: {found:.3g}, predicted {line(error):.3g}."
     )
     return (sentence,)
 
@@ -223,15 +237,15 @@ def _chart(chart: DesignChartData) -> Figure:
     if chart.amounts.size > 1 and np.isfinite(chart.dynamic_factor).all():
         best = np.argmin(chart.dynamic_factor, axis=1)
         least = chart.dynamic_factor[np.arange(best.size), best]
-        factor.append(Curve(chart.lengths[best], least, "least of each amount", "ink", dash="dash", markers=False))
+        factor.append(Curve(chart.lengths[best], least, "minimum of each amount", "ink", dash="dash", markers=False))
         length, worst = chart.best_for_all()
-        factor.append(Points([length], [worst], "least for all amounts", "ink", symbol="star", size=10.0))
-        told = f" The star is the length that is best for all amounts together, L_n = {length:.3g}."
+        factor.append(Points([length], [worst], "optimum for all amounts", "ink", symbol="star", size=10.0))
+        told = f" Star: optimum length for all amounts, L_n = {length:.3g}."
     return Figure(
         "design_chart",
-        "Design chart of tip relief",
-        "Largest dynamic factor over the speeds, and effective error, against the length of tip relief (1 from the "
-        f"tip to the highest point of single contact), by amount over Δ = {chart.delta * 1e6:.4g} µm.{told}",
+        "Tip relief design chart",
+        "Maximum dynamic factor over the speeds and effective error, over the length of tip relief (1 from the tip "
+        f"to the highest point of single contact), by amount over Δ = {chart.delta * 1e6:.4g} µm.{told}",
         (
             Panel(length_axis, factor_axis, tuple(factor), (Mark("y", chart.unmodified, "unmodified"),)),
             Panel(length_axis, error_axis, tuple(error)),
@@ -263,8 +277,8 @@ def _harmonics(chart: DesignChartData) -> Figure:
     return Figure(
         "design_chart_harmonics",
         "Harmonics of the transmission error over the length of relief",
-        "Largest dynamic factor, and below it the first harmonics A_i of the static transmission error with the "
-        "effective error A_e, against the length of tip relief.",
+        "Maximum dynamic factor, and first harmonics A_i of the static transmission error with the effective error "
+        "A_e, over the length of tip relief.",
         views=tuple(views),
     )
 
@@ -294,8 +308,8 @@ def _drawn_forecast(chart: DesignChartData) -> tuple[Figure, ...]:
     figure = Figure(
         "design_chart_foretold",
         "Dynamic factor over effective error",
-        "Largest dynamic factor over the speeds against the effective error A_e of the static transmission error, for "
-        f"every relief of the chart, and the line of least squares ({chart.line.scatter:.2g} root mean square).",
+        "Maximum dynamic factor over the speeds versus effective error A_e of the static transmission error, all "
+        f"reliefs of the chart, with least-squares line (rms residual {chart.line.scatter:.2g}).",
         (Panel(error_axis, factor_axis, tuple(items)),),
     )
     return (figure,)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.case.built.train import MotionInputs, backlash_of, motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of, columns_of, drawn, error_column
@@ -115,9 +116,9 @@ def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFact
 def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
     name, motion, chart = asked.mesh, asked.motion, found.chart
     if chart is None:
-        return Outcome(found, remarks=(f"Mesh {name} carries no mean force, so it has no dynamic factor.",))
+        return Outcome(found, remarks=(f"Mesh {name} has no mean force and therefore no dynamic factor.",))
     parting = motion.contact_loss and found.in_time
-    zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
+    zero = "" if parting else "; zero without effects.contact_loss"
     of_body = f"of {found.speed_of}"
     factor = column_of(chart, "dynamic_factor")
     table = Table(
@@ -142,8 +143,8 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
     at = int(np.argmax(held.dynamic_factor))
     repeats = held.kinds[at] == "periodic"
     error = float(_errors(held, motion.tolerance)[at]) if found.in_time and repeats else None
-    sample = "" if repeats else f"; largest of {held.measured[at]} periods of a motion that does not repeat"
-    over = "over the speeds" if held is chart else "over the speeds at which the motion does not grow without bound"
+    sample = "" if repeats else f"; maximum of {held.measured[at]} periods of a non-periodic motion"
+    over = "over the speeds" if held is chart else "over the speeds with bounded motion"
     values = [
         Value(f"{name}.largest_dynamic_factor", worst, "", error, f"{over}, direction {motion.direction}{sample}"),
         Value(f"{name}.speed_of_largest", where, "rpm", None, of_body),
@@ -154,12 +155,12 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
         values.append(Value(f"{name}.largest_dynamic_factor_without_ripple", still, "", None, without))
     if parting:
         lost = float(chart.apart.max())
-        values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
+        values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "fraction of time"))
     remarks = [*pull_remarks(found.pull)]
     if found.in_time and not motion.parametric:
         remarks.append(
-            f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
-            "dynamic factor is that of the mesh force."
+            f"Mesh {name}: effects.parametric is off: constant mean mesh stiffness; the dynamic factor refers to the "
+            "mesh force."
         )
     averaged = found.in_time and motion.method == "averaging"
     still_held = found.still.at(~chart.growing) if found.still is not None and held is not chart else found.still
@@ -178,7 +179,7 @@ def _check(scene: Scene, name: str) -> None:
     needs_speeds(scene, name)
     if scene.case.dynamics.method == "averaging" and not motion_inputs(scene).in_time:
         raise InputError(
-            "dynamics.method", "averaging", "has a meaning only for motions in time",
+            "dynamics.method", "averaging", "applies to time-domain results only",
             "set effects.contact_loss, effects.parametric or effects.friction, or remove the key",
         )  # fmt: skip
     mesh, pair = train_part(scene).mesh[name], scene.pairs[train_part(scene).pair_of(name)]
@@ -186,7 +187,7 @@ def _check(scene: Scene, name: str) -> None:
     said_nothing = math.isinf(given) or math.isclose(given, own, rel_tol=1e-6, abs_tol=1e-12)
     if scene.case.effects.contact_loss is False and not said_nothing:
         raise InputError(
-            f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
+            f"train.mesh.{name}.backlash", "(given)", "requires effects.contact_loss = true",
             "switch the effect on, or remove the backlash",
         )  # fmt: skip
 
@@ -197,8 +198,8 @@ def _without_ripple(still: SpeedChart | None) -> tuple[Column, ...]:
         return ()
     parts = (("dynamic_factor", "tooth force"), ("mesh_force_factor", "mesh force"))
     return tuple(
-        column_of(still, key, name=f"{key}_without_ripple", meaning=f"largest {what} over the mean mesh force, without "
-                  "torque ripple")
+        column_of(still, key, name=f"{key}_without_ripple", meaning=f"maximum {what} / mean mesh force, without "
+                                                                    "torque ripple")
         for key, what in parts
     )  # fmt: skip
 
@@ -221,17 +222,15 @@ def _figure(
     odd = np.array([kind != "periodic" for kind in chart.kinds])
     if odd.any():
         notes = tuple(kind for kind in chart.kinds if kind != "periodic")
-        items.append(
-            Points(speed[odd], chart.dynamic_factor[odd], "motion that does not repeat", "red", notes=notes, size=7)
-        )
-    panels = [Panel(x, Axis("largest over mean force"), tuple(items), height=1.3)]
-    shares = (("no contact", "no contact", chart.apart), ("on the back flanks", "back flanks", chart.behind))
+        items.append(Points(speed[odd], chart.dynamic_factor[odd], "non-periodic motion", "red", notes=notes, size=7))
+    panels = [Panel(x, Axis("maximum / mean force"), tuple(items), height=1.3)]
+    shares = (("no contact", "no contact", chart.apart), ("back-side contact", "back flanks", chart.behind))
     lost = tuple(Curve(speed, 100.0 * share, label, role) for label, role, share in shares if share.any())
     if lost:
         panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
     if averaged:
         counts = Curve(speed, chart.repetitions.astype(float), "averaging", "ink", markers=True, width=0.9)
-        panels.append(Panel(x, Axis("periods until it settled", zero=True), (counts,), height=0.5))
+        panels.append(Panel(x, Axis("periods until convergence", zero=True), (counts,), height=0.5))
     worst, where = chart.worst
     smaller = np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
     changed = np.abs(np.diff(chart.dynamic_factor))
@@ -239,15 +238,15 @@ def _figure(
     step = np.divide(changed, smaller, out=np.zeros_like(changed), where=smaller > 0.0)
     at = int(np.argmax(step))
     coarse = (
-        f" From {speed[at]:.6g} to {speed[at + 1]:.6g} rpm it changes by {step[at]:.0%}: peaks between neighbouring "
-        "speeds are not seen; take more speeds there."
+        f" From {speed[at]:.6g} to {speed[at + 1]:.6g} rpm the dynamic factor changes by {percent(step[at])}: peaks "
+        "may be missed, use a finer speed grid there."
         if step[at] > _COARSE else ""
     )  # fmt: skip
     return Figure(
         f"dynamic_factor_{name}",
         f"Dynamic factor of mesh {name}",
-        f"Mesh {name}: largest force on one tooth pair (dynamic factor) and largest mesh force, both over the mean "
-        f"mesh force; points are the {speed.size} speeds computed. Largest dynamic factor {worst:.4g} at "
+        f"Mesh {name}: maximum tooth pair force (dynamic factor) and maximum mesh force, both relative to the mean "
+        f"mesh force; points: the {speed.size} computed speeds. Maximum dynamic factor {worst:.4g} at "
         f"{where * _RPM:.6g} rpm.{coarse}",
         tuple(panels),
     )

@@ -77,7 +77,7 @@ def _compute(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> Increme
 
 def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
     names, frequencies, found = known.train.names, known.frequencies, known.increments
-    frequency = Column("frequency", frequencies, "Hz", "of the static transmission error")
+    frequency = Column("frequency", frequencies, "Hz", "mesh of the static transmission error")
     columns, values = [frequency], []
     for i, first in enumerate(names):
         for j, second in enumerate(names):
@@ -85,7 +85,7 @@ def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
             meaning = f"dynamic increment of mesh {first} per static transmission error of mesh {second}"
             columns += _parts(name, q, meaning)
             at = int(np.argmax(np.abs(q)))
-            where = f"modulus, at {frequencies[at]:.6g} Hz of those asked for"
+            where = f"modulus, at {frequencies[at]:.6g} Hz"
             values.append(Value(f"{name}_largest", float(abs(q[at])), "", None, where))
     tables = [Table("dynamic_increments", tuple(columns), "Dynamic increment functions")]
     figures = [_overview(known)]
@@ -111,7 +111,7 @@ def _peaks(names: tuple[str, ...], peaks: tuple[IncrementPeak, ...]) -> Table:
         "dynamic_increments_peaks",
         (
             Column("increment", np.array([f"Q_{names[p.mesh]}_{names[p.source]}" for p in peaks]), "", "which"),
-            Column("resonance", np.array([p.frequency for p in peaks]), "Hz", "where its modulus has a maximum"),
+            Column("resonance", np.array([p.frequency for p in peaks]), "Hz", "frequency of the maximum modulus"),
             Column("modulus", np.array([p.modulus for p in peaks]), "", "there"),
         ),
         "Peaks of the dynamic increments",
@@ -135,17 +135,18 @@ def _determinants(
         j: relative_difference(by_cross, found[0, 1]),
     }
     said = {
-        f"printed_{i}": "of (2.58) as printed from the elimination, relative",
-        i: "of the ratio of determinants from the elimination, relative", j: "of (2.59) from the elimination, relative",
+        f"printed_{i}": "relative deviation of (2.58) as printed from the elimination",
+        i: "relative deviation of the ratio of determinants from the elimination", j:
+            "relative deviation of (2.59) from the elimination",
     }  # fmt: skip
     columns = [
         frequency,
         *_parts("D", d, "determinant by its polynomial (2.57) [(N m)^3]"),
-        Column("difference_D", off["D"], "", "of (2.57) from the elements (2.46c), relative"),
+        Column("difference_D", off["D"], "", "relative deviation of (2.57) from the elements (2.46c)"),
         *_parts(f"N_{i}", own, "N_1,I + N_2,I (2.55) [N (N m)^2]"),
         *_parts(f"N_{j}", cross, "N_1,II + N_2,II (2.56) [N (N m)^2]"),
         *_parts(f"Q_{i}_printed", printed, "R N/D - 1 as printed (2.58)"),
-        *_parts(f"Q_{i}_ratio", ratio, "the same as -D(mesh removed)/D, which does not cancel"),
+        *_parts(f"Q_{i}_ratio", ratio, "as -D(mesh removed)/D (no cancellation)"),
         *_parts(f"Q_{j}_printed", by_cross, "R N/D (2.59)"),
         *_parts(f"Q_{i}", found[0, 0], "by elimination"),
         *_parts(f"Q_{j}", found[0, 1], "by elimination"),
@@ -153,7 +154,7 @@ def _determinants(
     ]
     values = [
         Value(f"determinants_difference_{key}", float(off[key].max()), "", None,
-              f"largest over the frequencies, {words}, at {known.frequencies[int(np.argmax(off[key]))]:.6g} Hz")
+              f"maximum over the frequencies, {words}, at {known.frequencies[int(np.argmax(off[key]))]:.6g} Hz")
         for key, words in said.items()
     ]  # fmt: skip
     return Table("dynamic_increments_determinants", tuple(columns), "Determinants of the four-square rig"), values
@@ -168,13 +169,13 @@ def _asymptotes(frequency: Column, names: tuple[str, ...], found: Complex, low: 
     columns = [frequency]
     for i, first in enumerate(names):
         for j, second in enumerate(names):
-            columns.append(Column(f"modulus_{first}_{second}", np.abs(found[i, j]), "", "of the dynamic increment"))
+            columns.append(
+                Column(f"modulus_{first}_{second}", np.abs(found[i, j]), "", "modulus of the dynamic increment")
+            )
             columns += _parts(f"low_{first}_{second}", low[i, j], "first power of the frequency (Mark 2.62, 2.65)")
             if np.any(high[i, j]):
                 columns += _parts(f"high_{first}_{second}", high[i, j], "bodies turn as free inertias (2.64, 2.66)")
-    return Table(
-        "dynamic_increments_asymptotes", tuple(columns), "Moduli of the dynamic increments, and what they tend to"
-    )
+    return Table("dynamic_increments_asymptotes", tuple(columns), "Moduli of the dynamic increments and asymptotes")
 
 
 def _overview(data: IncrementsData) -> Figure:
@@ -191,8 +192,8 @@ def _overview(data: IncrementsData) -> Figure:
     )  # fmt: skip
     return Figure(
         "dynamic_increments", "Dynamic increment functions",
-        "Dynamic increment functions: how much the force of one mesh, over its stiffness, differs from the "
-        "quasi-static one for a static transmission error of its own or of another mesh.",
+        "Dynamic increment functions: difference between the force of one mesh (divided by its stiffness) and its "
+        "quasi-static value, for a static transmission error of the same or another mesh.",
         panels,
     )  # fmt: skip
 
@@ -217,12 +218,12 @@ def _figure(data: IncrementsData, i: int, j: int, low: Complex, high: Complex) -
     x, least = Axis("frequency", "Hz", log=True), float(np.abs(q[np.abs(q) > 0.0]).min(initial=top))
     panels = [Panel(x, Axis("|Q|", log=True, limits=(0.5 * least, 2.0 * top)), curves("|Q|"))]
     panels += [Panel(x, Axis(part, limits=(-top, top)), curves(part)) for part in ("Re Q", "Im Q")]
-    whose = "its own" if i == j else f"that of mesh {second}"
+    whose = "of the same mesh" if i == j else f"that of mesh {second}"
     return Figure(
         f"dynamic_increment_{first}_{second}", f"Dynamic increment of mesh {first} by the error of mesh {second}",
-        f"Mesh {first}: complex amplitude that the motion of the train adds to its transmission error, per unit static "
-        f"transmission error, {whose}; exp(+i w t). Slowly the train turns as a rigid body, fast its bodies turn as "
-        "free inertias.",
+        f"Mesh {first}: complex amplitude that the motion of the train adds to its transmission error, per unit "
+        f"static transmission error, {whose}; exp(+i w t). Asymptotes: rigid-body motion at low frequency, free "
+        "inertias at high frequency.",
         tuple(panels),
     )  # fmt: skip
 

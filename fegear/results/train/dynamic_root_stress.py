@@ -125,19 +125,24 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
             end, by = ending(asked.sources, k), told(source)
             known = not np.isnan(s.error).any()
             columns += [
-                column_of(s, "total", name=f"stress{end}", meaning=f"largest root tension by {by}, all meshes' shares"),
+                column_of(
+                    s,
+                    "total",
+                    name=f"stress{end}",
+                    meaning=f"maximum root stress (tension side) by {by}, excited by all meshes",
+                ),
                 column_of(s, "own", name=f"stress_own_mesh{end}"),
                 column_of(s, "static", name=f"static_stress{end}"),
             ]
             if known:
-                left = f"what {by} leave in stress_own_mesh{end}"
+                left = f"estimated error of {by} in stress_own_mesh{end}"
                 columns.append(column_of(s, "error", name=f"stress_error{end}", meaning=left))
             alone = len(made.force.train.exciters) == 1
             others, more = others_of(made.force.train), rippled(made.force.train)
-            largest = [("", s.total, "" if alone else f"with all meshes{more}, at the case's phases, ")]
+            largest = [("", s.total, "" if alone else f"all meshes{more}, at the phases of the case, ")]
             if not alone:
                 largest += [
-                    ("_any_phase", s.any_phase, f"at most, whatever the phases of {others}, "),
+                    ("_any_phase", s.any_phase, f"upper bound over all phases of {others}, "),
                     ("_own_mesh", s.own, f"without {others}, "),
                 ]
             values += [
@@ -175,8 +180,8 @@ def _figure(data: DynamicRootStress, asked: DynamicRootInputs) -> Figure:
     return Figure(
         f"dynamic_root_stress_{name}",
         f"Dynamic root stress of mesh {name}",
-        f"Mesh {name}: root stress of one tooth of either gear through its engagement, with and without vibration. "
-        "A to E: points of the path of contact.",
+        f"Mesh {name}: root stress of one tooth of each gear over the engagement, with and without vibration. A to "
+        "E: points of the path of contact.",
         tuple(panels),
         under=f"{asked.speed * RPM:.6g} rpm",
     )

@@ -72,7 +72,7 @@ def _check(scene: Scene, _subject: str) -> None:
         if mesh.like and part.loaded_pair_of(name) in scene.wide_pairs:
             raise InputError(
                 f"train.mesh.{name}.like.pair", f'"{mesh.like.pair}"',
-                "is loaded over its face, and teeth of another width bear in another way", "describe a pair of its own",
+                "uses a 3D load distribution, which cannot be scaled to another face width", "specify a separate pair",
             )  # fmt: skip
         _check_spacing(scene, part.loaded_pair_of(name))
     for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
@@ -86,8 +86,8 @@ def _check_spacing(scene: Scene, name: str) -> None:
     if scene.case.effects.spacing_errors and name in scene.wide_pairs and uneven:
         raise InputError(
             f"gear.{uneven[0]}.spacing_errors", "(given)",
-            f"is not known to a train with the loaded flanks of pair {name}, which are solved in one base pitch",
-            "leave it out, or the effect spacing_errors",
+            f"is not supported in a train with the 3D flanks of pair {name} (one base pitch only)",
+            "remove it, or switch spacing_errors off",
         )  # fmt: skip
 
 
@@ -147,26 +147,26 @@ class MeshRow:
     part: TrainMeshPart
 
     @property
-    @shows("N", "mean force along the axes, by the helix")
+    @shows("N", "mean axial force (helix)")
     def axial_force(self) -> float | None:
         """[N]; None for spur gears."""
         helix = self.made.pair.driver.base_helix_angle
         return self.made.force * math.tan(helix) if helix else None
 
     @property
-    @shows("N", "along the line of action, from the torques")
+    @shows("N", "force along the line of action, from the torques")
     def mean_force(self) -> float:
         """[N]."""
         return self.made.force
 
     @property
-    @shows("N/um", "1 over the mean compliance")
+    @shows("N/um", "1 / mean compliance")
     def mean_stiffness(self) -> float:
         """[N/m]."""
         return self.spring.stiffness
 
     @property
-    @shows("um", "under the mean force")
+    @shows("um", "static deflection under the mean force")
     def static_te_peak_to_peak(self) -> float:
         """[m]."""
         return float(np.ptp(self.made.error(np.linspace(0.0, 1.0, 2001))))
@@ -211,8 +211,8 @@ def _whose_speeds(seen: Seen) -> list[str]:
         return []
     low, high = (float(ratio) / data.speed_ratio for ratio in (ratios.min(), ratios.max()))
     said = (
-        f"No dynamics.speed_of was given; assumed default: speeds are those of {asked.speed_of}, the first table under "
-        f"[train.body]. Bodies turn at {low:.4g} to {high:.4g} times that; write speed_of under [dynamics]."
+        f"dynamics.speed_of not specified: speeds refer to {asked.speed_of}, the first table under [train.body]. "
+        f"Other bodies rotate at {low:.4g} to {high:.4g} times this speed; set speed_of under [dynamics]."
     )
     return [said]
 
@@ -239,14 +239,14 @@ _SHEET = Sheet(
     remarks=(
         _whose_speeds,
         Remark(
-            "train.torque_ripple is given, but effects.torque_ripple is off: torques are constant.",
+            "train.torque_ripple ignored because effects.torque_ripple is off (constant torques).",
             when=lambda seen: seen.asked.idle_ripple,
         ),
         Each(
             _meshes,
             Remark(
-                "Mesh {key}: the torques make {one.part.driven} drive {one.part.driver}, so x counts toward the tip of "
-                "the gear of {one.part.driven}.",
+                "Mesh {key}: by the torques {one.part.driven} drives {one.part.driver}; x is positive towards the tip "
+                "of the gear on {one.part.driven}.",
                 when=lambda seen: not seen.one.made.a_drives,
             ),
             Remark(
@@ -312,7 +312,7 @@ def from_exciter(data: GearTrain, number: int) -> str:
 
 def what_excites(data: GearTrain) -> str:
     """What parts of a force are told apart by."""
-    return "the mesh or torque ripple that excites it" if data.ripple else "the mesh that excites it"
+    return "exciting mesh or torque ripple" if data.ripple else "exciting mesh"
 
 
 def needs_plane_teeth(scene: Scene, mesh: str, key: str, value: str) -> None:
@@ -326,23 +326,23 @@ def needs_plane_teeth(scene: Scene, mesh: str, key: str, value: str) -> None:
     if pair in scene.wide_pairs:
         helical = scene.pairs[pair].driver.helix_angle != 0.0
         raise InputError(
-            key, value, f"follows one place of contact on the path, and the teeth of mesh {mesh} touch along the face",
-            "leave it out" if helical else f'leave it out, or write pair.{pair}.width = "plane"',
+            key, value, f"applies to point contact on the path; the teeth of mesh {mesh} are 3D",
+            "remove it" if helical else f'remove it, or set pair.{pair}.width = "plane"',
         )  # fmt: skip
 
 
 def needs_one_speed(scene: Scene, _subject: str) -> None:
     """Refuse histories without a speed."""
     if math.isnan(scene.case.dynamics.one_speed):
-        raise InputError("dynamics.speed", "(not given)", "is needed for this result", 'write speed = "10000 rpm"')
+        raise InputError("dynamics.speed", "(not given)", "is required for this result", 'set speed = "10000 rpm"')
 
 
 def needs_speeds(scene: Scene, _subject: str) -> None:
     """Refuse sweeps without speeds."""
     if not scene.case.dynamics.speed_values.size:
         raise InputError(
-            "dynamics.speeds", "(not given)", "is needed for this result",
-            'write speeds = { start = "2000 rpm", stop = "16000 rpm", count = 57 }',
+            "dynamics.speeds", "(not given)", "is required for this result",
+            'set speeds = { start = "2000 rpm", stop = "16000 rpm", count = 57 }',
         )  # fmt: skip
 
 
@@ -352,8 +352,8 @@ def pull_remarks(pull: Pull | None) -> tuple[str, ...]:
         return ()
     where = f"{percent(pull.share)} of the mean force, at {pull.speed * RPM:.5g} rpm of {pull.speed_of}"
     sentence = (
-        f"Mesh {pull.mesh}: the linearised mesh force falls to {pull.force:.4g} N ({where}), so teeth part, which this "
-        "result neglects; ask for dynamic-factor and write contact_loss = true under [effects]."
+        f"Mesh {pull.mesh}: minimum linearised mesh force {pull.force:.4g} N ({where}), i.e. loss of contact, not "
+        "modelled here; request dynamic-factor with effects.contact_loss = true."
     )
     return (sentence,)
 

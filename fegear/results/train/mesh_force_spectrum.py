@@ -114,9 +114,9 @@ def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
     values = tuple(
         value for j, other in enumerate(data.names) for value in (
             Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
-                  f"0-peak, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}"),
+                  f"amplitude, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}"),
             Value(f"{name}.rms_from_{other}", math.sqrt(found.power_lines[i, j, :, 0].sum()), "N", None,
-                  "root mean square of all its lines"),
+                  "root mean square of all spectral lines"),
         )
     )  # fmt: skip
     tables = [table]
@@ -146,11 +146,11 @@ def _by_series(name: str, made: SpectrumData, series: MeshForceSpectrum, terms: 
     columns = (
         *_lines(series, data),
         column_of(series, "power_lines", power[series.present], meaning=f"by Mark's series, M = {terms}"),
-        Column("power_exact", exact[series.present], "N^2", "by quadrature between all kinks"),
+        Column("power_exact", exact[series.present], "N^2", "by quadrature between all discontinuities"),
     )
     values = tuple(
         Value(f"{name}.rms_by_series_from_{other}", math.sqrt(power[j].sum()), "N", None,
-              f"root mean square of all its lines by Mark's series, M = {terms}")
+              f"root mean square of all spectral lines by Mark's series, M = {terms}")
         for j, other in enumerate(data.names)
     )  # fmt: skip
     return values, Table(f"mesh_force_series_{name}", columns, f"Lines of the force in mesh {name} by Mark's series")
@@ -163,7 +163,12 @@ def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
     whole = order.astype(int) if np.all(found.orders % 1.0 == 0.0) else order
     return (
         column_of(found, "orders", whole),
-        Column("from_pair", np.array(data.names, dtype=str)[from_pair], "", "whose transmission error excites it"),
+        Column(
+            "from_pair",
+            np.array(data.names, dtype=str)[from_pair],
+            "",
+            "mesh whose transmission error excites the line",
+        ),
         column_of(found, "frequencies", found.frequencies[from_pair, line, 0]),
     )
 
@@ -172,7 +177,7 @@ def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrai
     speeds = found.speeds.size
     every = np.tile(found.speeds * data.speed_ratio, found.present.sum())
     columns = (
-        column_of(found, "speeds", every, meaning=f"of {data.speed_of}"),
+        column_of(found, "speeds", every, meaning=f"speed of {data.speed_of}"),
         *repeated(_lines(found, data)[:2], speeds),
         column_of(found, "frequencies", found.frequencies[found.present].ravel()),
         column_of(found, "amplitudes", found.amplitudes[i][found.present].ravel()),
@@ -203,8 +208,8 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
     spectrum = Figure(
         f"mesh_force_spectrum_{name}",
         f"Spectrum of the force in mesh {name}",
-        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: lines by {_exciter(train)} that excites them, with the "
-        f"number of the harmonic of its mesh frequency; drawn down to {_WEAKEST:g} of the strongest.{beyond}",
+        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: lines by {_exciter(train)}, with harmonic number; lines "
+        f"above {_WEAKEST:g} of the maximum.{beyond}",
         (Panel(Axis("frequency", "kHz", zero=True), force, tuple(lines)),),
         under=f"{rpm:.6g} rpm",
     )
@@ -218,7 +223,7 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
         return figures
     speed = np.broadcast_to(over.speeds * train.speed_ratio * RPM, size.shape)[strong]
     points = [Points(
-        over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,
+        over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force amplitude [N]", size=4.5,
         notes=tuple(f"{force:.4g} N" for force in size[strong]),
     )]  # fmt: skip
     if data.ripple_waterfall is not None:
@@ -227,14 +232,14 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
     waterfall = Figure(
         f"mesh_force_waterfall_{name}",
         f"Waterfall of the force in mesh {name}",
-        f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.{crosses}",
+        f"Mesh {name}: lines of the mesh force over speed, above 1 % of the maximum.{crosses}",
         (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), tuple(points)),),
     )
     return *figures, waterfall
 
 
 def _exciter(train: GearTrain) -> str:
-    return "the mesh or torque ripple" if train.ripple else "the mesh"
+    return "exciting mesh or torque ripple" if train.ripple else "exciting mesh"
 
 
 def _power_figure(data: SpectrumData, rpm: float) -> Figure:
@@ -245,7 +250,7 @@ def _power_figure(data: SpectrumData, rpm: float) -> Figure:
     mean = float(found.static[data.mesh]) ** 2
     order = (data.mesh, *(j for j in range(len(train.names)) if j != data.mesh))
     whole, top = found.orders % 1.0 == 0.0, float(found.frequencies[:, -1, 0].max())
-    between = "" if whole.all() else " Rotational harmonics between them, which spacing errors cause, are in the table."
+    between = "" if whole.all() else " Rotational harmonics due to pitch deviations are in the table."
     ends = (-0.02e-3 * top, 1.02e-3 * top)  # the mean stands on the ordinate
     for j in order:
         shown = found.present[j] & (power[j] > _NO_FORCE**2) & whole
@@ -259,8 +264,8 @@ def _power_figure(data: SpectrumData, rpm: float) -> Figure:
     return Figure(
         f"mesh_force_power_{name}",
         f"Power of the lines of the force in mesh {name}",
-        f"Mesh {name}: one-sided power of every mesh harmonic, by the mesh whose transmission error excites it; the "
-        f"cross at zero frequency is the square of the mean force.{between}",
+        f"Mesh {name}: one-sided power of every mesh harmonic, by exciting mesh; cross at zero frequency: square of "
+        f"the mean force.{between}",
         tuple(panels),
         under=f"{rpm:.6g} rpm",
     )

@@ -80,8 +80,8 @@ def check_friction(scene: Scene, _subject: str = "") -> None:
             needs_plane_teeth(scene, mesh, "effects.friction", "true")
     if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
         raise InputError(
-            "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
-            "switch neighbour_coupling and corner_contact off",
+            "effects.friction", "true", "requires uncoupled tooth pairs",
+            "switch off neighbour_coupling and corner_contact",
         )  # fmt: skip
 
 
@@ -92,7 +92,7 @@ def check_motion(scene: Scene, subject: str = "") -> None:
     effects = scene.case.effects
     if effects.friction and not effects.parametric:
         raise InputError(
-            "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
+            "effects.friction", "true", "requires time-varying mesh stiffness", "set effects.parametric = true"
         )
 
 
@@ -134,7 +134,7 @@ def _present(found: SweepData, asked: SweepInputs) -> Outcome:
     remarks = [*motion_remarks(found.neglected, data, asked.effects, asked.tolerance)]
     remarks += _without_backlash(data) if motion.contact_loss else []
     if asked.idle_friction:
-        remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
+        remarks.append("dynamics.friction ignored because effects.friction is off.")
     remarks += _common_period(data, states)
     averaged = motion.method == "averaging"
     remarks += averaging_remarks(data, states) if averaged else _unsteady(data, states)
@@ -150,9 +150,9 @@ def _without_backlash(data: GearTrain) -> list[str]:
         if mesh.backlash > 0.0:
             continue
         jam = one.pair.normal_backlash
-        why = f" (the gears jam by {-jam * 1e6:.3g} um, as those with rounded profile shifts do)" if jam < 0.0 else ""
+        why = f" (negative by {-jam * 1e6:.3g} um, rounded profile shifts)" if jam < 0.0 else ""
         said.append(
-            f"Mesh {mesh.name}: no backlash{why}, so teeth touch on both flanks and contact is never lost; set "
+            f"Mesh {mesh.name}: no backlash{why}: contact on both flanks, no loss of contact; set "
             f'thickness_allowance of a gear, or train.mesh.{mesh.name}.backlash (a length or "unlimited").'
         )
     return said
@@ -174,8 +174,8 @@ def _common_period(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str
     if not shifted:
         return []
     sentence = (
-        f"Torque ripple {', '.join(shifted)}: no period within {LONGEST:,} mesh periods is common with the meshes; the "
-        "motion takes the nearest frequency that has one."
+        f"Torque ripple {', '.join(shifted)}: no common period with the meshes within {LONGEST:,} mesh periods; "
+        "nearest frequency with a common period used."
     )
     return [sentence]
 
@@ -192,15 +192,14 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     if odd:
         where = ", ".join(f"{rpm(s)} {s.kind}" for s in odd)
         said.append(
-            f"The motion does not repeat at {len(odd)} of {len(states)} speeds: {where}. Its factors are the largest "
-            f"of {odd[0].measured} periods, a sample without a tolerance: more periods find larger ones. See the "
-            "quantiles in the table."
+            f"The motion does not repeat at {len(odd)} of {len(states)} speeds: {where}. The factors are maxima over "
+            f"{odd[0].measured} periods and grow with the number of periods; see the quantiles in the table."
         )
     if moving:
         seen = "; ".join(f"{rpm(s)} after {s.followed:,} periods, {_range(data, s)}" for s in moving)
         said.append(
-            f"The motion is not settled at {len(moving)} of {len(states)} speeds: {seen}. That is the smallest and the "
-            f"largest of the last {_span(moving)} periods; others come if one waits longer. {_settling(data)}"
+            f"Motion not converged at {len(moving)} of {len(states)} speeds: {seen} (minimum and maximum of the last "
+            f"{_span(moving)} periods; may change with a longer simulation). {_settling(data)}"
         )
     beside = [
         f"{rpm(s)} of {other.periods} {'period' if other.periods == 1 else 'periods'}, dynamic factor "
@@ -210,7 +209,7 @@ def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     ]  # fmt: skip
     if beside:
         said.append(
-            f"In addition to a motion that does not repeat a stable one exists, to which another start leads: "
+            "A stable periodic solution coexists with the non-periodic one (other initial conditions): "
             f"{'; '.join(beside)}."
         )
     return said
@@ -226,11 +225,10 @@ def _growing(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     growing = [state for state in states if state.kind == "growing"]
     if not growing:
         return []
-    where = ", ".join(f"{speed_text(data, s)} ({s.multiplier:.4g} times a period)" for s in growing)
+    where = ", ".join(f"{speed_text(data, s)} (multiplier {s.multiplier:.4g} per period)" for s in growing)
     said = (
-        f"The motion grows without bound at {len(growing)} of {len(states)} speeds: {where}. There the varying "
-        "mesh stiffness feeds it more than damping takes. Give the meshes damping, let teeth part "
-        "(effects.contact_loss), or avoid these speeds."
+        f"Parametric instability at {len(growing)} of {len(states)} speeds: {where}. Increase mesh damping, allow "
+        "loss of contact (effects.contact_loss = true) or avoid these speeds."
     )
     return [said]
 
@@ -244,24 +242,24 @@ def averaging_remarks(data: GearTrain, states: tuple[SteadyState, ...]) -> list[
     if settled:
         counts = [state.followed for state in settled]
         said.append(
-            f"The averaging iteration settled at {len(settled)} of {len(states)} speeds, after {min(counts):,} to "
+            f"Averaging iteration converged at {len(settled)} of {len(states)} speeds, after {min(counts):,} to "
             f"{max(counts):,} periods."
         )
     if given_up:
         seen = "; ".join(
-            f"{speed_text(data, s)} after {s.followed:,} periods, start and end of the last one {s.residual:.2g} of "
-            f"the static deflection apart, {_range(data, s)} in the last {s.measured}"
+            f"{speed_text(data, s)} after {s.followed:,} periods, difference between start and end of the last "
+            f"period {s.residual:.2g} of the static deflection, {_range(data, s)} in the last {s.measured}"
             for s in given_up
         )
         said.append(
-            f"The averaging iteration did not settle at {len(given_up)} of {len(states)} speeds: {seen}. Set "
+            f"Averaging iteration did not converge at {len(given_up)} of {len(states)} speeds: {seen}. Set "
             'dynamics.method = "shooting" there.'
         )
     if unstable:
-        where = ", ".join(f"{speed_text(data, s)} ({s.multiplier:.6g} times a period)" for s in unstable)
+        where = ", ".join(f"{speed_text(data, s)} (multiplier {s.multiplier:.6g} per period)" for s in unstable)
         said.append(
-            f"The averaging iteration came to a motion that small disturbances grow away from at {len(unstable)} of "
-            f'{len(states)} speeds: {where}. No machine stays in it; set dynamics.method = "shooting" there.'
+            f"Averaging iteration converged to an unstable motion at {len(unstable)} of {len(states)} speeds: "
+            f'{where}. Set dynamics.method = "shooting" there.'
         )
     return said
 
@@ -285,8 +283,8 @@ def _settling(data: GearTrain) -> str:
     bare = undamped(data)
     if bare:
         keys = ", ".join(f"{key}.damping_ratio" for key in bare)
-        return f"Without damping there vibrations do not die away; {keys} (0.01 to 0.1) would settle it."
-    return "More damping (damping_ratio of the shafts and meshes of the train) would settle it."
+        return f"Vibrations do not decay without damping; set {keys} (0.01 to 0.1)."
+    return "Increase damping (damping_ratio of shafts and meshes of the train)."
 
 
 def undamped(data: GearTrain) -> list[str]:
@@ -312,7 +310,7 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 
 
 def _sources(scene: Scene, _subject: str) -> Iterator[Citation]:
-    yield Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24")
+    yield Citation("lin-huston-coy", "contact, loss of contact, back-side contact", "Eqs. 19 to 24")
     if scene.case.effects.friction:
         yield Citation("lin-huston-coy", "tooth friction", "Eqs. 17 and 18")
 

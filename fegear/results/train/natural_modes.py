@@ -52,7 +52,7 @@ def _present_modes(known: ModesData, asked: Reads[DynamicsPart]) -> Outcome:
     train = data.train
     count = np.arange(found.frequencies.size)
     columns = [
-        Column("mode", count, "", "0 is the rigid-body motion"),
+        Column("mode", count, "", "mode number; 0: rigid-body motion"),
         column_of(found, "frequencies"),
         *(
             column_of(found, "mesh_energy", found.mesh_energy[:, m], name=f"energy_{mesh.name}")
@@ -68,12 +68,12 @@ def _present_modes(known: ModesData, asked: Reads[DynamicsPart]) -> Outcome:
         line, mode = (1 + one for one in np.indices(diagram.critical.shape)[1:])
         mesh = np.repeat(np.array(data.names, dtype=str), line[0].size)
         columns = [
-            Column("mesh", mesh, "", "whose harmonic it is"),
+            Column("mesh", mesh, "", "mesh of the harmonic"),
             Column("n", line.ravel(), "", "harmonic of the mesh frequency"),
-            Column("mode", mode.ravel(), "", "natural mode that it meets"),
+            Column("mode", mode.ravel(), "", "natural mode"),
             Column("speed", diagram.critical.ravel() * data.speed_ratio, "rpm", f"speed of {data.speed_of}"),
         ]
-        title = "Speeds at which mesh harmonics meet natural frequencies"
+        title = "Critical speeds of the mesh harmonics"
         tables.append(Table("critical_speeds", tuple(columns), title))
         tables += _ripple_table(data, diagram)
     values = tuple(
@@ -94,14 +94,14 @@ def _ripple_table(data: GearTrain, diagram: Campbell) -> list[Table]:
         return []
     place = [1 + np.indices(critical.shape) for _, critical in found]
     columns = (
-        Column("ripple", np.array([one.name for one, c in found for _ in range(c.size)], dtype=str), "", "its name"),
+        Column("ripple", np.array([one.name for one, c in found for _ in range(c.size)], dtype=str), "", "name"),
         Column("n", np.concatenate([one.harmonics[p[0].ravel() - 1] for (one, _), p in zip(found, place, strict=True)]),
-               "", "number of its harmonic"),
-        Column("mode", np.concatenate([p[1].ravel() for p in place]), "", "natural mode that it meets"),
+               "", "harmonic number"),
+        Column("mode", np.concatenate([p[1].ravel() for p in place]), "", "natural mode"),
         Column("speed", np.concatenate([c.ravel() for _, c in found]) * data.speed_ratio, "rpm",
                f"speed of {data.speed_of}"),
     )  # fmt: skip
-    title = "Speeds at which torque ripple meets natural frequencies"
+    title = "Critical speeds of the torque ripple"
     return [Table("torque_ripple_critical_speeds", columns, title)]
 
 
@@ -127,13 +127,11 @@ def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
     bars = [Bars(place, energy[:, m], f"mesh {name}", f"series:{m}") for m, name in enumerate(data.train.names)]
     if shafts.max() > _ROUND_OFF:
         bars.append(Bars(place, shafts, "shafts", "grey"))
-    x = Axis(
-        "mode and its natural frequency", categories=tuple(f"{k + 1}\n{f:.5g} Hz" for k, f in enumerate(frequencies))
-    )
+    x = Axis("mode and natural frequency", categories=tuple(f"{k + 1}\n{f:.5g} Hz" for k, f in enumerate(frequencies)))
     modes = Figure(
         "natural_modes", "Natural modes",
-        "Where each mode of the train deforms: share of its strain energy in the meshes and in the shafts.",
-        (Panel(x, Axis("share of strain energy", limits=(0.0, 1.0)), tuple(bars), stacked=True),),
+        "Strain energy distribution of the modes in meshes and shafts.",
+        (Panel(x, Axis("strain energy share", limits=(0.0, 1.0)), tuple(bars), stacked=True),),
     )  # fmt: skip
     if data.campbell is None or data.campbell.speeds.size < 2:
         return (modes,)
@@ -166,8 +164,8 @@ def _campbell_figure(train: GearTrain, diagram: Campbell, operating: float) -> F
     rippled = " Dotted: torque ripple; torque_ripple_critical_speeds.csv has its speeds." if train.ripple else ""
     return Figure(
         "campbell", "Campbell diagram",
-        "Where harmonics of the mesh frequencies (sloping) meet undamped natural frequencies (level): the points; "
-        f"critical_speeds.csv has their speeds.{rippled}",
+        "Intersections of mesh harmonics (inclined) and undamped natural frequencies (horizontal); speeds in "
+        f"critical_speeds.csv.{rippled}",
         (Panel(
             Axis(f"speed of {train.speed_of}", "rpm", limits=(low, high)), Axis("frequency", "kHz", limits=(0.0, top)),
             tuple(items), tuple(marks), height=1.3,
@@ -199,7 +197,7 @@ def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
     axes = Axis(f"speed of {train.speed_of}", "rpm", log=True), Axis("harmonic of the mesh frequency", whole=True)
     return (Figure(
         "critical_speeds", "Critical speeds",
-        "Speeds at which a harmonic of a mesh frequency meets a natural frequency.", (Panel(*axes, tuple(points)),),
+        "Speeds at which a mesh harmonic coincides with a natural frequency.", (Panel(*axes, tuple(points)),),
     ),)  # fmt: skip
 
 

@@ -35,11 +35,11 @@ def ripple_values(name: str, mesh: int, found: RippleSpectrum) -> tuple[Value, .
     for k, one in enumerate(found.ripple):
         own = size[whose == k]
         at = int(one.harmonics[int(np.argmax(own))])
-        where = f"0-peak, by torque ripple {one.name}" + (f", its harmonic {at}" if own.size > 1 else "")
+        where = f"amplitude, torque ripple {one.name}" + (f", its harmonic {at}" if own.size > 1 else "")
         rms = math.sqrt(0.5 * float(np.sum(own**2)))
         values += [
             Value(f"{name}.largest_line_from_{one.name}", float(own.max()), "N", None, where),
-            Value(f"{name}.rms_from_{one.name}", rms, "N", None, "root mean square of all its lines"),
+            Value(f"{name}.rms_from_{one.name}", rms, "N", None, "root mean square of all spectral lines"),
         ]
     return tuple(values)
 
@@ -48,12 +48,12 @@ def ripple_table(name: str, mesh: int, found: RippleSpectrum) -> Table:
     """Every line at the one speed."""
     force = found.forces[mesh, :, 0]
     columns = (
-        Column("ripple", _names(found), "", "torque ripple that excites the line"),
+        Column("ripple", _names(found), "", "exciting torque ripple"),
         column_of(found, "harmonics"),
         column_of(found, "frequencies", found.frequencies[:, 0]),
         Column("torque", np.abs(found.torques), "N.m", "0-peak"),
         Column("force", np.abs(force), "N", "0-peak"),
-        Column("phase", np.angle(force), "deg", "of the force as a cosine, at time zero"),
+        Column("phase", np.angle(force), "deg", "phase of the force (cosine) at time zero"),
         column_of(found, "power_lines", found.power_lines[mesh, :, 0]),
     )
     return Table(f"torque_ripple_spectrum_{name}", columns, f"Lines of torque ripple in the force in mesh {name}")
@@ -63,8 +63,8 @@ def ripple_waterfall_table(name: str, mesh: int, found: RippleSpectrum, data: Ge
     """Every line at every speed."""
     speeds = found.speeds.size
     columns = (
-        Column("speed", np.tile(found.speeds * data.speed_ratio, len(found.of)), "rpm", f"of {data.speed_of}"),
-        Column("ripple", np.repeat(_names(found), speeds), "", "torque ripple that excites the line"),
+        Column("speed", np.tile(found.speeds * data.speed_ratio, len(found.of)), "rpm", f"speed of {data.speed_of}"),
+        Column("ripple", np.repeat(_names(found), speeds), "", "exciting torque ripple"),
         column_of(found, "harmonics", np.repeat(found.harmonics, speeds)),
         column_of(found, "frequencies", found.frequencies.ravel()),
         Column("force", _sizes(mesh, found).ravel(), "N", "0-peak"),

@@ -95,10 +95,10 @@ def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
     )
     alone = len(data.exciters) == 1
     others = others_of(data)
-    largest = [("", force.with_others, "" if alone else f"with all meshes{rippled(data)}, at the case's phases, ")]
+    largest = [("", force.with_others, "" if alone else f"all meshes{rippled(data)}, at the phases of the case, ")]
     if not alone:
         largest += [
-            ("_any_phase", force.at_worst_phases, f"at most, whatever the phases of {others}, "),
+            ("_any_phase", force.at_worst_phases, f"upper bound over all phases of {others}, "),
             ("_own_mesh", force.total, f"without {others}, "),
         ]
     values = [
@@ -119,8 +119,8 @@ def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
     uneven = data.meshes[i].error.pitches
     if uneven > 1:
         sentence = (
-            f"Mesh {name}: teeth stand unevenly; of the {uneven} tooth pairs that meet, the force is that on number "
-            f"{made.number}, which carries most at rest (number 0 is at the pitch point at phase zero)."
+            f"Mesh {name}: with pitch deviations; of {uneven} tooth pairs, number {made.number} with the largest "
+            "static load is shown (number 0 is at the pitch point at phase zero)."
         )
         remarks = (*remarks, sentence)
     settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.part.one_speed}
@@ -141,12 +141,12 @@ def rippled(data: GearTrain) -> str:
 
 
 def _mesh_force_values(name: str, found: MeshForce, data: GearTrain) -> tuple[Value, ...]:
-    about = f"sum of the forces on the tooth pairs in contact, with all meshes{rippled(data)}, at the case's phases"
+    about = f"sum of the forces on the tooth pairs in contact, all meshes{rippled(data)}, at the phases of the case"
     return (
         Value(f"{name}.largest_mesh_force_of_teeth", float(found.of_teeth.max()), "N", None, about),
         Value(f"{name}.least_mesh_force_of_teeth", float(found.of_teeth.min()), "N", None, about),
         Value(f"{name}.largest_mesh_force_by_mean_stiffness", float(found.by_mean_stiffness.max()), "N", None,
-              "of the linearised train, whose lines the mesh force's spectrum has"),
+              "of the linearised train (spectral lines of the mesh force)"),
     )  # fmt: skip
 
 
@@ -161,15 +161,15 @@ def _mesh_force_table(name: str, found: MeshForce) -> Table:
 def over_time(force: ToothForce) -> Axis:
     """The line of action as abscissa, with the time on the far side."""
     return replace(
-        LINE_OF_ACTION, second=Scale("time from the mesh's phase zero", "ms", drawn(force, "x"), force.time * 1e3)
+        LINE_OF_ACTION, second=Scale("time from phase zero of the mesh", "ms", drawn(force, "x"), force.time * 1e3)
     )
 
 
 def _while(data: ToothForceData) -> str:
     """From when to when a tooth pair is followed."""
     if data.train.meshes[data.mesh].pair.driver.helix_angle == 0.0:
-        return "from its first contact at A to its last at E"
-    return "while its contact line crosses the plane of action, at the position of the line's middle"
+        return "from first contact at A to last contact at E"
+    return "while its contact line crosses the plane of action (position of the middle of the line)"
 
 
 def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
@@ -184,8 +184,8 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     return Figure(
         f"tooth_force_{name}",
         f"Force on one tooth pair of mesh {name}",
-        f"Mesh {name}: force on one tooth pair {_while(data)}; the level line "
-        f"is the mean mesh force. Below: what the vibration adds, by {what_excites(data.train)}.",
+        f"Mesh {name}: force on one tooth pair {_while(data)}; horizontal line: mean mesh force. Below: dynamic "
+        f"increment by {what_excites(data.train)}.",
         (
             Panel(over_time(force), axis_of(force, "total", zero=True), tuple(top), (*marks, mean), height=1.2),
             Panel(LINE_OF_ACTION, axis_of(force, "own"), tuple(below), marks, height=0.8),
@@ -205,8 +205,8 @@ def _mesh_force_figure(data: ToothForceData, speed: float) -> Figure:
         f"mesh_force_of_teeth_{name}",
         f"Force in mesh {name} over one base pitch",
         f"Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
-        "Both leave the mean force (level line) by the same increment of the transmission error; the teeth answer it "
-        "with the stiffness that they have at that moment.",
+        "Both use the same dynamic transmission error; the tooth forces use the instantaneous stiffness, the mesh "
+        "force the mean stiffness. Horizontal line: mean force.",
         (Panel(Axis("phase", "base pitches"), axis_of(found, "of_teeth", zero=True), curves, (mean,)),),
         under=f"{speed * RPM:.6g} rpm",
     )

@@ -95,25 +95,27 @@ def _present(made: TorqueRippleData, asked: TorqueRippleInputs) -> Outcome:
     data, lines = made.train, made.lines
     remarks = _file_remarks(asked.train)
     if lines is None:
-        return Outcome(made, remarks=(*remarks, "Torque ripple: every amplitude is zero; nothing fluctuates."))
+        return Outcome(made, remarks=(*remarks, "Torque ripple: all amplitudes are zero."))
     values = []
     for name, mean, (low, high) in zip(data.names, data.forces, made.swings, strict=False):
-        worst = " if its ripples meet at their worst phases" if len(data.ripple) > 1 else ""
-        values.append(Value(f"{name}.force_by_torque_ripple", high, "N", None, f"largest that it adds{worst}"))
+        worst = " with ripples at their worst phases" if len(data.ripple) > 1 else ""
+        values.append(Value(f"{name}.force_by_torque_ripple", high, "N", None, f"maximum dynamic increment{worst}"))
         if mean > 0.0:
-            values.append(Value(f"{name}.share_of_mean_force", high / float(mean), "", None, "of that largest force"))
+            values.append(
+                Value(f"{name}.share_of_mean_force", high / float(mean), "", None, "this maximum / mean force")
+            )
         if 0.0 < mean < -low:
             remarks.append(
-                f"Mesh {name}: torque ripple takes {-low:.4g} N from the mean force of {mean:.4g} N, so teeth part, "
-                "which this result neglects; ask for dynamic-factor and write contact_loss = true under [effects]."
+                f"Mesh {name}: torque ripple reduces the mean force of {mean:.4g} N by {-low:.4g} N: loss of contact "
+                "(not modelled here). Request dynamic-factor with effects.contact_loss = true."
             )
     shafts = data.train.elastic_shafts
     for shaft, (low, high) in zip(shafts, made.swings[len(data.names) :], strict=True):
         largest = max(high, -low)
-        values.append(Value(f"{shaft.name}.torque_by_torque_ripple", largest, "N.m", None, "largest that it adds"))
+        values.append(Value(f"{shaft.name}.torque_by_torque_ripple", largest, "N.m", None, "maximum dynamic increment"))
     for one in data.ripple:
         if one.left_out > 0.0:
-            meaning = "root mean square of the torque in harmonics of the file that were left out"
+            meaning = "root mean square torque of the omitted harmonics of the file"
             values.append(Value(f"{one.name}.torque_left_out", one.left_out, "N.m", None, meaning))
     tables = _lines_table(lines, data), *_response_tables(made)
     return Outcome(made, tables, tuple(values), {"speed": asked.speed}, tuple(remarks), _figures(made, asked.speed))
@@ -127,12 +129,12 @@ def _file_remarks(asked: TrainInputs) -> list[str]:
         mean = asked.ripple_means.get(one.name, 0.0)
         if abs(mean) > _SOME_MEAN * size:
             said.append(
-                f"Torque ripple {one.name}: the mean torque of {mean:.5g} N m of its file is left out; constant "
-                "torques are those of train.torque."
+                f"Torque ripple {one.name}: mean torque of {mean:.5g} N m in its file ignored; constant torques from "
+                "train.torque."
             )
         if one.left_out > _LEFT_OUT * size:
             said.append(
-                f"Torque ripple {one.name}: harmonics above {len(one.amplitudes)} are left out, {one.left_out:.3g} N m "
+                f"Torque ripple {one.name}: harmonics above {len(one.amplitudes)} omitted, {one.left_out:.3g} N m "
                 f"(root mean square) of {math.hypot(size, one.left_out):.3g} N m; increase "
                 f"train.torque_ripple.{one.name}.harmonics."
             )
@@ -143,25 +145,25 @@ def _lines_table(lines: RippleSpectrum, data: GearTrain) -> Table:
     names = [lines.ripple[k].name for k in lines.of]
     bodies = [lines.ripple[k].body for k in lines.of]
     columns = [
-        Column("ripple", np.array(names, dtype=str), "", "its name"),
-        Column("body", np.array(bodies, dtype=str), "", "on which it acts"),
+        Column("ripple", np.array(names, dtype=str), "", "name"),
+        Column("body", np.array(bodies, dtype=str), "", "body on which it acts"),
         column_of(lines, "harmonics"),
         column_of(lines, "frequencies", lines.frequencies[:, 0]),
         Column("torque", np.abs(lines.torques), "N.m", "0-peak"),
-        Column("phase", np.angle(lines.torques), "deg", "of the torque as a cosine, at time zero"),
+        Column("phase", np.angle(lines.torques), "deg", "phase of the torque (cosine) at time zero"),
     ]
     for m, name in enumerate(data.names):
-        columns.append(Column(f"force_{name}", np.abs(lines.forces[m, :, 0]), "N", f"in mesh {name}, 0-peak"))
+        columns.append(Column(f"force_{name}", np.abs(lines.forces[m, :, 0]), "N", f"force amplitude in mesh {name}"))
     for s, shaft in enumerate(data.train.elastic_shafts):
         size = np.abs(lines.shafts[s, :, 0])
-        columns.append(Column(f"torque_{shaft.name}", size, "N.m", f"in shaft {shaft.name}, 0-peak"))
-    return Table("torque_ripple", tuple(columns), "Lines of torque ripple, and what meshes and shafts carry by them")
+        columns.append(Column(f"torque_{shaft.name}", size, "N.m", f"torque amplitude in shaft {shaft.name}"))
+    return Table("torque_ripple", tuple(columns), "Torque ripple lines and resulting mesh forces and shaft torques")
 
 
 def _response_tables(made: TorqueRippleData) -> list[Table]:
     tables = []
     for body, found in made.responses.items():
-        columns = [Column("frequency", made.frequencies, "Hz", "of the torque")]
+        columns = [Column("frequency", made.frequencies, "Hz", "frequency of the torque")]
         for name, force in zip(made.train.names, found.forces, strict=True):
             columns += _parts(f"force_{name}", force, "N/(N.m)", f"force in mesh {name} per torque at {body}")
         for shaft, torque in zip(made.train.train.elastic_shafts, found.shafts, strict=True):
@@ -216,8 +218,8 @@ def _figure(made: TorqueRippleData, body: str, speed: float) -> Figure:
         panels.append(Panel(frequency, Axis("torque per torque", log=True), drawn, tuple(marks)))
     return Figure(
         f"torque_response_{body}", f"Response to torque at body {body}",
-        f"Amplitudes of mesh forces and shaft torques per amplitude of a torque at body {body}, teeth at their mean "
-        f"stiffness. Points: lines of its torque ripple at {speed * RPM:.6g} rpm of {data.speed_of}.",
+        f"Amplitudes of mesh forces and shaft torques per amplitude of a torque at body {body}, mean mesh stiffness. "
+        f"Points: lines of its torque ripple at {speed * RPM:.6g} rpm of {data.speed_of}.",
         tuple(panels), under=f"{speed * RPM:.6g} rpm",
     )  # fmt: skip
 
@@ -236,7 +238,7 @@ TORQUE_RIPPLE = Stage(
     compute=_compute,
     present=_present,
     check=needs_one_speed,
-    requires=(Need("torque_ripple", "it shows what torques that fluctuate do"),),
+    requires=(Need("torque_ripple", "required by this result"),),
     cites=citing(Citation("mark", "gear train of rotors, shafts and meshes, excited by a torque", "section 2")),
     forecast=_forecast,
 )
