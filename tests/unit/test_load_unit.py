@@ -39,6 +39,26 @@ def error_of(spec, **how):
     return np.concatenate([te.te_mean, te.te_peak_to_peak])
 
 
+def test_a_spur_pair_whose_load_over_the_face_is_asked_for_has_all_that_is_known_of_its_face():
+    """Its other results take plane teeth: leads, errors, positions and panels had been left out with the width."""
+    gear = {"module": "3 mm", "face_width": "10 mm", "bore_radius": "15 mm"}
+    document = {
+        "results": ["load-distribution"],
+        "load_distribution": {"positions": 5, "panels": 6},
+        "effects": {"misalignment": True},
+        "gear": {
+            "p": {**gear, "teeth": 23},
+            "w": {**gear, "teeth": 57},
+        },
+        "pair": {"I": {"driver": "p", "driven": "w", "load": "1000 N", "line_error": {"over_face": "10 um"}}},
+    }
+    scene = build_scene(document, "case", None)
+    plane, wide = pair_spec(scene, "I"), pair_spec(scene, "I", over_face=True)
+    assert (plane.width, wide.width) == ("plane", "solid")
+    assert (wide.positions, wide.panel_count, wide.misalignment) == (5, 6, True)
+    assert wide.errors.line_gap == pytest.approx([0.0, 10e-6])
+
+
 def test_three_lines_give_what_a_run_of_the_case_gives():
     gear = {"module": "3 mm", "face_width": "10 mm"}
     document = {

@@ -124,7 +124,7 @@ def check_wide_pair(scene: Scene, name: str) -> None:
     refuse_unloaded(_bare(scene, name))
     if effects.misalignment:
         _check_misalignment(scene, name)
-    spec = pair_spec(scene, name)
+    spec = pair_spec(scene, name, over_face=True)
     gears = scene.case.gear.values()
     if effects.relief and not (spec.cutter or any(gear.relieved or gear.over_face for gear in gears)):
         raise InputError(

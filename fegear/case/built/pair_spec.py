@@ -20,8 +20,15 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
 
 
-def pair_spec(scene: Scene, name: str) -> PairSpec:
+def pair_spec(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     """Collect what a case says of a loaded pair, plane or with its width.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+    over_face : bool
+        Whether it is loaded with its width although its other results take plane teeth, as spur gears are.
 
     Raises
     ------
@@ -30,6 +37,8 @@ def pair_spec(scene: Scene, name: str) -> PairSpec:
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     width = scene.width_of(name)
+    if over_face and width == "plane":
+        width = "solid"
     driver, driven = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
     spec = PairSpec(
         pair, part.all_loads(pair), part.normal_load(pair) or math.nan, width, part.compliance.source,

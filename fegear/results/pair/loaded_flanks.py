@@ -54,7 +54,7 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedWidePair:
 
 
 def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
-    spec = pair_spec(scene, name)
+    spec = pair_spec(scene, name, over_face=True)
     return AskedOfTeeth.of(scene, spec, table_end_notes(spec))
 
 
@@ -143,7 +143,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    asked = pair_spec(scene, name)
+    asked = pair_spec(scene, name, over_face=True)
     pair, loads = asked.placed, 1 + len(asked.loads)
     width = min(pair.driver.face_width, pair.driven.face_width)
     stations = 1.0 + width / (asked.panel * pair.driver.module)

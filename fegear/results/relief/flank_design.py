@@ -207,7 +207,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 def _forecast(scene: Scene, name: str) -> Forecast:
     from fegear.design.flanks.grid import usual_grid
 
-    part, asked = _part(scene), pair_spec(scene, name)
+    part, asked = _part(scene), pair_spec(scene, name, over_face=True)
     pair = asked.placed
     grid = _grid(part) or usual_grid(1.0, pair.path_length, pair.face_width, pair.base_pitch)
     counts = [len(grid.combinations(family)) for family in part.families]

@@ -321,7 +321,7 @@ def _solve_wide(asked: Asked, configuration: Configuration) -> dict[Member, Flan
 
 def _load(asked: Asked, configuration: Configuration, bodies: dict[Member, FlankBody]) -> LoadedFlanks:
     """The pair under its load as the case has it, but for panels, neighbours and shafts, whose loads stay even."""
-    one, case = _flank(configuration), pair_spec(asked.scene, asked.pair)
+    one, case = _flank(configuration), pair_spec(asked.scene, asked.pair, over_face=True)
     if case.misalignment and on_shafts(asked.scene, asked.pair):
         case = case.on(gaps_of_even_loads(gearbox_of(asked.scene), asked.pair))
     wanted = replace(case, panels=one.panels, neighbour_coupling=one.neighbours, loads=(case.nominal,))

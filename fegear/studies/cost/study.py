@@ -63,7 +63,7 @@ def internal_gears(asked: Asked) -> list[str]:
 def ladder_of(asked: Asked, *, quick: bool = False) -> Ladder:
     """The ladder for what is asked."""
     if asked.over_face:
-        panels = pair_spec(asked.scene, asked.pair).panel_count
+        panels = pair_spec(asked.scene, asked.pair, over_face=True).panel_count
         return flank_ladder(panels, quick=quick, internal=bool(internal_gears(asked)))
     teeth = min((asked.scene.gears[name].teeth for name in asked.gears), default=0)
     solved = [q.name for q in asked.quantities if asked.solves(q)]
