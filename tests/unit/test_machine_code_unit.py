@@ -7,6 +7,7 @@ import inspect
 import itertools
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -143,3 +144,27 @@ def test_what_the_set_up_compiles_serves_every_train():
     packed = pack(MotionModel(train, (constant,), 100.0))
     propagate(packed, *static_state(packed), 1e-3, tangents=True, record=100)
     assert len(kernel.compiled().signatures) == before == 1
+
+
+def test_a_ctrl_c_on_the_way_is_raised_and_does_not_end_the_process():
+    """It was raised as numba made a named tuple of what it hands back, and nobody looked: a segmentation fault."""
+    constant = MeshExcitation.from_mesh(Periodic.constant(2e8), Periodic.constant(0.0))
+    train = Train(
+        (Body("1", 2e-3), Body("2", 2e-3)), meshes=(Mesh("g", "1", "2", 0.05, 0.05, 30, 30, 2e8, 100.0, 1e-4),),
+        torques=(Torque("1", 25.0), Torque("2", 25.0)),
+    )  # fmt: skip
+    packed = pack(MotionModel(train, (constant,), 100.0))
+    propagate(packed, *static_state(packed), 1e-3)
+
+    def stop(_number, _frame):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    try:
+        for _ in range(5):
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0.02)
+            with pytest.raises(KeyboardInterrupt):
+                propagate(packed, *static_state(packed), 4e3, longest=0.01)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        signal.signal(signal.SIGVTALRM, before)

@@ -101,10 +101,16 @@ def propagate(
     active = np.zeros(packed.springs, dtype=np.int8) if status is None else np.array(status, dtype=np.int8)
     friction = bool(packed.poly[:, 2:].any())
     rule = kernel.Rule(order, tolerance, longest, record or 20_000 + int(200 * duration), peaks, record, friction)
-    found: kernel.Travelled = kernel.compiled()(
-        packed.train_arrays, packed.mesh_arrays, packed.spring_arrays, radau(), rule,
-        X, V, start, start + duration, active, status is None,
-    )  # fmt: skip
+    try:
+        found = kernel.Travelled(*kernel.compiled()(
+            packed.train_arrays, packed.mesh_arrays, packed.spring_arrays, radau(), rule,
+            X, V, start, start + duration, active, status is None,
+        ))  # fmt: skip
+    except SystemError as error:  # a Ctrl-C on the way, found as arrays were handed back
+        cause: BaseException = error
+        while isinstance(cause, SystemError) and cause.__cause__ is not None:
+            cause = cause.__cause__
+        raise cause from None
     if found.code != kernel.DONE:
         what = "time steps" if found.code == kernel.TOO_MANY_STEPS else "changes of contact"
         raise ConvergenceError(

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fegear.dynamics.motion.kernel.arrays import DONE, TOO_MANY_EVENTS, TOO_MANY_STEPS, Travelled, Work
+from fegear.dynamics.motion.kernel.arrays import DONE, TOO_MANY_EVENTS, TOO_MANY_STEPS, Work
 from fegear.dynamics.motion.kernel.collocation import collocate
 from fegear.dynamics.motion.kernel.polynomials import first_crossing, largest_force, shift_in_time, slope_at
 from fegear.dynamics.motion.kernel.series import damping_at, motion_series, taylor_step
@@ -26,7 +26,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
     """Integrate from t0 to t1; see `packing.Packed` for the arrays.
 
     x0, v0: (n, columns), column 0 the motion, the others tangents. `status`: 1 where a spring pushes (changed in
-    place); `fresh`: set it from the state first.
+    place); `fresh`: set it from the state first. Returns the fields of `Travelled`.
     """
     n, columns = x0.shape
     order = rule.order
@@ -214,4 +214,6 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                         # a tangent ahead of the motion changes force earlier
                         for i in range(n):
                             v[i, c] += approach[m, i] * jump * value / slope
-    return Travelled(x, v, code, steps, events, high, low, tooth, apart, behind, record_t, record_x, record_status)
+    # A plain tuple: making a named one runs code of Python, which raises a Ctrl-C that came on the way where numba does
+    # not look for it: the process ended.
+    return x, v, code, steps, events, high, low, tooth, apart, behind, record_t, record_x, record_status
