@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.case.reading import Scene
 from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth, LoadHistory
@@ -122,9 +123,9 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(
-            "Pair {name}: corner contact outside the path of contact, up to {d.on_corners:.4g} "
-            "({percent(d.share_on_corners)}); hertz_pressure there is for smooth flanks and underestimates the "
-            "pressure at the tip edge.",
+            lambda seen: seen.said("Pair {name}: corner contact outside the path of contact, up to {d.on_corners:.4g} ")
+            + f"({percent(seen.data.share_on_corners)}); hertz_pressure there is for smooth flanks and underestimates "
+            "the pressure at the tip edge.",
             when="on_corners",
         ),
     ),
