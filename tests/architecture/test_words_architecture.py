@@ -45,6 +45,43 @@ def test_pages_and_messages_have_no_words_that_were_replaced():
     assert found == []
 
 
+#: What no message says any more (its values are written as {}).
+OF_MESSAGES = re.compile(
+    r"\b(?:teeth|flanks|pairs|planets) part\b|\bparts and meets\b|\bits likes?\b|\bfrom memory\b|\brecalled\b|"
+    r"\bat hand\b|"
+    r"\bwith (?:its|their|a) width\b|\bbears\b|from peak to peak|s(?:econds)? of (?:one core|a? ?processor)\b|"
+    r"\b(?:leave (?:it|them|one of them) out|give (?:either|both)\b|write for example)|\bis needed (?:for|by)\b"
+)
+
+
+def whole(node: ast.expr) -> str | None:
+    """Text of a string, what stands for values in an f-string being {}."""
+    if isinstance(node, ast.JoinedStr):
+        return "".join(str(one.value) if isinstance(one, ast.Constant) else "{}" for one in node.values)
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
+
+
+def test_messages_are_read_whole_and_have_the_words_of_the_trade():
+    found = []
+    for path in (ROOT / "fegear").rglob("*.py"):
+        source = path.read_text("utf-8")
+        if not OF_MESSAGES.search(JOINT.sub("", source)):
+            continue
+        tree = ast.parse(source)
+        lone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        texts = {whole(node) for node in ast.walk(tree) if isinstance(node, ast.expr) and id(node) not in lone}
+        found += [f"{path.relative_to(ROOT)}: {text}" for text in texts if text and " " in text
+                  and OF_MESSAGES.search(text)]  # fmt: skip
+    assert found == []
+
+
+def test_templates_and_cases_have_no_words_that_were_replaced():
+    paths = [*(ROOT / "fegear" / "case" / "drafts").rglob("*.toml"), *(ROOT / "cases").glob("*.toml")]
+    assert len(paths) > 30
+    found = [f"{path.relative_to(ROOT)}: {one[0]}" for path in paths for one in WORDS.finditer(path.read_text("utf-8"))]
+    assert found == []
+
+
 def test_lines_of_a_message_are_read_as_one():
     source = 'print(\n    "as it is held "\n    f"against {1}"\n)\n'
     assert WORDS.search(JOINT.sub("", source))

@@ -163,7 +163,7 @@ _SHEET = Sheet(
             "contact_pattern_{name}", "Contact pattern of pair {name}",
             "Pair {name}: the driver's flank where a coat of marking compound, {asked.coat:.4g!} um thick, is printed "
             "as the contact lines pass over it; blank where the flanks stay further apart. {d.light.load:.4g} is about "
-            "what a pair turned by hand bears.",
+            "the load of a pair turned by hand.",
             (
                 Over(
                     "z", (Map("separation", "radius", limits=lambda seen: (0.0, seen.asked.coat)),), each="drawn",
