@@ -299,7 +299,7 @@ class LoadedFlank:
         """Sum what the edges under contacts give their nodes, (order + 1, n), over contacts: shape (nodes, P)."""
         place = (edge * self.order + np.arange(self.order + 1)[:, None]) * count + position
         loads = np.bincount(place.ravel(), np.ascontiguousarray(values).ravel(), self.nodes * count)
-        return loads.reshape(self.nodes, count)
+        return np.asarray(loads.reshape(self.nodes, count), dtype=float)
 
 
 class BoundaryUnknowns(Protocol):

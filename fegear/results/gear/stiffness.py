@@ -104,9 +104,10 @@ def _largest(seen: Seen) -> dict[str, LargestStress]:
 def tolerance_remarks(who: str, label: str, relative: Array, radius: Array, tolerance: float, of: str) -> list[str]:
     """Where the estimated relative errors of a quantity over the radius [m] miss the tolerance, if anywhere."""
     i = int(first_of_largest(relative))
+    within, reached = percent(float(np.mean(relative <= tolerance))), percent(float(relative[i]))
     said = (
-        f"{who}: estimated error of {label} up to {percent(relative[i])} (tolerance {100.0 * tolerance:g} %) at "
-        f"radius {radius[i] * 1e3:.6g} mm; within tolerance at {percent(np.mean(relative <= tolerance))} of the {of}."
+        f"{who}: estimated error of {label} up to {reached} (tolerance {100.0 * tolerance:g} %) at radius "
+        f"{radius[i] * 1e3:.6g} mm; within tolerance at {within} of the {of}."
     )
     return [said] if relative[i] > tolerance else []
 

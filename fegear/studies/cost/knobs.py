@@ -294,7 +294,8 @@ def _partial(best: TransmissionError, harmonics: int) -> float:
 
 
 #: Edges over the usual ones, and functions per module of face; the last of each is what the others are compared with.
-_FACTORS, _WAVES = (1.5, 1.25, 1.0, 0.8, 0.6), (0.75, 1.0, 1.5, 2.0, 3.0)
+_FACTORS: tuple[float, ...] = (1.5, 1.25, 1.0, 0.8, 0.6)
+_WAVES: tuple[float, ...] = (0.75, 1.0, 1.5, 2.0, 3.0)
 
 
 #: The last ones of a quick study, which take half of the time and more, are left out.
