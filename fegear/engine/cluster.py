@@ -130,7 +130,7 @@ def _check_workers(client: Client, address: str) -> None:
         without = [name for name, spec in found.items() if spec is None]
         if without:
             raise MissingLibraryError(
-                f"--scheduler {address}: fegear is not installed for {', '.join(without)}; scheduler and workers "
+                f"--scheduler {address}: fegear is not installed on {', '.join(without)}; scheduler and workers "
                 "need the same environment as this program."
             )
         # One that is too old to say what it is answers with an error.

@@ -55,9 +55,9 @@ def client(**more):
 
 def test_scheduler_and_workers_must_have_fegear_of_the_same_code():
     cluster._check_workers(client(), "tcp://there")
-    with pytest.raises(MissingLibraryError, match="not installed where scheduler runs"):
+    with pytest.raises(MissingLibraryError, match="not installed on scheduler;"):
         cluster._check_workers(client(run_on_scheduler=lambda find, name: None), "tcp://there")
-    with pytest.raises(MissingLibraryError, match="not installed where w1 runs"):
+    with pytest.raises(MissingLibraryError, match="not installed on w1;"):
         cluster._check_workers(client(run=lambda *given, **how: {"w1": None}), "tcp://there")
 
     def other(function, *given, on_error=None):

@@ -96,7 +96,7 @@ def test_set_changes_the_case(case, tmp_path):
         (("run", "one.toml", "--set", 'results=["stifness"]'), 'did you mean "stiffness"'),
         (("plan", "one.toml", "--set", "gear.a.bore_radius=90 mm"), "gear.a.bore_radius = 90 mm"),
         (("run", "one.toml", "--out", "one.toml"), "is a file"),
-        (("run", "one.toml", "--out", "/proc/none/out"), "cannot be written"),
+        (("run", "one.toml", "--out", "/proc/none/out"), '--out = "/proc/none/out": is not writable'),
         (("run", "one.toml", "--colour"), "No such option"),
     ],
 )

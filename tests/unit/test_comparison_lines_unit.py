@@ -47,7 +47,7 @@ def test_a_value_is_told_with_its_change_over_the_larger_of_both():
     assert Pairing("I.te", um(10.0, 0.6), um(9.5)).within_errors
     assert not Pairing("x", Value("x", 1.0), Value("x", 1.0 + 1e-10)).resolved  # round-off of a number without an error
     assert Pairing("x", Value("x", 1.0), Value("x", 1.0 + 1e-8)).resolved
-    assert value_line(Pairing("x", Value("x", 1.0), Value("x", 2.0))) == "  x: 1 -> 2 (+50.00%)"
+    assert value_line(Pairing("x", Value("x", 1.0), Value("x", 2.0))) == "  x: 1 -> 2 (+50 %)"
     assert value_line(Pairing("x", Value("x", 1.0), None)) == "  x: only in A"
     assert value_line(Pairing("x", None, Value("x", 1.0))) == "  x: only in B"
     other = Pairing("x", Value("x", 1e-3, "mm"), Value("x", 1e-3, "um"))

@@ -828,7 +828,7 @@ def test_the_cheapest_is_told_for_each_tolerance_and_for_all_quantities_at_once(
     assert [float(row["error"]) for row in rows[10:12]] == [0.05, 1e-3]
     lines = cheapest_lines(results)
     assert lines[0] == "c_0 (error of the reference: 1e-04):"
-    assert lines[1] == "  1e-01        1.1 s  whole gear, order 2, edges x 1, patch 0.18"
+    assert lines[1] == "  1e-01        1.1 s  full gear, order 2, edges x 1, patch 0.18"
     assert lines[12] == "all:"
     assert [line.endswith("not reached") for line in lines].count(True) == orders.count(none)
     assert (results.finished, results.complete) == (4, True)
