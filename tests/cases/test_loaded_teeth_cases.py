@@ -241,7 +241,11 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
     [
         ("calculix_pair", ("effects.relief=true",), "has no effect: no gear of this case has a relief"),
         ("calculix_pair", ("effects.spacing_errors=true",), "has no effect: no gear of this case has spacing_errors"),
-        ("mark_tip_relief", ("effects.neighbour_coupling=true",), "neighbour_coupling.*is not known"),
+        (
+            "mark_tip_relief",
+            ("effects.neighbour_coupling=true",),
+            'neighbour_coupling = true: is not available with .*source = "table"; set ',
+        ),
         ("mark_tip_relief", ('effects.hertz="linear"',), "already includes the contact deformation"),
         ("mark_tip_relief", ('pair.I.compliance.file="none.csv"',), "file not found"),
         ("mark_tip_relief", ('pair.I.compliance.file="data/mark_table2_relief.csv"',), "neither a column compliance"),
@@ -262,7 +266,11 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ("design.contact_ratio=1.3",), "contradicts length"),
         ("mark_minimum_excitation", ("design.pair=II",), "is not a spur pair of this case"),
         ("mark_minimum_excitation", ("design.slope=2.5",), "must be between 0 and 2"),
-        ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
+        (
+            "mark_minimum_excitation",
+            ("design.roll_angles=['11 deg']",),
+            "roll_angles = 11 deg: is outside the active profile of the driver",
+        ),
         ("mark_minimum_excitation", ("design.exponent=7",), 'requires family = "polynomial"'),
         ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "requires root stresses"),
         ("mark_minimum_excitation", ("design.film={x=['0 mm'],thickness=['1 um','2 um']}",), "one value for each"),
@@ -327,14 +335,14 @@ def test_marks_series_says_where_pairs_part():
     found = tables["transmission_error_series_I"]
     assert found["truncation"].max() < 1e-9
     assert np.abs(found["series"] - found["exact"]).max() > 0.1
-    assert any("Pair {name}: a tooth pair on the path of" in remark for remark in results.remarks)
+    assert any("Pair I: a tooth pair on the path of" in remark for remark in results.remarks)
 
 
 def test_marks_series_says_where_tips_touch_off_the_path():
     _, _, results = run("sources/mark_series", "effects.corner_contact=true")
-    assert any("Pair {name}: corner contact is not covered by" in remark for remark in results.remarks)
+    assert any("Pair I: corner contact is not covered by" in remark for remark in results.remarks)
     assert not any(
-        "Pair {name}: corner contact is not covered by" in remark for remark in run("sources/mark_series")[2].remarks
+        "Pair I: corner contact is not covered by" in remark for remark in run("sources/mark_series")[2].remarks
     )
 
 

@@ -163,7 +163,7 @@ def _refuse_many(scene: Scene) -> None:
             raise InputError(
                 key,
                 f"{count:,} in all",
-                "exceed the number of meshes that can be solved together",
+                "exceeds the number that can be solved together",
                 f"specify at most {most}; split the case",
             )
 
