@@ -140,7 +140,7 @@ def test_bearings_in_shafts_that_are_not_around_are_refused(around, word):
 
 def test_a_sleeve_on_one_ball_joint_is_loose():
     on_pin = [{"bearing": "stout", "at": "30 mm", "around": "mid"}]
-    with pytest.raises(InputError, match="shaft.mid.bearings.*do not support the shaft in tilt"):
+    with pytest.raises(InputError, match=r"shaft\.mid\.bearings.*do not support the shaft in tilt"):
         gearbox_of(build_scene(_idler(on_pin), "box", Path()))
 
 
