@@ -110,7 +110,7 @@ class RimSupportPart(Part):
 
     kind: Literal["held", "splined", "pins"] = Field(
         description="`held`: outer circle fixed; `splined`: force and torque taken by uniform tractions over the "
-        "outer circle; `pins`: equally spaced arcs of it fixed on average (3D gears: at every height, "
+        "outer circle; `pins`: equally spaced arcs of it fixed on average (3D gears: at every position along the face, "
         "and axially)."
     )
     pins: int | None = Field(default=None, description="Number of pins, bolts or lugs, 2 to the number of teeth.")

@@ -249,7 +249,7 @@ class TrainPart(Part):
         for name in self.torque_ripple:
             if name in self.mesh:
                 raise refuse(
-                    "is also the name of a mesh; excitations must have unique names", "choose another file",
+                    "is also the name of a mesh; excitations must have unique names", "choose another name",
                     key="torque_ripple", value=f'"{name}"',
                 )  # fmt: skip
         return self

@@ -120,7 +120,7 @@ class Trochoid:
     start, end : float
         Range of b [rad]: 0 on the root circle, pi/2 - alpha_n where the rack's straight flank begins.
     cos_helix : float
-        c, cosine of the helix angle on the pitch cylinder.
+        c, cosine of the helix angle on the reference cylinder.
     """
 
     pitch_radius: float

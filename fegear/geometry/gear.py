@@ -78,7 +78,7 @@ class Gear:
         b [m].
     material : Material
     plane : {"strain", "stress", "auto"}
-        Plane assumption; "auto" is strain when the face is at least five tooth thicknesses (at the pitch circle) wide.
+        Plane assumption; "auto" is strain when the face is at least five tooth thicknesses (reference circle) wide.
     hand : {"left", "right", "spur"}
         Hand of the helix; "spur" if and only if the helix angle is zero.
     body : GearBody, optional
@@ -207,12 +207,12 @@ class Gear:
 
     @property
     def helix_angle(self) -> float:
-        """Helix angle beta on the pitch cylinder [rad], without the sign of the hand."""
+        """Helix angle beta on the reference cylinder [rad], without the sign of the hand."""
         return self.tooth.helix_angle
 
     @property
     def lead_angle(self) -> float:
-        """Lead angle on the pitch cylinder, pi/2 - beta [rad]."""
+        """Lead angle on the reference cylinder, pi/2 - beta [rad]."""
         return 0.5 * math.pi - self.helix_angle
 
     @property

@@ -79,13 +79,13 @@ class InternalTooth(InvoluteTooth):
     profile_shift : float
         x, in normal modules.
     thickness_allowance : float
-        A_sn, reduction of the tooth's normal thickness at the pitch circle [modules]: the cutter is fed deeper.
+        A_sn, reduction of the tooth's normal thickness at the reference circle [modules]: the cutter is fed deeper.
     tip_radius : float
         Radius of the tip circle [modules]; NaN, the default, is replaced by r - x - 1.
     tip_rounding, tip_chamfer : float
         As of `Tooth` [modules].
     helix_angle : float
-        beta on the pitch cylinder [rad], from 0 to 60 deg; the cutter has the same.
+        beta on the reference cylinder [rad], from 0 to 60 deg; the cutter has the same.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Involute, Line
 from fegear.geometry.involute import inv, polar_angle
 
-#: Largest helix angle on the pitch cylinder [rad].
+#: Largest helix angle on the reference cylinder [rad].
 LARGEST_HELIX_ANGLE = math.radians(60.0)
 
 

@@ -167,7 +167,7 @@ def transverse_angle(normal_angle: float, helix_angle: float) -> float:
     normal_angle : float
         alpha_n [rad].
     helix_angle : float
-        beta on the pitch cylinder [rad]; zero gives the normal angle itself, to the last bit.
+        beta on the reference cylinder [rad]; zero gives the normal angle itself, to the last bit.
     """
     if helix_angle == 0.0:
         return normal_angle

@@ -40,7 +40,7 @@ class Tooth(InvoluteTooth):
     profile_shift : float
         x, profile shift coefficient, in normal modules.
     thickness_allowance : float
-        A_sn, reduction of the tooth's normal thickness at the pitch circle [modules]; made, as on the machine, by
+        A_sn, reduction of the tooth's normal thickness at the reference circle [modules]; made, as on the machine, by
         feeding the rack deeper by A_sn / (2 tan alpha_n) (ISO 21771, generating profile shift coefficient x_E).
     tip_radius : float
         Radius of the tip circle [modules]; NaN, the default, is replaced by r + x + h_aP.
@@ -49,7 +49,7 @@ class Tooth(InvoluteTooth):
     tip_chamfer : float
         Height of a tip chamfer [modules]: a straight cut that takes as much off the tip's width as off its height.
     helix_angle : float
-        beta on the pitch cylinder [rad], from 0 to 60 deg; the hand is that of the gear.
+        beta on the reference cylinder [rad], from 0 to 60 deg; the hand is that of the gear.
 
     Raises
     ------

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import fegear
+from fegear.base.printed import percent
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
@@ -27,7 +28,7 @@ def comparison_page(comparison: Comparison) -> Page:
         (
             one.name,
             *("" if value is None else f"{value.value:.9g} {value.unit}".rstrip() for value in (one.first, one.second)),
-            f"{one.share:+.2%}" if np.isfinite(one.share) else "",
+            percent(one.share, signed=True) if np.isfinite(one.share) else "",
             "yes" if one.within_errors else "",
         )
         for one in comparison.different_values

@@ -83,7 +83,7 @@ _VARIABLES = (
     ),
     ("approach", "m", "output", "continuous", "Dynamic transmission error along the line of action"),
     ("mesh_stiffness", "N/m", "output", "continuous", "Mesh stiffness of the teeth in contact"),
-    ("static_transmission_error", "m", "output", "continuous", "Static deflection under load"),
+    ("static_transmission_error", "m", "output", "continuous", "Approach of the gears under the static load"),
 )
 _BASE_UNITS = {
     "s": 's="1"', "rad": 'rad="1"', "rad/s": 'rad="1" s="-1"', "N": 'kg="1" m="1" s="-2"', "m": 'm="1"',

@@ -65,8 +65,8 @@ def relief_tables_of(scene: Scene, name: str, relief: Relief) -> tuple[Table, Ta
 
 def _columns(base: float, roll: Array, relief: Relief) -> tuple[Column, ...]:
     return (
-        Column("diameter", 2.0 * base * np.hypot(1.0, roll), "mm", "radius of the flank point"),
+        Column("diameter", 2.0 * base * np.hypot(1.0, roll), "mm", "diameter of the flank point"),
         Column("roll_angle", roll, "deg", "roll angle of the gear"),
         Column("roll_length", base * roll, "mm", "roll length from the base circle, along the line of action"),
-        Column("removal", relief.removal(roll), "um", "profile deviation normal to the involute"),
+        Column("removal", relief.removal(roll), "um", "amount of modification, normal to the involute"),
     )

@@ -116,7 +116,7 @@ def name_of(value: Any) -> str:
         If it is no text.
     """
     if not isinstance(value, str):
-        raise InputError("name", shown(value), "is not a text file", 'for example name="pinion"')
+        raise InputError("name", shown(value), "must be a text", 'for example name="pinion"')
     return _text(value, "name")
 
 

@@ -174,7 +174,7 @@ class Pair(Described):
         if not isinstance(design, Results):
             raise InputError("design", shown(design), "is not a relief design", "pass the result of fegear.relief")
         if not isinstance(shape, str):
-            raise InputError("shape", shown(shape), "is not a text file", 'for example "linear"')
+            raise InputError("shape", shown(shape), "must be a text", 'for example "linear"')
         labels = table_names(design.scene, self.name)
         reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
         driver, driven = (

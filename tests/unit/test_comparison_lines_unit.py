@@ -186,7 +186,7 @@ def test_page_and_summary_of_a_comparison_hold_what_differs():
     page = comparison_page(found)
     grid = page.sections[1].blocks[0]
     assert [list(row) for row in grid.rows] == [
-        ["I.te", "8 um", "10 um", "+20.00%", ""],
+        ["I.te", "8 um", "10 um", "+20 %", ""],
         ["n", "", "2", "", ""],
     ]
     assert [section.title for section in page.sections] == [

@@ -28,10 +28,10 @@ GEARS = {
     "p": {"teeth": 21, "module": "2 mm", "face_width": "10 mm", "bore_radius": "5 mm"},
     "w": {"teeth": 33, "module": "2 mm", "face_width": "10 mm", "bore_radius": "5 mm"},
 }
-CASE = {"results": ["weights"], "gear": GEARS, "pair": {"I": {"driver": "p", "driven": "w"}}}
+CASE = {"results": ["masses"], "gear": GEARS, "pair": {"I": {"driver": "p", "driven": "w"}}}
 
 
-def installed(folder: Path, project: str, source: str = "", module: str = "fegear_weights") -> None:
+def installed(folder: Path, project: str, source: str = "", module: str = "fegear_masses") -> None:
     """As pip leaves a distribution: its module, and what its project says, beside each other."""
     given = tomllib.loads(project)["project"]
     home = folder / f"{given['name'].replace('-', '_')}-{given['version']}.dist-info"
@@ -65,7 +65,7 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def weights(folder):
+def masses(folder):
     project, source = re.findall(
         r"^```(?:toml|py)\n# [\w.]+\n(.*?)^```", PAGE.read_text("utf-8"), re.DOTALL | re.MULTILINE
     )
@@ -73,39 +73,39 @@ def weights(folder):
     return folder
 
 
-def test_a_result_of_another_distribution_runs_as_one_of_its_own(weights):
+def test_a_result_of_another_distribution_runs_as_one_of_its_own(masses):
     found = fegear.run(CASE, progress=False)
     each = [fegear.Gear(**gear).geometry.mass_properties.mass for gear in GEARS.values()]
-    assert found.values["I.weight"].value == pytest.approx(sum(each), rel=1e-12)
-    assert list(found.tables["weights_I"]["mass"]) == pytest.approx(each, rel=1e-12)
-    both = fegear.run({**CASE, "results": ["geometry", "weights"]}, progress=False)
-    assert both.values["I.weight"] == found.values["I.weight"]
+    assert found.values["I.total_mass"].value == pytest.approx(sum(each), rel=1e-12)
+    assert list(found.tables["masses_I"]["mass"]) == pytest.approx(each, rel=1e-12)
+    both = fegear.run({**CASE, "results": ["geometry", "masses"]}, progress=False)
+    assert both.values["I.total_mass"] == found.values["I.total_mass"]
 
 
-def test_it_is_listed_with_the_others_and_nearest_to_what_is_misspelt(weights):
-    said = command("results", cwd=weights).stdout
+def test_it_is_listed_with_the_others_and_nearest_to_what_is_misspelt(masses):
+    said = command("results", cwd=masses).stdout
     assert "From other distributions:" in said
-    assert "what the gears of a pair weigh" in said
-    assert '"weights"' in command("schema", cwd=weights).stdout
-    scene = build_scene({**CASE, "results": ["weihgts"]}, "case", Path())
-    with pytest.raises(InputError, match='did you mean "weights"'):
+    assert "masses of the gears of a pair" in said
+    assert '"masses"' in command("schema", cwd=masses).stdout
+    scene = build_scene({**CASE, "results": ["massses"]}, "case", Path())
+    with pytest.raises(InputError, match='did you mean "masses"'):
         make_plan(scene, STAGES)
 
 
-def test_formats_and_importers_of_another_distribution(weights):
+def test_formats_and_importers_of_another_distribution(masses):
     scene = build_scene({**CASE, "results": ["geometry"]}, "case", Path())
-    assert list(formats()) == [*FORMATS, "weights"]
-    target = weights / "written"
+    assert list(formats()) == [*FORMATS, "masses"]
+    target = masses / "written"
     target.mkdir()
-    found = export_gears(scene, target, ["w"], "weights,dxf")
-    assert "weights.txt" in found.files
-    assert (target / "weights.txt").read_text().startswith("w 0.")
-    assert "Weights are those of the exact sections." in found.remarks
-    model = weights / "drive.teeth"
+    found = export_gears(scene, target, ["w"], "masses,dxf")
+    assert "masses.txt" in found.files
+    assert (target / "masses.txt").read_text().startswith("w 0.")
+    assert "Masses are those of the exact sections." in found.remarks
+    model = masses / "drive.teeth"
     model.write_text("19 57")
-    done = command("import", model, "--out", "drive.toml", cwd=weights)
+    done = command("import", model, "--out", "drive.toml", cwd=masses)
     assert done.returncode == 0, done.stderr
-    assert "teeth = 57" in (weights / "drive.toml").read_text()
+    assert "teeth = 57" in (masses / "drive.toml").read_text()
     with pytest.raises(InputError, match="must hold numbers of teeth"):
         importer_for(Path("x.TEETH"), None).case_of(PAGE, {"load_case": None})
     assert importer_for(Path("x.rexs"), None) is importer_for(model, "rexs") is IMPORTERS["rexs"]
@@ -136,17 +136,17 @@ PROJECT = '[project]\nname = "fegear-odd"\nversion = "2"\n[project.entry-points.
         ('geometry = "fegear_odd:STAGE"', "STAGE = 1", "has a name that is already used"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_with_a_distribution_is_said_with_its_name(weights, point, source, rule):
-    installed(weights, PROJECT.format(point), source, "fegear_odd")
-    said = command("results", cwd=weights).stdout  # which lists all others
+def test_what_is_wrong_with_a_distribution_is_said_with_its_name(masses, point, source, rule):
+    installed(masses, PROJECT.format(point), source, "fegear_odd")
+    said = command("results", cwd=masses).stdout  # which lists all others
     assert rule in said
     assert "fegear-odd 2" in said
-    assert "what the gears of a pair weigh" in said
+    assert "masses of the gears of a pair" in said
     if point.startswith("odd"):
         with pytest.raises(InputError, match=re.escape(rule)):
             planned("odd")
     planned("geometry")  # others are not held up
-    planned("weights")
+    planned("masses")
 
 
 def planned(*results):
@@ -154,10 +154,10 @@ def planned(*results):
     return scene, make_plan(scene, STAGES)
 
 
-def test_of_two_distributions_with_one_name_neither_is_taken(weights):
-    installed(weights, PROJECT.format('weights = "fegear_odd:STAGE"'), "STAGE = 1", "fegear_odd")
+def test_of_two_distributions_with_one_name_neither_is_taken(masses):
+    installed(masses, PROJECT.format('masses = "fegear_odd:STAGE"'), "STAGE = 1", "fegear_odd")
     with pytest.raises(InputError, match="has the name of another one"):
-        planned("weights")
+        planned("masses")
 
 
 ODD_STAGES = """

@@ -84,7 +84,7 @@ def test_measured_profiles_take_the_place_of_the_curves():
 def test_what_falls_short_is_said_first_and_what_is_recalled_always():
     _, found = numbers({"case_depth": "0.3 mm"}, operation={"application_factor": 4.0})
     told = " ".join(found.remarks)
-    assert "is above 0.8" in told
+    assert "is above the permissible 0.8" in told
     assert "mm required against case crushing." in told
     assert "Not verified against a source" in told
     _, found = numbers({"case_depth": "2 mm"})

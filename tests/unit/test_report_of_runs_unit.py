@@ -78,8 +78,8 @@ def test_sixteen_values_are_open_and_the_others_folded():
     found = told(values_of(("a", 9, True, 0.1), ("b", 7, True, 0.1), ("c", 1, True, 0.1)))
     assert found == [("A", 9), ("B", 7), "C (1 values)"]
     found = told(values_of(("a", 20, True, 0.1), ("b", 1, True, 0.1)))
-    assert found == [("A", 16, "4 more of them"), "B (1 values)"]
-    assert told(values_of(("a", 17, True, 0.1))) == [("A", 16, "1 more of them")]
+    assert found == [("A", 16, "4 more values"), "B (1 values)"]
+    assert told(values_of(("a", 17, True, 0.1))) == [("A", 16, "1 more value")]
     assert told(values_of(("a", 16, True, 0.1))) == [("A", 16)]
 
 

@@ -138,7 +138,7 @@ def _topography(scene: Scene, name: str, part: TopographyPart) -> Topography:
     if min(rows.size, heights.size) < 2 or at.size != values.size or np.isnan(values).any():
         raise InputError(
             key, f'"{part.file}"', f"has {at.size} entries at {rows.size} roll angles or radii and {heights.size} "
-            "heights", "specify each roll angle at each height once, at least two of both",
+            "positions along the face", "specify each roll angle at each position once, at least two of both",
         )  # fmt: skip
     return Topography(rows if "roll_angle" in columns else _rolls(scene.gears[name], rows, key), heights, values)
 

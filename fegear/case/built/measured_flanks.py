@@ -240,7 +240,8 @@ def _flank(
     if min(x.size, z.size) < 5 or i.size != values.size or np.isnan(values).any():
         raise InputError(
             key, f'"{file}"', f"has {i.size} entries of {numbers.size} teeth at {x.size} profile points and {z.size} "
-                              "heights", "specify each profile point at each height once, at least five of both",
+                              "positions along the face",
+            "specify each profile point at each position once, at least five of both",
         )  # fmt: skip
     if part.filter:
         across, along = (cutoff(ends[1] - ends[0]) for ends in (over_profile, over_face))

@@ -63,7 +63,7 @@ def _values(results: Results) -> tuple[Block, ...]:
         shown += len(values)
         group: tuple[Block, ...] = (Heading(_title(results, task)), Values(values[:_MOST_OPEN], tolerance))
         if rest := values[_MOST_OPEN:]:
-            group += (Folded(f"{len(rest)} more of them", (Values(rest, tolerance),)),)
+            group += (Folded(f"{len(rest)} more value{'s' if len(rest) > 1 else ''}", (Values(rest, tolerance),)),)
         open_.append(Group(group))
     return (*open_, *folded)
 

@@ -92,7 +92,7 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
         outline(tool_in_gear(tooth, 0.0) * m, f"tool ({tool})", "tool"),
         outline(polylines(turned(shape, k * pitch) for k in (-1, 1)), "", "outline", width=1.0),
         outline(shape, "tooth", "outline", width=2.2),
-        outline(circle(radius), "pitch circle", "grey", dash="dashdot", width=1.0),
+        outline(circle(radius), "reference circle", "grey", dash="dashdot", width=1.0),
         outline(circle(gear.base_radius * 1e3), "base circle", "grey", dash="dot", width=1.0),
     )  # fmt: skip
     points, t = mesh.points * m, mesh.triangles
@@ -290,7 +290,7 @@ def pair_figure(name: str, drawing: Drawing) -> Figure:
         f"gear_data_{name}",
         f"Pair {name} in mesh",
         f"Pair {name}: {names[0]} drives{places[0]}, {names[1]} is driven{places[1]}. Shown in contact at the pitch "
-        f"point C. Path of contact A to E{alone}. Specific sliding is negative in the dedendum, below the pitch "
+        f"point C. Path of contact A to E{alone}. Specific sliding is negative below the working pitch "
         "circle." + (" Transverse section." if pair.driver.helix_angle else ""),
         (_drawn(pair), _sliding(pair)),
     )

@@ -93,6 +93,11 @@ class PrintedFlank:
     radius: Array = shown("mm", "radius on the driver")
     separation: Array = shown("um", "separation")
 
+    @property
+    def printed_percent(self) -> float:
+        """`share` in per cent."""
+        return 100.0 * self.share
+
 
 @dataclass(frozen=True)
 class Printed:
@@ -167,7 +172,7 @@ _SHEET = Sheet(
             (
                 Over(
                     "z", (Map("separation", "radius", limits=lambda seen: (0.0, seen.asked.coat)),), each="drawn",
-                    title="{one.load:.5g}: {one.share:.0%} printed",
+                    title="{one.load:.5g}: {one.printed_percent:.0f} % printed",
                 ),
             ),
             columns=2,

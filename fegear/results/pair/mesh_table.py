@@ -43,7 +43,7 @@ class EvenMesh:
     local_stiffness: Array
     te_error: Array | None
     lost: dict[str, float]
-    driver_angle: Array = shown("deg", "roll angle of the driver, from the start of the base pitch curve")
+    driver_angle: Array = shown("deg", "rotation of the driver, from the start of the curve over the base pitch")
 
 
 def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:

@@ -325,7 +325,7 @@ def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tup
         key, gear = f"{inputs.asked.name}.{member}", data.gears[member]
         found += [
             value_of(gear, "most", key),
-            Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"its inverse (minimum {1.0 / PERMISSIBLE:g})"),
+            Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"safety factor, 1/A_FF (minimum {1.0 / PERMISSIBLE:g})"),
             value_of(gear, "most_load", key),
             value_of(gear, "at_depth", key),
             Value(f"{key}.case_depth", case.case_depth, "mm", None, "at 550 HV (case)"),
@@ -336,14 +336,14 @@ def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tup
 
 
 def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[str, ...]:
-    """What falls short, then what is assumed and what is recalled."""
+    """What falls short, then what is assumed and what is not verified against the standard."""
     name, told = inputs.asked.name, []
     for i, (member, gear) in enumerate(zip(MEMBERS, inputs.asked.gears, strict=True)):
         found, case = data.gears[member], inputs.cases[i]
         if found.most > PERMISSIBLE:
             told.append(
                 f"Pair {name}: A_FF = {found.most:.4g} of gear {gear} ({member}) at a depth of "
-                f"{found.at_depth * 1e3:.3g} mm is above {PERMISSIBLE:g}."
+                f"{found.at_depth * 1e3:.3g} mm is above the permissible {PERMISSIBLE:g}."
             )
         largest = recommended(inputs.asked.pair.gear(member).module)[2]
         needed = float(np.nanmax([found.crushing, found.least_agma, 0.0]))
@@ -377,9 +377,10 @@ def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tu
     told.append(
         f"Pair {name}: structure, symbols and scope of A_FF (case-carburized external gears) are those that printed "
         f"sources give of ISO/TS 6336-4. Not verified against a source: K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa "
-        f"per HV, c_1 = {CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; "
-        f"K_material = {inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). tau_eff is the mean "
-        "shear over all planes below a Hertzian contact without friction, instead of the standard's fitted formulas. "
+        f"per HV, c_1 = {CALIBRATION:g}, permissible A_FF = {PERMISSIBLE:g}, and that A_FF counts from the "
+        f"half-width on; K_material = {inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). "
+        "tau_eff is the mean shear over all planes below a Hertzian contact without friction, instead of the "
+        "standard's fitted formulas. "
         "Residual stress reduces the exposure in the case; A_FF_load excludes it."
     )
     told.append(

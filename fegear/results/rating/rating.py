@@ -272,11 +272,13 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     return Forecast({}, _FORMULAS + (_FLANKS if computed else 0.0))
 
 
-def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
+def _cites(scene: Scene, name: str) -> tuple[Citation, ...]:
+    part = scene.case.pair.get(name)
+    old = part is not None and part.iso_6336.edition == 2006
     found = [
         Citation("iso-6336-1", "load factors K", "clauses 5 to 9"),
-        Citation("iso-6336-2", "contact stress and permissible contact stress"),
-        Citation("iso-6336-3", "tooth root stress and permissible tooth root stress"),
+        Citation("iso-6336-2-2006" if old else "iso-6336-2", "contact stress and permissible contact stress"),
+        Citation("iso-6336-3" if old else "iso-6336-3-2019", "tooth root stress and permissible tooth root stress"),
         Citation("iso-6336-5", "stress numbers of materials", "table 1"),
         Citation("iso-1328-1", "tolerances by class"),
     ]
@@ -285,7 +287,7 @@ def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
     if "agma-2101" in scene.case.rating.beside:
         found.append(Citation("agma-2101", "geometry factors of AGMA"))
     if "computed" in scene.case.rating.beside:
-        found += citing(*RING)(scene, _name)
+        found += citing(*RING)(scene, name)
     return tuple(found)
 
 

@@ -45,7 +45,7 @@ def topography_table(name: str, gear: str, member: Member, share: float, data: F
     own = z + pair.face_height(member)
     task = design.task
     columns = (
-        Column("roll_angle", np.asarray(pair.roll_angle(x, member)), "deg", "of the flank point"),
+        column_of(ReliefTable, "roll_angle", np.asarray(pair.roll_angle(x, member))),
         Column("z", own, "mm", "face position of the gear, from mid-face"),
         Column(
             "removal",
@@ -53,7 +53,7 @@ def topography_table(name: str, gear: str, member: Member, share: float, data: F
             "um",
             "amount of modification, normal to the flank in the transverse section",
         ),
-        Column("diameter", 2.0 * np.asarray(pair.radius(x, member)), "mm", "of the flank point"),
+        Column("diameter", 2.0 * np.asarray(pair.radius(x, member)), "mm", "diameter of the flank point"),
         column_of(ReliefTable, "x", x),
         Column("line_load", task.load * task.loading.line_load(x, z), "N/mm", "design line load of the pair"),
     )

@@ -73,7 +73,7 @@ def least_stress_table(name: str, best: StressOptimum, load: float) -> tuple[Tab
     table = Table(
         f"loading_candidates_{name}",
         (
-            Column("family", np.array(labels), "", "slope of the ramps"),
+            Column("family", np.array(labels), "", "family of the ramps"),
             Column("peak", np.array(peaks), "", "F, best of its family"),
             Column("root_tension", np.array(tensions) * load, "MPa", "maximum of both gears"),
             Column("hertz_pressure", np.array(pressures) * at_load, "MPa", "maximum over the path of contact"),

@@ -52,7 +52,7 @@ class DesignChartData:
     harmonics: Array = shown("um", "amplitude of the static transmission error", label="amplitude")
     reasons: tuple[str, ...] = shown("", "reason for missing result", name="failure")
     unequal: tuple[UnequalRelief, ...] = shown("", "unequal reliefs of both gears")
-    line: FactorLine | None = shown("", "slope of the dynamic factor over A_e, all points")
+    line: FactorLine | None = shown("", "straight line of the dynamic factor over A_e, all points")
     unmodified: float = shown("", "maximum dynamic factor without modification")
     unmodified_error: float = shown("um", "A_e without modification")
     delta: float = shown("um", "Welbourn's Delta: deflection at the HPSTC under the mean force")

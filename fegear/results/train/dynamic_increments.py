@@ -77,7 +77,7 @@ def _compute(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> Increme
 
 def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
     names, frequencies, found = known.train.names, known.frequencies, known.increments
-    frequency = Column("frequency", frequencies, "Hz", "mesh of the static transmission error")
+    frequency = Column("frequency", frequencies, "Hz", "frequency of the static transmission error")
     columns, values = [frequency], []
     for i, first in enumerate(names):
         for j, second in enumerate(names):
