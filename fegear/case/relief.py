@@ -305,5 +305,8 @@ class MeasuredPart(Part):
         for key in ("profile_range", "lead_range"):
             ends = getattr(self, key)
             if ends is not None and not ends[0] < ends[1]:
-                raise refuse("must increase from its first to its last place", key=key, value="(a list)")
+                shown_ends = f"{ends[0] * 1e3:g} to {ends[1] * 1e3:g} mm"
+                raise refuse(
+                    "must be strictly increasing", "specify its start, then its end", key=key, value=shown_ends
+                )
         return self

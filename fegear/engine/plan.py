@@ -230,9 +230,9 @@ def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> N
     for key in (*(f"pair.{name}" for name in pairs), *(f"gear.{name}" for name in gears)):
         named = result or (stage.results[0] if stage.results else stage.name)
         wide = " for helical or 3D gears" if subject in scene.wide_pairs else ""
-        why = f" ({stage.why_external})" if stage.why_external else ""
+        why = f": {stage.why_external}" if stage.why_external else ""
         raise InputError(
-            key, "internal", f'is not supported by "{named}" (external gears only{wide}){why}',
+            key, "internal", f'is not supported by "{named}" (external gears only{wide}{why})',
             "remove it from results, or use a separate case for the external gears",
         )  # fmt: skip
 

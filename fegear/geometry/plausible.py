@@ -61,8 +61,10 @@ def refuse_material(young_modulus: float, density: float) -> None:
     GeometryError
         With the remedy.
     """
-    _refuse("material.young_modulus", young_modulus, YOUNG_MODULI, "Pa", "solids", "206.8 GPa are 206.8e9 Pa")
-    _refuse("material.density", density, DENSITIES, "kg/m^3", "solids", "steel has 7850 kg/m^3")
+    _refuse(
+        "material.young_modulus", young_modulus, YOUNG_MODULI, "Pa", "the moduli of solids", "206.8 GPa are 206.8e9 Pa"
+    )
+    _refuse("material.density", density, DENSITIES, "kg/m^3", "the densities of solids", "steel has 7850 kg/m^3")
 
 
 def _refuse(key: str, value: float, ends: tuple[float, float], unit: str, what: str, remedy: str) -> None:

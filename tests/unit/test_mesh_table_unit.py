@@ -50,7 +50,7 @@ def test_its_means_are_those_of_the_curves(results):
     assert te.mean() == pytest.approx(values["I.te_mean"], abs=np.ptp(te) / 500)
     assert slope.mean() == pytest.approx(values["I.local_stiffness_mean"], abs=2.0 * np.ptp(slope) / 500)
     assert np.ptp(te) == pytest.approx(values["I.te_peak_to_peak"], rel=5e-3)
-    assert any("mesh_table_I has 500 even steps" in remark for remark in results.remarks)
+    assert any("mesh_table_I has 500 equal steps" in remark for remark in results.remarks)
 
 
 def test_a_curve_with_a_jump_is_followed_and_closes():

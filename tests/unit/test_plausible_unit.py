@@ -65,10 +65,13 @@ def test_the_case_itself_is_plausible():
         ("gear.a.module=3 m", r"gear\.a\.module = 3 m: is outside the modules of gears.*a module of 3 mm is 3e-3 m"),
         (
             "gear.a.face_width=10 m",
-            r"gear\.a\.face_width = 10 m: is beyond the face widths of gears of module 0\.003 m",
+            r"gear\.a\.face_width = 10 m: is outside the face widths of gears of module 0\.003 m, .* to 0\.9 m",
         ),
         ("gear.a.face_width=10 um", r"gear\.a\.face_width"),
-        ("gear.a.material.young_modulus=206.8 Pa", r"gear\.a\.material\.young_modulus = 206\.8 Pa: is beyond solids"),
+        (
+            "gear.a.material.young_modulus=206.8 Pa",
+            r"gear\.a\.material\.young_modulus = 206\.8 Pa: is outside the moduli of solids",
+        ),
         ("gear.a.material.young_modulus=206.8 kPa", r"young_modulus"),
         ("gear.a.material.young_modulus=206800 GPa", r"young_modulus"),
         ("gear.a.material.density=7850 g/cm^3", r"gear\.a\.material\.density"),
@@ -146,8 +149,7 @@ def test_a_geometry_run_remarks_on_a_contact_ratio_below_one():
     assert scene.pairs["I"].contact_ratio < 1.0
     remarks = run_plan(scene, make_plan(scene, STAGES)).remarks
     assert any(
-        r.startswith("Pair I: the contact ratio of 0.") and "is below 1, motion is not transmitted" in r
-        for r in remarks
+        r.startswith("Pair I: contact ratio 0.") and "is below 1, motion is not transmitted" in r for r in remarks
     )
 
 
@@ -210,8 +212,8 @@ def on_a_shaft(**section: str):
 @pytest.mark.parametrize(
     ("section", "words"),
     [
-        ({"length": "35 m"}, "sections = 35 m: is outside the shafts of gears, up to 30 m in length"),
-        ({"outer": "38 m"}, "sections = 38 m: is outside the shafts of gears, maximum of 20 m in diameter"),
+        ({"length": "35 m"}, "sections = 35 m: exceeds the plausible maximum of 30 m in length"),
+        ({"outer": "38 m"}, "sections = 38 m: exceeds the plausible maximum of 20 m in diameter"),
         ({"outer_end": "14e27 m"}, "maximum of 20 m in diameter"),
         ({"outer": "1.5 m"}, "is 16.7 times the diameter of the largest gear on the shaft"),
     ],

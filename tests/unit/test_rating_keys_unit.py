@@ -66,7 +66,7 @@ def test_hardness_is_read_in_every_scale(text, vickers):
         (None, {"spectrum": [{"load_factor": 1, "torque": "1 N m", "share": 1}]},
          "pair.I.operation.spectrum[0].load_factor", "contradicts torque"),
         (None, {"spectrum": [{"load_factor": 1, "share": 1}, {"load_factor": 1, "time": "1 h"}]},
-         "pair.I.operation.spectrum", "mixes"),
+         "pair.I.operation.spectrum", "must not mix"),
         (None, {"spectrum": []}, "pair.I.operation.spectrum", "must not be empty"),
     ],
 )  # fmt: skip

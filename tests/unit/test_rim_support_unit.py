@@ -255,7 +255,7 @@ rim_support = SUPPORT
         ('{ kind = "pins" }', "pins"),
         ('{ kind = "pins", pins = 0, width = "12 mm" }', "at least 2"),
         ('{ kind = "pins", pins = 61, width = "3 mm" }', "between 2 and the number of teeth, 60"),
-        ('{ kind = "pins", pins = 6, width = "500 mm" }', "mm (pin spacing on the outer circle)"),
+        ('{ kind = "pins", pins = 6, width = "500 mm" }', r"and 142\.542 mm \(pin spacing on the outer circle\)"),
         ('{ kind = "pins", pins = 6, width = "1 um" }', "0.02 modules"),
         ('{ kind = "splined", pins = 6 }', "applies only to a rim on pins"),
         ('{ kind = "glued" }', "pins"),

@@ -77,7 +77,7 @@ def test_python_takes_the_same_keys():
     [
         ({"cutter": None}, "gear.r.cutter = (not given)"),
         ({"rack": "A"}, "is not used for an internal gear; specify its cutter"),
-        ({"bore_radius": "50 mm"}, "write outer_radius or rim_thickness"),
+        ({"bore_radius": "50 mm"}, "set outer_radius or rim_thickness"),
         ({"outer_radius": "140 mm", "rim_thickness": "12 mm"}, "contradicts outer_radius"),
         ({"outer_radius": "120 mm"}, "gear.r.outer_radius = 120 mm: must be outside the root circle"),
         ({"internal": False}, "gear.r.cutter"),
@@ -229,11 +229,17 @@ def test_reliefs_and_spacing_errors_of_a_ring_hold_its_flanks_back(cache):
         (['results=["rating"]'], "gear.p.strength = (not given): is missing"),
         (['results=["mesh-stiffness-matrix"]', 'pair.I.width="solid"'], "(external gears only"),
         (['results=["crosscheck"]'], "(external gears only"),
-        (['results=["flank-fracture"]'], "alone (ISO/TS 6336-4 is written for external teeth)"),
-        (['pair.I.compliance={ source = "cornell" }', "effects.neighbour_coupling=false"], "and r is internal"),
-        (['pair.I.root_stress={ source = "heywood" }', 'results=["root-stress-history"]'], "and r is internal"),
-        (['pair.I.width="slices"'], 'is not available with width = "slices(external gears only)'),
-        (['pair.I.centre_distance="75 mm"'], "mm of centre distance until both flanks touch"),
+        (['results=["flank-fracture"]'], '"flank-fracture" (external gears only: ISO/TS 6336-4 applies to'),
+        (
+            ['pair.I.compliance={ source = "cornell" }', "effects.neighbour_coupling=false"],
+            "external gears only; r is internal",
+        ),
+        (
+            ['pair.I.root_stress={ source = "heywood" }', 'results=["root-stress-history"]'],
+            "external gears only; r is internal",
+        ),
+        (['pair.I.width="slices"'], 'is not available with width = "slices" (external gears only)'),
+        (['pair.I.centre_distance="75 mm"'], "both flanks are in contact at 74.1093 mm; reduce the centre distance"),
     ],
 )
 def test_what_an_internal_pair_is_not_computed_for_is_refused_in_one_sentence(overrides, words):

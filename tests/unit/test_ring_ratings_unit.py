@@ -139,8 +139,8 @@ def outcome_ring_root():
 @pytest.mark.parametrize(
     ("made", "said"),
     [
-        (lambda: ServiceLife(-1.0, 1.0), "service life, pitting, at the minimum safety"),
-        (lambda: ServiceLife(math.inf, -2162.6 * 3600.0), "service life, tooth breakage, at the minimum"),
+        (lambda: ServiceLife(-1.0, 1.0), "life of the flank"),
+        (lambda: ServiceLife(math.inf, -2162.6 * 3600.0), "life of the root"),
         (lambda: Bin(1e9, -1.0, Knots((1.0, 10.0), (2e9, 1e9))), "cycles"),
         (lambda: Bin(-1e9, 1.0, Knots((1.0, 10.0), (2e9, 1e9))), "stress"),
         (lambda: Level(-1.0, 1.0, 1.0, (1.0, 1.0)), "load of a level"),

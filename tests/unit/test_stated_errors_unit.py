@@ -54,8 +54,8 @@ def test_a_large_error_of_a_value_beside_larger_ones_is_noted():
     swing, dead, small = value("swing", 1e-6, 0.3e-6), value("dead", 1e-15, 5e-6), value("small", 1e-9, 1e-9)
     (said,) = Outcome(values=(value("mean", 20e-6, 1e-9), swing, dead, small), sharper_by="increase n").remarks
     assert said == (
-        "swing (1 +- 0.3 um), dead (1e-09 +- 5 um), small (0.001 +- 0.001 um): estimated error above 20 % of the "
-        "value; increase n."
+        "swing (1.00 +- 0.30 um), dead (0.0 +- 5.0 um), small (0.0010 +- 0.0010 um): estimated error above 20 % of "
+        "the value; increase n."
     )
 
 
@@ -83,13 +83,13 @@ def test_exact_unknown_and_large_columns_stay(errors):
 def test_of_equal_errors_the_first_place_is_named_whatever_the_last_bits_say(last_bits):
     relative, radius = np.array([0.06, 0.06 + last_bits, 0.01]), np.array([19e-3, 20e-3, 21e-3])
     (said,) = tolerance_remarks("Gear a", "c_self", relative, radius, 0.02, "radii")
-    assert "at radius 19 mm; at 33% of the radii" in said
+    assert "up to 6.0 % (tolerance 2 %) at radius 19 mm; within tolerance at 33 % of the radii" in said
 
 
 def test_values_whose_error_exceeds_a_fifth_of_them_are_noted_once_with_a_key_that_exists():
     given = (value("exact", 7.0, 1.39, "N"), value("a", 7.0, 1.41, "N"), value("b", -1e-3, 1.0, "N"))
     outcome = Outcome(values=given, remarks=("Another.",))
-    said = "a (7 +- 1.4 N), b (-0.001 +- 1 N): estimated error above 20 % of the value; reduce accuracy.tolerance."
+    said = "a (7.0 +- 1.4 N), b (0.0 +- 1.0 N): estimated error above 20 % of the value; reduce accuracy.tolerance."
     assert outcome.remarks == ("Another.", said)
     assert replace(outcome).remarks == outcome.remarks
     assert "tolerance" in AccuracyPart.model_fields
@@ -98,7 +98,7 @@ def test_values_whose_error_exceeds_a_fifth_of_them_are_noted_once_with_a_key_th
 def test_the_note_on_rough_values_names_three_of_them_and_the_remedy_of_the_result():
     given = tuple(value(f"v{i}", 1.0, 0.5, "") for i in range(5))
     (note,) = Outcome(values=given, sharper_by="increase planetary.P.harmonics").remarks
-    assert note.startswith("v0 (1 +- 0.5), v1 (1 +- 0.5), v2 (1 +- 0.5) and 2 more: ")
+    assert note.startswith("v0 (1.00 +- 0.50), v1 (1.00 +- 0.50), v2 (1.00 +- 0.50) and 2 more: ")
     assert note.endswith("; increase planetary.P.harmonics.")
 
 

@@ -92,7 +92,7 @@ def test_the_figure_of_an_effect_shows_both_curves_the_change_and_the_seconds():
     found = switched(run(before, seconds=1.5), run(after, seconds=0.25))
     figure = effects.effect_figure(found, (before, after, "x", "te"), "A pair")
     assert figure.name == "effect_hertz"
-    assert figure.title == "Effect of contacts that widen with load"
+    assert figure.title == "Effect of load-dependent contact width"
     curves, change, seconds = figure.panels
     assert [one.name for one in curves.items] == ["without", "with"]
     np.testing.assert_allclose(curves.items[0].y, [1.0, 4.0, 2.0, 8.0])

@@ -157,11 +157,11 @@ def test_ends_of_axes_are_said_only_where_there_is_a_middle_and_eight_sentences_
     (middle,) = line([3, 3, 1, 2, 3, 3])
     assert middle == "Minimum I.te_peak_to_peak: 1 um at k = 2, w = p."
     (end,) = line([1, 3, 3, 3, 3, 3])
-    assert end.endswith("at k = 1, w = p; it lies at the end of k.")
+    assert end.endswith("at k = 1, w = p; at the limit of the range of k.")
     (last,) = line([3, 3, 3, 3, 3, 1])
-    assert last.endswith("at k = 3, w = q; it lies at the end of k.")
+    assert last.endswith("at k = 3, w = q; at the limit of the range of k.")
     (alike,) = line([3, 3, 1, 1.15, 1.25, 3], error=np.full(6, 0.1))
-    assert "; 1 other point does not differ" in alike
+    assert "; 1 other point equal within the estimated errors." in alike
     (more,) = line([3, 3, 1, 1.15, 1.19, 3], error=np.full(6, 0.1))
     assert "; 2 other points do not differ" in more
     many = [value(f"p{k}.K_Hbeta", [3, 3, 1, 2, 3, 3]) for k in range(12)]

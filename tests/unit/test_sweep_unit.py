@@ -154,11 +154,11 @@ def test_the_best_point_is_told_with_those_that_may_be_as_good_and_where_a_bette
     ]
     least, most = best_lines(results, values)
     assert least == (
-        "Least I.te_peak_to_peak: 3 um at gear.a.profile_shift = 0.1, gear.b.teeth = 30; 1 other point does not differ "
-        "from it by more than the errors."
+        "Minimum I.te_peak_to_peak: 3 um at gear.a.profile_shift = 0.1, gear.b.teeth = 30; 1 other point equal within "
+        "the estimated errors."
     )
     assert most == (
-        "Largest I.driver.S_F: 6 at gear.a.profile_shift = 0.2, gear.b.teeth = 31; at the limit of the range of "
+        "Maximum I.driver.S_F: 6 at gear.a.profile_shift = 0.2, gear.b.teeth = 31; at the limit of the range of "
         "gear.a.profile_shift."
     )
 

@@ -159,10 +159,10 @@ def test_gears_are_alike_whose_size_place_and_compliance_are():
         sources = {"driver": SimpleNamespace(own=driver), "driven": SimpleNamespace(own=driven)}
         return _are_like(pair, SimpleNamespace(source=sources.__getitem__))
 
-    assert so(lambda r: 1.0 + r, lambda r: 1.0 + r)
-    assert not so(lambda r: 1.0 + r, lambda r: (1.0 + r) * (1.0 + 1e-8))
-    assert so(lambda r: 1.0 + r, lambda r: (1.0 + r) * (1.0 + 1e-10))
-    assert not so(lambda r: 1.0 + r, lambda r: 1.0 + 1.0001 * r)
+    assert so(lambda i, r: 1.0 + r, lambda i, r: 1.0 + r)
+    assert not so(lambda i, r: 1.0 + r, lambda i, r: (1.0 + r) * (1.0 + 1e-8))
+    assert so(lambda i, r: 1.0 + r, lambda i, r: (1.0 + r) * (1.0 + 1e-10))
+    assert not so(lambda i, r: 1.0 + r, lambda i, r: 1.0 + 1.0001 * r)
 
 
 def test_candidates_that_lie_apart_and_who_found_them():

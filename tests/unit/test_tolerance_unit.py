@@ -160,7 +160,7 @@ def test_given_settings_are_obeyed_without_refinement(tmp_path):
     assert "rounds" not in outcome.settings
     assert (outcome.settings["order"], outcome.settings["root_edge_length"]) == (2, 0.2)
     assert outcome.settings["growth"] == settings_for(1e-5).growth
-    assert any("root tension reaches" in remark for remark in outcome.remarks)
+    assert any("estimated error of root tension up to" in remark for remark in outcome.remarks)
 
 
 @pytest.mark.parametrize(("tolerance", "most"), [(1e-1, 3000), (1e-2, 6000), (1e-3, 9000), (1e-4, 20_000)])

@@ -97,7 +97,7 @@ def test_the_figure_of_the_teeth_says_what_pairs_take():
     each = np.array([0.9, 1.0, 1.1])
     uneven = SimpleNamespace(deflection=each, root_tension=each, root_compression=-each)
     solution = SimpleNamespace(body=SimpleNamespace(holes=WebHoles(1, 3.0, 0.5)), uneven=uneven, support=None)
-    for tooth, words in ((None, "pairs take the mean."), (2, "pairs take tooth 2 for all.")):
+    for tooth, words in ((None, "pairs take the mean."), (2, "pairs take tooth 2 for all teeth.")):
         asked = SimpleNamespace(gear=SimpleNamespace(body=SimpleNamespace(holes=SimpleNamespace(tooth=tooth))))
         seen = Seen(SimpleNamespace(influence=SimpleNamespace(fine=solution)), asked, "a")
         (figure,), (table,) = HOLES_FIGURE.figures(seen), HOLES_TABLE.tables(seen)
