@@ -104,7 +104,7 @@ def test_the_command_writes_a_table_a_picture_and_a_summary(tmp_path):
     out = tmp_path / "found"
     done = CliRunner().invoke(app, ["effects", case, *options, "--effect", "relief", "--out", str(out)])
     assert done.exit_code == 0, done.output
-    assert "relief changes I.te_" in done.output
+    assert "relief: largest change in I.te_" in done.output
     assert (out / "plots" / "effect_relief.png").read_bytes().startswith(b"\x89PNG")
     rows = list(csv.DictReader((out / "tables" / "effects.csv").read_text("utf-8").splitlines()))
     peak = next(row for row in rows if row["result"] == "I.te_peak_to_peak")

@@ -89,7 +89,7 @@ def test_effects_that_nothing_uses_are_reported_by_plan_and_run():
     scene, plan = planned("lin_tip_relief", "effects.friction=true")
     assert plan.idle_effects == ("friction",)
     lines = [line for line in plan_lines(scene, plan) if line.startswith("Note: ")]
-    assert 'ask for "tooth-friction" or "dynamic-factor" or "design-chart", or leave' in lines[0]
+    assert 'request "tooth-friction" or "dynamic-factor" or "design-chart", or switch the effect off' in lines[0]
 
 
 @pytest.mark.parametrize(

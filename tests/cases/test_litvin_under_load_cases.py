@@ -35,7 +35,7 @@ def test_what_loaded_flanks_have_too_is_called_unloaded(analysis, options):
     values, figures, remarks = names_of(analysis, *options)
     assert {"I.unloaded_te_peak_to_peak", "I.unloaded_te_max", "I.unloaded_te_min"} <= values
     assert {"unloaded_transmission_error_I", "unloaded_contact_pattern_I"} <= figures
-    assert any("load changes nothing in tooth contact analysis" in remark for remark in remarks)
+    assert any("load is ignored in tooth contact analysis" in remark for remark in remarks)
 
 
 @pytest.mark.long

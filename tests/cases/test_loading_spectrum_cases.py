@@ -80,7 +80,7 @@ def test_cases_of_the_report_run(case):
     ("loading", "words"),
     [
         ({"slopes": [1.0]}, "loading.contact_ratio"),
-        ({"contact_ratio": 0.9}, "base pitches; must be at least 1"),
+        ({"contact_ratio": 0.9}, "loading.contact_ratio = 0.9: is below 1"),
         ({"contact_ratio": 1.4, "slopes": [2.5]}, "loading.slopes"),
         ({"contact_ratio": 1.4, "family": "polynomial", "exponents": [4]}, "loading.exponents"),
         ({"contact_ratio": 1.4, "exponents": [3]}, "loading.exponents"),
@@ -103,4 +103,4 @@ def test_at_contact_ratio_one_and_two_the_load_jumps():
         spectra = results.tables["loading_spectra"]
         assert (spectra["spectrum"] <= spectra["envelope"] * (1.0 + 1e-12)).all()
         assert np.isinf(results.tables["loading_trade_off"]["initial_slope"]).all()
-        assert any("jump" in remark for remark in results.remarks)
+        assert any("the load starts with a step (infinite slope)" in remark for remark in results.remarks)

@@ -60,7 +60,7 @@ def test_the_flanks_are_loaded_once_for_all_results(results):
 def test_errors_of_slices_count_what_slices_are_known_to_miss(results):
     loaded = results.outcomes[Task("loaded-flanks", "I")].data
     assert loaded.missed == missed_by_slices(1.0)["contact"]
-    assert any("slices of the plane section" in remark for remark in results.remarks)
+    assert any("coupled slices used instead of 3D gears" in remark for remark in results.remarks)
     for name in ("te_mean", "te_peak_to_peak", "mesh_stiffness_mean"):
         value = results.values[f"I.{name}"]
         assert value.error > loaded.missed * value.value
@@ -271,19 +271,19 @@ def test_maps_reach_the_tips(results):
 def test_the_transmission_error_says_what_spacing_errors_leave_open(results):
     data = results.outcomes[Task("transmission-error", "I")].data
     inputs = TRANSMISSION_ERROR.inputs(results.scene, "I")
-    assert not any("rotational" in remark for remark in TRANSMISSION_ERROR.present(data, inputs).remarks)
+    assert not any("rotational" in remark.lower() for remark in TRANSMISSION_ERROR.present(data, inputs).remarks)
     loaded = results.outcomes[Task("loaded-flanks", "I")].data
     assert loaded.transmission_error(lambda _share: None).only is None
     uneven = replace(loaded, gaps=replace(loaded.gaps, driver_spacing=np.array([0.0, 1e-6])))
     found = uneven.transmission_error(lambda _share: None)
     assert found.only == 0
     said = TRANSMISSION_ERROR.present(replace(data, found=found), inputs).remarks
-    (told,) = (remark for remark in said if "rotational" in remark)
+    (told,) = (remark for remark in said if "rotational" in remark.lower())
     assert "base pitch 0" in told
 
 
 def test_what_has_no_meaning_over_the_face_is_refused():
-    with pytest.raises(InputError, match=r"transmission_error.method.*loaded with its width"):
+    with pytest.raises(InputError, match=r"transmission_error\.method.*for the plane \(2D\) model; pair I is 3D"):
         make_plan(read_scene(CASE, [*COARSE, 'transmission_error.method="mark-series"']), STAGES)
 
 

@@ -122,8 +122,8 @@ def test_the_command_writes_the_table_that_others_build_on(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (['stiffness={radii=["60 mm"]}'], "is outside the involute flank,"),
-        (['stiffness={radii=["40 mm"]}'], "is outside the involute flank,"),
+        (['stiffness={radii=["60 mm"]}'], "60 mm: is outside the involute flank of gear a; valid range"),
+        (['stiffness={radii=["40 mm"]}'], "40 mm: is outside the involute flank of gear a; valid range"),
         (["stiffness.gear=b"], "is not a gear of this case"),
         (["stiffness.pair=II"], "is not a pair of this case"),
         (["pair={}"], "requires a mating flank for the contact width"),

@@ -73,7 +73,7 @@ def test_amounts_are_lengths_or_shares_of_delta():
     [
         ("design.chart={ amounts_over_delta = [1.0], amounts = ['20 um'] }", "contradicts amounts"),
         ("design.chart={ amounts_over_delta = [0.0], lengths = [1.0] }", "greater than 0"),
-        (f"design.chart={{ lengths = {[0.04 * k for k in range(1, 26)]} }}", "25 reliefs are more than the 24"),
+        (f"design.chart={{ lengths = {[0.04 * k for k in range(1, 26)]} }}", "25 reliefs exceed the maximum of 24"),
         ("gear.a.rack={ addendum = 1.4, dedendum = 1.6, tip_radius = 0.2 }", "has no highest point of single tooth"),
     ],
 )

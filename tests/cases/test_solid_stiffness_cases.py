@@ -164,12 +164,12 @@ def test_pictures_and_field(results, tmp_path):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ('stiffness.face_positions=["5 mm"]', "lies off the face of gear a; it runs from -4 mm to 4 mm"),
+        ('stiffness.face_positions=["5 mm"]', "5 mm: is outside the face width of gear a; valid range -4 mm to 4 mm"),
         ("stiffness.face_positions=0", "must be greater than or equal to 1"),
         ("stiffness.face_positions=[3.0]", "has no unit; a length requires one"),
-        ("stiffness.positions=3000", "3,000 x 5 = 15,000 bands; reduce to at most 4,000"),
+        ("stiffness.positions=3000", "3,000 x 5 = 15,000 bands, above the limit; reduce to at most 4,000"),
         ('stiffness.load="100 N/mm"', "is a load per width and is not defined for load bands on a 3D gear"),
-        ('stiffness={ radii = ["5 mm"], face_positions = 1 }', "is outside the involute flank,"),
+        ('stiffness={ radii = ["5 mm"], face_positions = 1 }', "is outside the involute flank of gear a; valid range"),
         ('gear.a.tooth_mesh="x.msh"', "is a 2D mesh and cannot be used for a 3D gear"),
         ('gear.a.face_width="160 mm"', "face_width = 80 modules: must be between"),
     ],

@@ -150,8 +150,9 @@ def compliance(model: Model, frequency: ArrayLike, method: Method = "direct") ->
 def _refuse_resonance(least: Array, natural: Array, w: Array) -> None:
     hit = least <= 1e-12 * natural.max() ** 2
     if hit.any():
+        hertz = float(w[np.argmax(hit)]) / (2.0 * math.pi)
         raise RangeError(
-            "frequency", float(w[np.argmax(hit)]), "is an undamped resonance: unbounded response",
+            "frequency", f"{hertz:.9g} Hz", "is an undamped resonance: unbounded response",
             "specify damping or change the frequency",
         )  # fmt: skip
 
