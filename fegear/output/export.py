@@ -100,10 +100,10 @@ def export_gears(
     plane, of_gears = _of(wanted, "plane mesh"), [name for name, row in wanted.items() if row.holds != "case"]
     helical = [name for name in chosen if name not in scene.spur_gears]
     if len(helical) == len(chosen) and plane and len(plane) == len(wanted):
-        which = "is helical" if len(helical) == 1 else "are helical"
+        spur = "a spur gear" if len(helical) == 1 else "spur gears"
         others = " or ".join(name for name, row in FORMATS.items() if row.holds == "flanks")
-        rule = f"{', '.join(sorted(plane))} hold plane meshes of spur gears; write {others}"
-        raise InputError("--gear", ", ".join(helical), which, rule)
+        rule = f"must be {spur} for {', '.join(sorted(plane))} (plane meshes)"
+        raise InputError("--gear", ", ".join(helical), rule, f"use {others}")
     for row in wanted.values():
         row.require()
     written: list[Path] = []

@@ -16,7 +16,7 @@ from fegear.engine.stage import Stage
 SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     "Gears and teeth": (
         Entry("geometry", "gear.geometry.GEOMETRY", "Geometry", ("geometry",),
-              "gear data as on a drawing: diameters, span measurement, dimension over balls, contact ratio, backlash",
+              "gear data for drawings: diameters, span measurement, dimension over balls, contact ratio, backlash",
               internal=True),
         Entry("tooth-geometry-check", "gear.tooth_geometry_check.TOOTH_GEOMETRY_CHECK",
               "Design check (rules of thumb)", ("tooth-geometry-check",),

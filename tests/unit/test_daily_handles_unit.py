@@ -197,7 +197,7 @@ def test_numbers_that_toml_refuses_are_numbers(say):
 def test_results_are_listed_by_subject_with_a_line_each(say):
     code, out, _ = say("results")
     assert code == 0
-    assert out.startswith("A gear and its teeth:\n")
+    assert out.startswith("Gears and teeth:\n")
     told = json.loads(say("results", "--json")[1])
     assert set(told) == set(RESULTS)
     for name, found in told.items():

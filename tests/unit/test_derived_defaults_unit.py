@@ -83,10 +83,12 @@ DESIGN = joined(PAIR, {"results": ["relief"], "effects": {}, "design": {"grind":
 LOADING = {"results": ["loading-spectrum"], "loading": {"contact_ratio": 1.6}}
 OF_PAIR = joined(PAIR, {"results": ["loading-spectrum"], "effects": {}, "loading": {"pair": "I"}})
 RATING = shipped("rating_spur", "rating")
+ROUGH = joined(RATING, {"gear.pinion.roughness": {"flank": "0.8 um", "root": "3 um"}})
 SET = shipped("planetary_set", "planet-set", "planet-modes")
 SURFACE = joined(
     shipped("surface_and_loss", "flank-surface"), {"pair.I.compliance": {"source": "weber-banaschek"}, "effects": {}}
 )
+LOSS = joined(SURFACE, {"results": ["gear-mesh-power-loss"]})
 
 #: Key, case, where it is written, and what is written: a value, or how it follows from the case as it was built.
 ROWS = {
@@ -147,6 +149,9 @@ ROWS = {
     "SpectrumPart.speed": (
         joined(RATING, {"pair.I.operation.spectrum": [{"load_factor": 1.0, "share": 1.0}]}),
         "pair.I.operation.spectrum", [{"load_factor": 1.0, "share": 1.0, "speed": "1480 rpm"}]),
+    "RoughnessPart.flank_rz": (ROUGH, "gear.pinion.roughness.flank_rz", f"{6.0 * 0.8!r} um"),
+    "RoughnessPart.root_rz": (ROUGH, "gear.pinion.roughness.root_rz", "18 um"),
+    "PairPart.friction": (LOSS, "pair.I.friction", {"law": "schlenk"}),
     "StrengthPart.hardness": (joined(RATING, {"gear.wheel.strength.hardness": None}), "gear.wheel.strength.hardness",
                               "730 HV"),
     "PlanetaryPart.centre_distance": (SET, "planetary.P.centre_distance", "54 mm"),
@@ -215,15 +220,15 @@ def off(one, other):
 
 #: Where a page derives what no row writes: what is not there (a rigid bearing, no film), or has no value of its own ...
 NOT_THERE = {
-    "AccuracyPart.corner_distance", "BearingPlacePart.around", "BodyPart.inertia", "CostPart.quantities",
-    "DamperPart.b", "DesignPart.film", "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius",
-    "GearPart.body", "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh", "LoadingPart.contact_ratio",
-    "LoadingPart.pair", "OperationPart.life", "PairPart.loads", "SetBodiesPart.carrier", "SetStiffnessPart.carrier",
-    "SetStiffnessPart.pin", "SetStiffnessPart.ring", "SetStiffnessPart.sun", "SetStiffnessPart.turning",
-    "ShaftInSpacePart.coupling", "StiffnessPart.face_positions", "StiffnessPart.gear", "ToothContactPart.load",
-    "TrainPart.balance", "WebHolesPart.tooth", "fegear__case__shaft__BearingPart.axial",
+    "AccuracyPart.corner_distance", "BearingPlacePart.around", "Case.neglected", "CostPart.quantities", "DamperPart.b",
+    "DesignPart.film", "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
+    "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh", "GearPart.web_thickness",
+    "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.loads", "SetBodiesPart.carrier",
+    "SetStiffnessPart.carrier", "SetStiffnessPart.pin", "SetStiffnessPart.ring", "SetStiffnessPart.sun",
+    "SetStiffnessPart.turning", "ShaftInSpacePart.coupling", "StiffnessPart.face_positions", "StiffnessPart.gear",
+    "ToothContactPart.load", "TrainPart.balance", "WebHolesPart.tooth", "fegear__case__shaft__BearingPart.axial",
     "fegear__case__shaft__BearingPart.housing_axial", "fegear__case__shaft__BearingPart.housing_radial",
-    "fegear__case__shaft__BearingPart.radial", "Case.neglected",
+    "fegear__case__shaft__BearingPart.radial",
 }  # fmt: skip
 #: ... or needs a formula, a search or solid gears of its own.
 NOT_WRITTEN = {
@@ -237,15 +242,19 @@ NOT_WRITTEN = {
     "FlankDesignPart.load", "FlankDesignPart.loads", "FlankDesignPart.pair", "FlankMapPart.over_face",
     "GearBodyPart.hub_width", "GearPlacePart.seat", "IsoPart.micropitting_material_factor",
     "IsoPart.tip_relief_factor", "LoadDistributionPart.panels", "LoadingPart.peaks", "LoadingPart.tooth_frequency",
-    "LubricantPart.viscosity_100", "MeasuredPart.lead_range", "MeasuredPart.profile_range", "MeshErrorPart.flanks",
-    "MeshErrorPart.harmonic", "MeshErrorPart.harmonics", "PairFrictionPart.law", "RigidGearPart.damping",
-    "RobustReliefPart.amounts", "RobustReliefPart.lengths", "SetBodiesPart.planet", "SetBodiesPart.ring",
-    "SetBodiesPart.sun", "SetStiffnessPart.ring_mesh", "SetStiffnessPart.sun_mesh", "ShaftsPart.deformation",
-    "ShaftsPart.misalignment", "ShaftsPart.modification", "StiffnessPart.pair", "StrengthPart.residual_stress",
-    "StrengthPart.yield_strength", "StudyPart.pressure_angle", "StudyPart.rack_dedendum", "TolerancePart.deviations",
-    "TolerancePart.pair", "fegear__case__helical__ShaftPart.over",
+    "LubricantPart.permissible_film", "LubricantPart.scuffing_temperature", "LubricantPart.viscosity_100",
+    "MeasuredPart.lead_range", "MeasuredPart.profile_range", "MeshErrorPart.flanks", "MeshErrorPart.harmonic",
+    "MeshErrorPart.harmonics", "OperationPart.dynamic_factor", "OperationPart.face_load_factor",
+    "OperationPart.mean_stress_factor", "OperationPart.transverse_load_factor", "PairFrictionPart.law",
+    "PairFrictionPart.viscosity", "RigidGearPart.damping", "RobustReliefPart.amounts", "RobustReliefPart.lengths",
+    "SetBodiesPart.planet", "SetBodiesPart.ring", "SetBodiesPart.sun", "SetStiffnessPart.ring_mesh",
+    "SetStiffnessPart.sun_mesh", "ShaftsPart.misalignment", "ShaftsPart.modification", "StiffnessPart.pair",
+    "StrengthPart.bending", "StrengthPart.contact", "StrengthPart.residual_stress", "StrengthPart.yield_strength",
+    "StudyPart.pressure_angle", "StudyPart.rack_dedendum", "TolerancePart.deviations", "TolerancePart.pair",
+    "TrainMeshPart.stiffness", "TransmissibilityPart.driven", "TransmissibilityPart.driver",
+    "fegear__case__helical__ShaftPart.over",
 }  # fmt: skip
-_DERIVED = re.compile(r"without|Default:|default:|by default|unless given")
+_DERIVED = re.compile(r"[Ww]ithout|[Dd]efault\b|unless specified")
 
 
 def derived():

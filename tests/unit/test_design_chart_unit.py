@@ -86,5 +86,5 @@ def test_where_the_line_misses_most_is_said():
     off = factor.copy()
     off[2, 3] = 3.0
     (sentence,) = line_remark(replace(made, dynamic_factor=off))
-    assert "at 1.5 Delta, L_n = 1.25: 3, foretold 1.9" in sentence
+    assert "at 1.5 Delta, L_n = 1.25: 3, predicted 1.9" in sentence
     assert line_remark(replace(made, line=None)) == ()

@@ -28,5 +28,5 @@ def test_a_backlash_that_is_not_the_gears_needs_the_effect():
     assert planned("effects.contact_loss=false").steps
     for backlash in ("20 um", "35 um"):
         assert planned(f'train.mesh.I.backlash="{backlash}"').steps
-        with pytest.raises(InputError, match=r"has a meaning only with effects\.contact_loss = true"):
+        with pytest.raises(InputError, match=r"requires effects\.contact_loss = true"):
             planned(f'train.mesh.I.backlash="{backlash}"', "effects.contact_loss=false")

@@ -60,7 +60,7 @@ def test_a_format_is_its_row(teeth, tmp_path):
         for (name, gear), hand in zip(GEARS.items(), ("right", "left"), strict=True)
     }  # fmt: skip
     with pytest.raises(
-        InputError, match="teeth: plane meshes are available for spur gears only; use dxf or step or relief"
+        InputError, match=r"--gear = p, w: must be spur gears for teeth \(plane meshes\); use dxf or step or relief"
     ):
         export_gears(scene_of(gear=helical), tmp_path, (), "teeth")
 

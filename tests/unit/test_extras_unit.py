@@ -53,7 +53,9 @@ def test_a_case_names_what_it_needs(bare, name, needed, refused):
 
 @pytest.mark.usefixtures("bare")
 def test_what_cannot_be_computed_is_refused_before_anything_is():
-    with pytest.raises(MissingLibraryError, match=r"numba is not installed; install it with: pip install 'fegear\[mot"):
+    with pytest.raises(
+        MissingLibraryError, match=r"numba is not installed\. Install it with: pip install 'fegear\[mot"
+    ):
         fegear.run(CASES / "lin_design_chart.toml", progress=False)
 
 

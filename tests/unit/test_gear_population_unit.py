@@ -116,7 +116,7 @@ def test_right_everywhere_and_silent_everywhere():
     assert "everywhere, 100 % of the population" in sentence(exact, WORDS)
     silent = reach("silent", np.full(1200, np.nan), columns, gear, columns["load_position"] >= 0.5)
     assert silent.silent == 1.0
-    assert sentence(silent, WORDS) == "silent gives nothing anywhere in this population."
+    assert sentence(silent, WORDS) == "silent gives no value for any gear of this population."
     # points at which a formula gives nothing are no points at which it is near
     half = np.where(np.arange(1200) % 2 == 0, 1.0, np.nan)
     assert reach("half", half, columns, gear, columns["load_position"] >= 0.5).range is None

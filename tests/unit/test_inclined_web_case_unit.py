@@ -59,7 +59,7 @@ def test_on_its_shaft_it_leans_with_its_end_two():
         (
             {"web_inclination": "-20 deg", "hub_width": "4 mm", "hub_offset": "2 mm"},
             "hub",
-            "must reach over the web, t",
+            "must cover the web, there -2.72978 to 0.270223 mm, within the face width",
         ),
         (
             {"web_inclination": "-5 deg", "web_offset": "2.5 mm"},

@@ -211,8 +211,10 @@ def test_work_hardening_is_of_the_softer_steel():
         assert [f > 1.0 for f in found] == [f > 1.0 for f in static] == [a > 1.0 for a in at_least]
         assert remark == ""
     unknown = replace(strength("V"), hardness=math.nan)
-    assert "not known" in flank.work_hardening(c.geometry, (strength("Eh"), unknown), (2e-6, 2e-6), 2e-4, 5.0)[2]
-    assert "not known" in flank.work_hardening(c.geometry, (unknown, unknown), (2e-6, 2e-6), 2e-4, 5.0)[2]
+    one = flank.work_hardening(c.geometry, (strength("Eh"), unknown), (2e-6, 2e-6), 2e-4, 5.0)[2]
+    both = flank.work_hardening(c.geometry, (unknown, unknown), (2e-6, 2e-6), 2e-4, 5.0)[2]
+    assert "hardness of the softer gear not specified" in one
+    assert "hardness of the gears not specified" in both
 
 
 @given(f_sh=st.floats(0.0, 60e-6), f_ma=st.floats(0.0, 60e-6), load=st.floats(5e4, 2e6))
