@@ -127,7 +127,7 @@ def helical_figure() -> Figure:
 
 #: Columns of the helical table of which a range may speak, and the words for them.
 SPOKEN = {
-    "teeth": ("z", ""), "profile_shift": ("x", ""), "helix_angle [deg]": ("helix angle", "deg"),
+    "teeth": ("z", ""), "profile_shift": ("x", ""), "helix_angle [deg]": ("helix angle", "°"),
     "face_width [modules]": ("face width", "modules"), "overlap_ratio": ("overlap ratio", ""),
     "rack_tip_radius": ("rack tip radius", "modules"),
 }  # fmt: skip
@@ -142,7 +142,7 @@ def helical_sentences() -> list[str]:
     for key, name in RATED.items():
         one = reach(name, even[key], columns, pair, np.zeros(pair.size, dtype=bool))
         shared = reach(name, solved[key], columns, pair, np.zeros(pair.size, dtype=bool))
-        ends = f"{off(shared.low)} to {off(shared.high)} (median {off(shared.median)})".replace("%", " %")
+        ends = f"{off(shared.low)} to {off(shared.high)} (median {off(shared.median)})"
         near = f"{100.0 * shared.near:.0f} %"
         said = sentence(one, SPOKEN)[:-1].replace("over all loads", "under even loads")
         found.append(f"{said}, and {ends} under loads as the flanks share them, where {near} of gears are within 10 %.")
@@ -156,7 +156,7 @@ def khbeta_map() -> list[str]:
         for r in slices.table()
         if r["body"] == "solid"
     }
-    lines = ["| face width, modules |" + "".join(f" {a} deg |" for a in slices.ANGLES)]
+    lines = ["| face width, modules |" + "".join(f" {a}° |" for a in slices.ANGLES)]
     lines.append("|---|" + "---|" * len(slices.ANGLES))
     for width in slices.WIDTHS:
         cells = []

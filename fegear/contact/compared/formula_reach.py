@@ -183,7 +183,7 @@ def _ends(low: float, median: float, high: float) -> str:
 
 def _condition(c: Condition, words: Mapping[str, tuple[str, str]]) -> str:
     word, unit = words[c.name]
-    return f"{word} {'>=' if c.above else '<='} {c.at:g}{' ' if unit else ''}{unit}"
+    return f"{word} {'>=' if c.above else '<='} {c.at:g}{' ' if unit not in ('', '°') else ''}{unit}"
 
 
 def off(ratio: float) -> str:

@@ -334,7 +334,7 @@ WORDS = {
     "profile_shift": ("x", ""),
     "rack_tip_radius": ("rack tip radius", "modules"),
     "rack_dedendum": ("rack dedendum", "modules"),
-    "pressure_angle": ("pressure angle", "deg"),
+    "pressure_angle": ("pressure angle", "°"),
     "load_position": ("load position", ""),
 }
 
@@ -393,7 +393,7 @@ def bounds_in_words(table: Mapping[str, Array]) -> str:
     for key, (word, unit) in WORDS.items():
         values = _number(table, key)
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
-        tail = f" {unit}" if unit else ""
+        tail = ("" if unit == "°" else " ") + unit if unit else ""
         parts.append(f"{word} {low:.3g}{tail}" if low == high else f"{word} {low:.3g} to {high:.3g}{tail}")
     return ", ".join(parts)
 
