@@ -96,7 +96,7 @@ def test_a_ring_of_an_unknown_tool_is_made_by_its_root_circle_and_fillet_radius(
     found = fegear.run(ring(root_diameter="105 mm", tip_radius=0.2), progress=False)
     tooth = found.scene.gears["r"].tooth
     assert 2.0 * tooth.root_radius * 2.0 == pytest.approx(105.0)
-    assert any(f"assumed default: {tooth.cutter.teeth} teeth" in one for one in found.remarks)
+    assert any(f"cutter.teeth not specified, {tooth.cutter.teeth} assumed" in one for one in found.remarks)
     by_polygons = polygons()
     sharp = by_polygons.cutter_side(tooth)
     assert by_polygons.pulled(sharp, tooth, tooth.generating_distance) < by_polygons.MEETS

@@ -77,7 +77,7 @@ def test_configurations_at_the_floor_say_nothing():
     ("error", "words"),
     [
         ([1e-2, 1e-2, 1e-2, 1e-2], "none: the error does not decrease with the"),
-        ([1e-3, 1e-2, 1e-4, 1e-1], "lie within"),
+        ([1e-3, 1e-2, 1e-4, 1e-1], "no 3 adjacent configurations within 1.6 of a line"),
         ([1e-3, 1e-2, math.nan, math.nan], "only 2 of 4"),
         ([0.0, 0.0, 0.0, 0.0], "only 0 of 4"),
     ],

@@ -168,7 +168,7 @@ def test_a_row_of_teeth_has_two_free_sides():
     with pytest.raises(InputError, match="must be consecutive numbers, at most"):
         gear_section({0: mesh, 2: mesh})
     other = mesh_sector(TOOTH, 2.5, MeshSettings().scaled(1.0))
-    with pytest.raises(InputError, match="do not fit"):
+    with pytest.raises(InputError, match="sides whose nodes do not match"):
         gear_section({0: mesh, 1: other})
 
 

@@ -61,7 +61,14 @@ def test_balls_touch_the_generated_outline_on_both_flanks_and_stand_out(z, shift
     assert reach + radius > made.tip_radius
 
 
-@pytest.mark.parametrize(("size", "rule"), [(1e-4, "falls"), (1.3e-3, "below|root|tip"), (4e-3, "tips|no involute")])
+@pytest.mark.parametrize(
+    ("size", "rule"),
+    [
+        (1e-4, "so small that it has no contact above the base circle"),
+        (1.3e-3, "below|root|tip"),
+        (4e-3, "tips|no involute"),
+    ],
+)
 def test_balls_that_no_gauge_could_use_are_refused_with_a_size_that_fits(size, rule):
     with pytest.raises(GeometryError, match=rule) as refused:
         over_balls(gear(20), size)

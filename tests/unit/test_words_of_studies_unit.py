@@ -63,7 +63,7 @@ def test_a_notebook_s_line_changes_a_few_times_a_second_and_sums_up(monkeypatch)
             line.advance(fraction)
         line.end(1.5)
         line.end(2.0)
-    assert said == ["[1/2] Gear a", "[1/2] Gear a: 10%", "[1/2] Gear a: 35%", "1 step in 1.50 s", "2 steps in 3.50 s"]
+    assert said == ["[1/2] Gear a", "[1/2] Gear a: 10 %", "[1/2] Gear a: 35 %", "1 step in 1.50 s", "2 steps in 3.50 s"]
 
 
 # ---- accuracy --------------------------------------------------------------------------------------------------------

@@ -219,7 +219,7 @@ def test_xarray_finds_a_row_of_a_table_by_its_place(found):
 )
 def test_a_missing_library_is_one_sentence(found, library, ask, monkeypatch):
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(MissingLibraryError, match=rf"^{library} is not installed. Install it with: pip install"):
+    with pytest.raises(MissingLibraryError, match=rf"^{library} is not installed; install it with: pip install"):
         ask(found)
 
 
