@@ -23,8 +23,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "tip thickness, rim thickness, undercut, contact ratio and clearances compared with "
               "usual limits", internal=True),
         Entry("measured-flanks", "gear.measured_flanks.MEASURED_FLANKS", "Measured flanks", ("measured-flanks",),
-              "profile and helix slope, form and total deviations of measured flanks, and the resulting tolerance "
-              "class (ISO 1328-1)",
+              "profile and helix deviations (slope, form, total) of measured flanks, and their tolerance class",
               internal=True),
         Entry("gear-solution", "gear.solved_gear.GEAR_SOLUTION", "Influence functions of a gear (2D)", internal=True),
         Entry("stiffness", "gear.stiffness.STIFFNESS", "Compliance and root stress (2D, full gear)", ("stiffness",),
@@ -76,33 +75,29 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               internal=True),
         Entry("load-distribution", "pair.load_distribution.LOAD_DISTRIBUTION",
               "Load distribution on the flanks", ("load-distribution",),
-              "line load and contact pressure over profile and face width, K_Hbeta, K_Halpha, K_Fbeta, K_Falpha "
-              "(spur and helical)",
+              "line load and pressure over profile and face width, K_Hbeta, K_Halpha, K_Fbeta, K_Falpha",
               effects=WIDE_EFFECTS, internal=True),
         Entry("flank-load-factors", "pair.load_factors.FLANK_LOAD_FACTORS",
               "Load factors", ("load-distribution",),
-              "line load and contact pressure over profile and face width, K_Hbeta, K_Halpha, K_Fbeta, K_Falpha "
-              "(spur and helical)",
+              "line load and pressure over profile and face width, K_Hbeta, K_Halpha, K_Fbeta, K_Falpha",
               effects=WIDE_EFFECTS, internal=True),
         Entry("contact-pattern", "pair.contact_pattern.CONTACT_PATTERN", "Contact pattern", ("load-distribution",),
-              "line load and contact pressure over profile and face width, K_Hbeta, K_Halpha, K_Fbeta, K_Falpha "
-              "(spur and helical)",
+              "line load and pressure over profile and face width, K_Hbeta, K_Halpha, K_Fbeta, K_Falpha",
               effects=WIDE_EFFECTS, internal=True),
         Entry("mesh-stiffness-matrix", "pair.mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX",
               "Mesh stiffness matrix", ("mesh-stiffness-matrix",),
               "mesh stiffness for translation and tilting of the gears: K_M, kappa, mu",
               effects=WIDE_EFFECTS),
         Entry("rating", "rating.rating.RATING", "Rating (load capacity)", ("rating",),
-              "safety factors for pitting and tooth breakage to ISO 6336 with all factors; FE-based and AGMA 2101 "
-              "values for comparison",
+              "safety factors for pitting and tooth breakage to ISO 6336, compared with FE and AGMA 2101",
               effects=WIDE_EFFECTS, internal=True),
         Entry("flank-fracture", "rating.flank_fracture.FLANK_FRACTURE",
               "Tooth flank fracture and case depth", ("flank-fracture",),
               "material exposure over depth to ISO/TS 6336-4 (tooth flank fracture) and required case depth"),
         Entry("flank-surface", "pair.flank_surface.FLANK_SURFACE", "Scuffing, micropitting, "
                                                                    "lubricant film", ("flank-surface",),
-              "sliding, pressure, flash temperature, film thickness; safety against scuffing and micropitting over A "
-              "to E", extra="space",
+              "sliding, pressure, flash temperature, film thickness; safety against scuffing and micropitting",
+              extra="space",
               effects=WIDE_EFFECTS, internal=True),
         Entry("gear-mesh-power-loss", "pair.gear_mesh_power_loss.GEAR_MESH_POWER_LOSS",
               "Gear mesh power loss", ("gear-mesh-power-loss",),
@@ -111,8 +106,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     ),
     "Profile modification": (
         Entry("relief", "relief.relief.RELIEF", "Profile modification for minimum excitation", ("relief",),
-              "profile modification of both gears for zero transmission error at the design load, and the best "
-              "grindable tip relief",
+              "profile modification for zero transmission error at the design load; best grindable tip relief",
               effects=("corner_contact", "neighbour_coupling", "hertz"), quantities=("te-peak-to-peak",),
               internal=True),
         Entry("relief-curves", "relief.relief_curves.RELIEF_CURVES",
@@ -129,8 +123,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               internal=True),
         Entry("tolerance-robustness", "relief.tolerance_robustness.TOLERANCE_ROBUSTNESS",
               "Effect of tolerances", ("robustness",),
-              "scatter of transmission error, root stress, pressure and K_Hbeta within the tolerance class (Monte "
-              "Carlo)",
+              "scatter of transmission error, root stress, pressure and K_Hbeta within the tolerance class",
               effects=WIDE_EFFECTS, internal=True),
         Entry("loading-spectrum", "relief.loading_spectrum.LOADING_SPECTRUM",
               "Tooth loading functions and spectra", ("loading-spectrum",),
@@ -165,8 +158,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     ),
     "Planetary gear sets": (
         Entry("planet-set", "planetary.planet_set.PLANET_SET", "Planetary gear set", ("planet-set",),
-              "speeds, torques, frequencies and mesh phases of a planetary gear set, and the harmonics cancelled by "
-              "phasing",
+              "speeds, torques, frequencies, mesh phases of a planetary gear set; harmonics cancelled by phasing",
               internal=True),
         Entry("set-cycle", "planetary.planet_load_sharing.SET_CYCLE", "Meshes of a planetary gear set over the mesh "
                                                                       "cycle",
@@ -179,7 +171,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               internal=True),
         Entry("planet-root-stress", "planetary.planet_root_stress.PLANET_ROOT_STRESS",
               "Root stress of planet teeth over one revolution", ("planet-root-stress",),
-              "root stress of planet (alternating bending by sun and ring), sun and ring: range, mean, stress ratio R",
+              "root stress of planet (alternating bending), sun and ring: range, mean, stress ratio R",
               internal=True),
         Entry("planet-modes", "planetary.planet_vibration.PLANET_MODES",
               "Natural modes of a planetary gear set", ("planet-modes",),
@@ -200,8 +192,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Shaft deflection and bearing forces", ("shaft-deflection",),
               "shaft deflection under all mesh forces, bearing forces and bearing life (ISO 281)", internal=True),
         Entry("misalignment", "shafts.misalignment.MISALIGNMENT", "Mesh misalignment", ("misalignment",),
-              "mesh misalignment from shafts, bearings and housing, by cause, and the resulting gap over the face "
-              "width",
+              "mesh misalignment from shafts, bearings and housing, by cause; gap over the face width",
               internal=True),
     ),
     "Drive train dynamics": (
