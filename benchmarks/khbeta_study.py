@@ -45,7 +45,7 @@ CAUSES = (
     "uncoupled slices, for one body along the face, held axially",
     "no axial displacement, for free end faces and a body that bends",
     "tooth pairs that do not feel each other, for one body",
-    "lines that end at the tips, for tip edges that bear",
+    "lines that end at the tips, loaded tip edges included",
 )
 
 

@@ -70,8 +70,8 @@ class BearingLoads:
     force_y: Array = shown("N", "bearing force on the shaft, y")
     force_axial: Array = shown("N", "bearing reaction on the shaft")
     force_radial: Array = shown("N", "radial bearing force")
-    shift: Array = shown("um", "of the shaft at the bearing")
-    tilt: Array = shown("arcsec", "of the shaft at the bearing")
+    shift: Array = shown("um", "displacement of the shaft at the bearing")
+    tilt: Array = shown("arcsec", "tilt of the shaft at the bearing")
     life: Array = shown("", "basic rating life L_10, in revolutions (ISO 281)")
 
 

@@ -191,13 +191,13 @@ class OneKind:
         return self.traces.x if self.kind == "profile" else None
 
     @property
-    @shows("deg", "of the gear")
+    @shows("deg", "roll angle on the gear")
     def roll_angle(self) -> Array | None:
         """Of profile traces, shape (N,) [rad]."""
         return self.traces.x / self.asked.gear.base_radius if self.kind == "profile" else None
 
     @property
-    @shows("mm", "of the flank point")
+    @shows("mm", "radius of the point on the flank")
     def radius(self) -> Array | None:
         """Of profile traces, shape (N,) [m]."""
         gear, roll = self.asked.gear, self.roll_angle

@@ -155,7 +155,9 @@ class ShownLines:
         return values if np.isfinite(values).all() else None
 
     @property
-    @shows("arcsec", "of the aligned pair, constant over all angles", name="aligned_transmission_error")
+    @shows(
+        "arcsec", "transmission error of the aligned pair, constant over all angles", name="aligned_transmission_error"
+    )
     def play(self) -> float:
         """[rad]."""
         return float((self.lines.phi_2 - self.pair.ratio * self.lines.phi_1).mean())

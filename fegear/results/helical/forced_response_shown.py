@@ -137,7 +137,7 @@ class LinesOverSpeed:
         return self._each([line.source for line in self.found.lines])
 
     @property
-    @shows("Hz", "of the line")
+    @shows("Hz", "frequency of the spectral line")
     def frequency(self) -> Array:
         """[Hz]."""
         return self.found.frequency.ravel() / (2.0 * math.pi)

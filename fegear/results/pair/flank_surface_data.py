@@ -128,25 +128,25 @@ class ShownSurface:
         return self.asked.rated.at(self.computed.x)
 
     @property
-    @shows("deg", "of the driver gear")
+    @shows("deg", "roll angle of the driver gear")
     def roll_angle_driver(self) -> Array:
         """[rad]."""
         return np.asarray(self.data.pair.roll_angle(self.computed.x, "driver"))
 
     @property
-    @shows("deg", "of the driven gear")
+    @shows("deg", "roll angle of the driven gear")
     def roll_angle_driven(self) -> Array:
         """[rad]."""
         return np.asarray(self.data.pair.roll_angle(self.computed.x, "driven"))
 
     @property
-    @shows("", "of the driver gear")
+    @shows("", "specific sliding of the driver gear")
     def specific_sliding_driver(self) -> Array:
         """Along the path."""
         return specific_sliding(self.data.pair, self.computed.x, "driver")
 
     @property
-    @shows("", "of the driven gear")
+    @shows("", "specific sliding of the driven gear")
     def specific_sliding_driven(self) -> Array:
         """Along the path."""
         return specific_sliding(self.data.pair, self.computed.x, "driven")

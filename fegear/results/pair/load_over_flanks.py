@@ -147,7 +147,7 @@ class PairShare:
 
     number: int
     error: Array
-    share: Array = shown("", "of the load on pair")
+    share: Array = shown("", "share of the load on pair")
 
 
 @dataclass(frozen=True)
