@@ -350,7 +350,7 @@ def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     assert process.stdout is not None
     lines = iter(process.stdout.readline, "")
     assert next(lines).startswith("Cost study: ")
-    assert next(lines).startswith(", plus some seconds for tables, figures and report.")
+    assert next(lines).startswith("Estimated CPU time: about ")
     assert next(lines) == "waiting\n"
     os.kill(process.pid, signal.SIGINT)
     _, errors = process.communicate(timeout=60)
