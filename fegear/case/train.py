@@ -212,7 +212,7 @@ class TorqueRipplePart(Part):
                 raise refuse(f"exceeds {FASTEST[key]:,.0f}{' Hz' if key == 'frequency' else ''}", "check it", key=key)
         if (self.amplitude is None) == (self.amplitude_over_mean is None):
             raise refuse(
-                "is required, or amplitude_over_mean", 'set amplitude = "8 N*m"', key="amplitude",
+                "must be specified in one way", 'set amplitude = "8 N*m" or amplitude_over_mean', key="amplitude",
                 value="(both)" if self.amplitude is not None else "(not given)",
             )  # fmt: skip
         return self

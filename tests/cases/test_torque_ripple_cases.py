@@ -122,8 +122,9 @@ def test_a_shared_cache_sees_every_key_and_the_content_of_files(tmp_path):
         ("body = 'engine', order = 2, amplitude = '1 N'", "is not a torque"),
         ("body = 'engine', amplitude = '1 N*m'", "order.*is required, or frequency"),
         ("body = 'engine', order = 2, frequency = '10 Hz', amplitude = '1 N*m'", "order.*is required, or frequency"),
-        ("body = 'engine', order = 2", "amplitude.*must be given"),
-        ("body = 'engine', order = 2, amplitude = '1 N*m', amplitude_over_mean = 0.1", "amplitude.*must be given"),
+        ("body = 'engine', order = 2", r"amplitude = \(not given\): must be specified in one way"),
+        ("body = 'engine', order = 2, amplitude = '1 N*m', amplitude_over_mean = 0.1",
+            r"amplitude = \(both\): must be specified in one way"),
         ("body = 'wheel', order = 2, amplitude_over_mean = 0.1", "refers to the constant torque of body wheel"),
         ("body = 'engine', frequency = '10 Hz', order_of = 'wheel', amplitude = '1 N*m'",
             "is not used with a fixed frequency"),
@@ -143,10 +144,10 @@ def test_nonsense_is_refused_with_its_key(way, said):
     ("lines", "said"),
     [
         ("0,1\n90,-1\n180,0.5", "begins with 1 N\\*m and ends with 0.5 N\\*m: not a full period"),
-        ("0,1\n90,-1\n80,1", "angle must rise"),
+        ("0,1\n90,-1\n80,1", "with angle strictly increasing"),
         ("0,1\n180,1", "needs at least 3 lines"),
         ("0,1\n90,nan\n180,1", "is not finite"),
-        ("0,1\n90,x\n180,1", "no number"),
+        ("0,1\n90,x\n180,1", "not a number"),
     ],
 )
 def test_files_that_are_no_period_are_refused(tmp_path, lines, said):
@@ -162,14 +163,17 @@ def test_a_mean_torque_and_harmonics_that_are_left_out_are_said(tmp_path):
     key = f"train.torque_ripple={{ a = {{ body = 'engine', file = '{file}', harmonics = 1 }} }}"
     found = result("results=['torque-ripple']", key)
     assert any("mean torque of 9.6 N m in its file ignored" in note for note in found.remarks)
-    assert any("harmonics above 1 are left out" in note for note in found.remarks)
+    assert any("harmonics above 1 omitted" in note for note in found.remarks)
     assert found.tables[0].columns[3].values.tolist() == pytest.approx([100.0])
 
 
 def test_an_effect_without_data_and_data_without_their_effect():
     with pytest.raises(InputError, match="has no effect: train\\.torque_ripple is not specified"):
         result(MOTION, "train.torque_ripple={}")
-    with pytest.raises(InputError, match='is required by law = "'):
+    with pytest.raises(
+        InputError,
+        match=r'is required by "torque-ripple": the torques of train\.torque_ripple are its load',
+    ):
         result("results=['torque-ripple']", "effects.torque_ripple=false")
     with pytest.raises(InputError, match="is also the name of a mesh; excitations must have unique names"):
         result(MOTION, "train.torque_ripple={ I = { body = 'engine', order = 2, amplitude = '1 N*m' } }")

@@ -82,9 +82,7 @@ def test_below_a_contact_ratio_of_one_corners_alone_carry_where_no_pair_is_on_th
     above = run(1e-9, 1, corners=True)
     assert results.values["I.te_peak_to_peak"].si > 0.0
     assert "I.mesh_compliance_mean" not in results.values
-    assert any(
-        "I.mesh_compliance_mean" in r and ": C_a = 0 for tips without relief (running-in" in r for r in results.remarks
-    )
+    assert any("I.mesh_compliance_mean" in r and "positions with corner contact only" in r for r in results.remarks)
     assert "I.mesh_compliance_mean" in above.values
     if below < 1e-6:
         assert results.values["I.te_mean"].si == pytest.approx(above.values["I.te_mean"].si, rel=1e-6)

@@ -107,15 +107,15 @@ def test_any_case_gives_finite_numbers_or_one_sentence(data):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (["gear.a.bore_radius=1e-9 mm"], "too near the centre"),
-        (["gear.a.bore_radius=26.849 mm"], "too near the root circle"),
+        (["gear.a.bore_radius=1e-9 mm"], "too close to the centre"),
+        (["gear.a.bore_radius=26.849 mm"], "too close to the root circle"),
         (["gear.a.material.poisson_ratio=0.49999"], "at most 0.4999"),
         (["gear.a.material.poisson_ratio=0.7"], "inside"),
-        (["gear.a.module=1e200 mm"], "is outside the plausible range"),
+        (["gear.a.module=1e200 mm"], "in SI units, outside the plausible range; check the unit"),
         (["gear.a.profile_shift=1e200"], "is outside the plausible range"),
         (["gear.a.teeth=5", "gear.a.profile_shift=-0.75"], "undercut"),
-        (["gear.a.tip_radius_rounding=2 mm"], ", or plane stress"),
-        (["gear.a.tip_chamfer=3 mm"], ", or plane stress"),
+        (["gear.a.tip_radius_rounding=2 mm"], r"is too large for the tip; use at most 1\.5864 mm"),
+        (["gear.a.tip_chamfer=3 mm"], r"is too large for the tip; use at most 2\.2533 mm"),
         (["gear.a.tip_diameter=90 mm"], "choose a tip diameter below 69.93"),
     ],
 )
@@ -148,8 +148,8 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
 @pytest.mark.parametrize(
     ("case", "override", "key", "words"),
     [
-        ("sources/mark_fig12", "loading.length=1e9 mm", "loading.length", "no gears have; choose at most 100"),
-        (SLOPES, "loading.contact_ratio=1e9", "loading.contact_ratio", "choose at most 100"),
+        ("sources/mark_fig12", "loading.length=1e9 mm", "loading.length", "contact ratio; use at most 100"),
+        (SLOPES, "loading.contact_ratio=1e9", "loading.contact_ratio", "use at most 100"),
         (SLOPES, "loading.contact_ratio=0.5", "loading.contact_ratio", "choose at least 1"),
         (SLOPES, "loading.slopes=[nan]", r"loading.slopes[0]", "must be finite"),
         (SLOPES, "loading.peaks=[]", "loading.peaks", "must not be empty"),
@@ -169,7 +169,7 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
         (EXCITED, f"{OF_MESH}.base_helix_angle=90 deg", f"{OF_MESH}.base_helix_angle",
             "must be between -90 and 90 deg"),
         (EXCITED, f"{UNITY}.aspect_ratio=0", f"{UNITY}.aspect_ratio", "greater"),
-        (EXCITED, f"{UNITY}.alpha_z=-1", f"{UNITY}.alpha_z", "negative"),
+        (EXCITED, f"{UNITY}.alpha_z=-1", f"{UNITY}.alpha_z", "greater than or equal to 0"),
         (FOLLOWED, f"{FOLLOW}={{}}", FOLLOW, "must have at least one parameter"),
         (
             FOLLOWED, f"{FOLLOW}.base_helix_angle={{start='5 deg', stop='5 deg'}}",
@@ -201,16 +201,16 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
         (LINES, "gear.pinion.helix_angle=0 deg", "gear.pinion.hand", "contradicts the helix angle"),
         (LINES, "gear.pinion.hand=right", "pair.I.hand", "opposite hands"),
         (LINES, "gear.pinion.bore_radius=300 mm", "gear.pinion.bore_radius", "root radius"),
-        (LINES, "gear.pinion.module=2 mm", "gear.pinion.module", 'set normal_module'),
+        (LINES, "gear.pinion.module=2 mm", "gear.pinion.module", "use normal_module"),
         (LINES, "gear.pinion.face_width=0 mm", "gear.pinion.face_width", "greater than zero"),
         (LINES, "results=['load-sharing']", "pair.I.load", "is required for the load distribution"),
         (LINES, "pair.I.misalignment={lead='1 um', lead_angle='1 arcmin'}", "pair.I.misalignment.lead", "contradicts"),
-        ("litvin_lead", "pair.I.misalignment={lead='1 m'}", "pair.I.misalignment.lead", "within 20%"),
+        ("litvin_lead", "pair.I.misalignment={lead='1 m'}", "pair.I.misalignment.lead", "within 20 %"),
         (
             "sources/litvin_fig10", "pair.I.modification={crown='1 m'}",
-            "pair.I.modification.crown", "= 1000 mm: takes more",
+            "pair.I.modification.crown", "= 1000 mm: removes more",
         ),
-        (FACE, "stiffness.face_positions=['20 mm']", r"stiffness.face_positions[0]", "from -4 mm to 4 mm"),
+        (FACE, "stiffness.face_positions=['20 mm']", r"stiffness.face_positions[0]", "valid range -4 mm to 4 mm"),
         (FACE, "stiffness.face_positions=0", "stiffness.face_positions", "equal to 1"),
         (FACE, "stiffness.positions=100000", "stiffness.face_positions", "500,000 bands"),
         (FACE, "gear.a.face_width=600 mm", "gear.a.face_width", "60 modules"),
@@ -233,7 +233,7 @@ def test_results_of_literature_and_width_refuse_by_the_key_that_the_case_has(cas
 def test_a_case_without_gears_has_nothing_to_export(formats, tmp_path):
     from fegear.output.export import export_gears
 
-    with pytest.raises(InputError, match="Cost study: the case has no gears, so there is"):
+    with pytest.raises(InputError, match=r"gear = \(not given\): is required for export; add \[gear\.NAME\]"):
         export_gears(read_scene(CASES / f"{SLOPES}.toml", []), tmp_path, (), formats)
 
 

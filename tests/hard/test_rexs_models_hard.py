@@ -156,8 +156,8 @@ def changed(tree, number, **values):
     ("number", "values", "said"),
     [
         (41, {"outer_diameter_begin": (35.0, "m")}, r"outer_diameter_begin = 35 m: of shaft 3 exceeds"),
-        (41, {"outer_diameter_begin": (14e30, "mm")}, "is outside the shafts of gears, up to 20 m"),
-        (41, {"length": (120.0, "m")}, "length = 120 m: of shaft 3 is outside the shafts of gears, up to 30 m"),
+        (41, {"outer_diameter_begin": (14e30, "mm")}, "exceeds the plausible maximum of 20 m; check the unit"),
+        (41, {"length": (120.0, "m")}, "length = 120 m: of shaft 3 exceeds the plausible maximum of 30 m"),
         (41, {"length": (0.0, "mm")}, "length = 0 mm: of a section of shaft 3 must be positive"),
         (41, {"outer_diameter_begin": (0.0, "mm")}, "outer_diameter_begin = 0 mm: of a section of shaft 3 must be"),
         (21, {"center_distance": (0.0, "mm")}, "center_distance = 0 mm: of cylindrical_stage 21 must be positive"),

@@ -217,7 +217,7 @@ alpha_theta = 0.4
         ("alpha_z = { start = 0.1, stop = 1.0, responses = [-1.0] }", "follow.alpha_z = -1.0: must not be negative"),
         ("mu = { start = 0.1, stop = 0.3 }", "follow.mu = 0.1: must be finite and at least kappa^2"),
         ("kappa = { start = -0.5, stop = 0.3 }", "follow.kappa = -0.5: must be finite and at least kappa^2"),
-        ('base_helix_angle = { start = "0 deg", stop = "95 deg" }', "follow.base_helix_angle = 95 deg: must lie"),
+        ('base_helix_angle = { start = "0 deg", stop = "95 deg" }', "base_helix_angle = 95 deg: must be between"),
     ],
 )  # fmt: skip
 def test_ranges_in_which_no_model_can_be_built_are_refused_by_the_plan(follow, rule):

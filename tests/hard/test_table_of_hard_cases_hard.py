@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 #: What has to hold, as it begins a line of the page.
 MUST_HOLD = (
     "undercut pinions", "full-fillet racks", "tip rounding", "thin rims", "8 to 500 teeth", "Poisson's ratio 0.49",
-    "loads from 1e-3 to 1e4 N/mm", "load at the tip corner and at the start of the involute",
+    "loads from 1e-3 to 1e4 N/mm", "load at the tip edge and at the start of the involute",
     "contact ratio just above 1", "contact ratio exactly 2", "contact ratio 3.2", "contact ratio below 1",
     "relief so large that contact is lost", "identical and hunting tooth counts",
     "s = 0 and s = r loading functions", "q = 0 and q = 1 in their spectra", "zero damping at resonance",

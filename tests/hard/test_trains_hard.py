@@ -52,7 +52,7 @@ def test_exactly_no_damping_at_resonance_is_refused_by_motion_and_by_transfer_fu
     with pytest.raises(RangeError, match="is an undamped resonance: no steady-state"):
         steady_state(swinging(0.0))
     exact = Train((Body("1", 1.0), Body("2", 1.0)), meshes=(Mesh("I", "1", "2", 1.0, 1.0, 20, 20, 2.0),))
-    with pytest.raises(RangeError, match="without damping"):
+    with pytest.raises(RangeError, match="is a natural frequency of the undamped train"):
         dynamic_increments(exact, [1.0, 2.0])
     # ... and a hair beside it, where the answer is large but finite, it is given.
     q = dynamic_increments(exact, 2.0 * (1.0 + np.array([-1e-9, 1e-9])))[0, 0]
@@ -77,7 +77,7 @@ def test_speed_toward_zero_leaves_the_static_transmission_error(speed):
     approach = state.trajectory(1).approach(t)[:, 0]
     assert approach.max() == pytest.approx(still, rel=1.2 * speed**2 + 1e-8)
     assert state.largest[0] == pytest.approx(FORCE, rel=0.5 * speed)
-    with pytest.raises(RangeError, match="standstill"):
+    with pytest.raises(RangeError, match="use the static result for zero speed"):
         model.at_speed(0.0)
 
 

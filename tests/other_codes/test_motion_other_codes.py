@@ -30,7 +30,7 @@ def test_scipy_started_on_the_steady_motion_stays_on_it(name):
     largest, changes, end = reference(system, rpm, amplitude, 2, "DOP853", 1e-12, start)
     assert 2 * state.changes == changes
     assert (changes > 0) == (name != "always in contact")
-    assert (state.behind[0] > 0) == ("backside" in name)
+    assert (state.behind[0] > 0) == ("back-side" in name)
     assert state.largest[0] / force == pytest.approx(largest / force, abs=1e-10)
     twist = np.array([[1, -1, 0, 0], [0, 1, -1, 0], [0, 0, 1, -1]])
     for part in (slice(0, 4), slice(4, 8)):

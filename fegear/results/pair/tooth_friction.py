@@ -242,7 +242,7 @@ TOOTH_FRICTION = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    requires=(Need("friction", "required by this result"),),
+    requires=(Need("friction", "it computes the forces and losses of friction"),),
     cites=_cites,
     forecast=_forecast,
 )

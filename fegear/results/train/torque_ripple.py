@@ -238,7 +238,7 @@ TORQUE_RIPPLE = Stage(
     compute=_compute,
     present=_present,
     check=needs_one_speed,
-    requires=(Need("torque_ripple", "required by this result"),),
+    requires=(Need("torque_ripple", "the torques of train.torque_ripple are its load"),),
     cites=citing(Citation("mark", "gear train of rotors, shafts and meshes, excited by a torque", "section 2")),
     forecast=_forecast,
 )
