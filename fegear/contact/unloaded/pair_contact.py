@@ -70,16 +70,14 @@ class PairContact(ReadOnlyArrays):
     point: Array
     ill_defined: NDArray[np.bool_]
     phi_1: Array = shown("deg", "pinion angle", name="phi1")
-    error: Array = shown(
-        "arcsec", "transmission error phi2 - (N1/N2) phi1, positive where the gear runs ahead", name="te"
-    )
-    slope: Array = shown("", "derivative of the transmission error by phi1")
-    kind: NDArray[np.str_] = shown("", "surface, or the edge that touches", name="contact")
+    error: Array = shown("arcsec", "transmission error phi2 - (N1/N2) phi1, positive if the gear leads", name="te")
+    slope: Array = shown("", "derivative of the transmission error with respect to phi1")
+    kind: NDArray[np.str_] = shown("", "surface or edge in contact", name="contact")
     r1: Array = shown("mm", "radius of the contact point on the pinion")
-    z1: Array = shown("mm", "its height on the pinion")
+    z1: Array = shown("mm", "axial position of the contact point on the pinion")
     r2: Array = shown("mm", "radius of the contact point on the gear")
-    z2: Array = shown("mm", "its height on the gear")
-    spread: Array = shown("mm", "length over which the flanks are within a nanometre")
+    z2: Array = shown("mm", "axial position of the contact point on the gear")
+    spread: Array = shown("mm", "length over which the flank gap is below one nanometre")
 
 
 def pair_contact(pair: HelicalPair, phi_1: ArrayLike) -> PairContact:

@@ -242,7 +242,7 @@ def _pattern_caption(seen: Seen) -> str:
     ellipses = " Ellipses: contact under the load of the case, cut at the ends of the flank."
     vague = " Line contact: the position of the point on the line is arbitrary."
     return (
-        f"Pair {seen.name}: where one tooth pair touches over its engagement, by kind of contact."
+        f"Pair {seen.name}: contact points of one tooth pair over the engagement, by type of contact."
         + (ellipses if seen.data.data.bearing is not None else "")
         + (vague if seen.data.vague else "")
     )
@@ -267,7 +267,7 @@ _SHEET = Sheet(
             ),
         ),
         Rows(
-            "tooth_contact_single_{name}", f"{_TITLE}, one tooth pair alone",
+            "tooth_contact_single_{name}", f"{_TITLE}, one tooth pair only",
             tuple(_alone(key) for key in ("phi_1", "error", *_POINT)),
         ),
         Rows(
@@ -299,8 +299,8 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "unloaded_transmission_error_{name}", "Unloaded transmission error of pair {name}",
-            "Pair {name}: turn of the gear ahead of N1/N2 times the pinion's, over two cycles. The pair that touches "
-            "first leads. Peak to peak {d.peak_to_peak:.4g}.",
+            "Pair {name}: transmission error of the driven gear over two mesh cycles (phi_2 - N1/N2 phi_1); the tooth "
+            "pair in contact is the one with the largest value. Peak to peak {d.peak_to_peak:.4g}.",
             (drawn_panels("error_panels"),),
         ),
         Chart(
@@ -326,7 +326,7 @@ _SHEET = Sheet(
         ),
         Chart(
             "contact_ellipses_{name}", "Contact ellipses of pair {name}",
-            "Pair {name}: contact ellipses where the flanks touch on their surfaces, one pair carrying {d.load:.4g} N.",
+            "Pair {name}: contact ellipses of surface contact, one tooth pair carrying {d.load:.4g} N.",
             (
                 Over(
                     PHI,
