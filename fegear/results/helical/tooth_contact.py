@@ -326,7 +326,7 @@ _SHEET = Sheet(
         ),
         Chart(
             "contact_ellipses_{name}", "Contact ellipses of pair {name}",
-            "Pair {name}: contact ellipses of surface contact, one tooth pair carrying {d.load:.4g} N.",
+            "Pair {name}: contact ellipses for flank contact, {d.load:.4g} N on one tooth pair.",
             (
                 Over(
                     PHI,
