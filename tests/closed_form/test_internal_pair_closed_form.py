@@ -178,7 +178,7 @@ def test_specific_sliding_is_that_of_both_surface_velocities():
 @pytest.mark.parametrize(
     ("distance", "words"),
     [
-        (75.0e-3, "mm of centre distance until both flanks touch"),
+        (75.0e-3, "both flanks are in contact at 74.1093 mm; reduce"),
         (69.5e-3, "is below the difference of the base radii"),
     ],
 )

@@ -108,8 +108,8 @@ RING = {"teeth": 60, "cutter": PinionCutter(20), "tip_radius": 29.1}
             "inside its base circle",
             "increase addendum or profile shift of the",
         ),
-        ({"tip_rounding": 0.9}, "tip_rounding", "", ", or plane stress"),
-        ({"tip_chamfer": 0.7}, "tip_chamfer", "is too large for the tip", ", or plane stress"),
+        ({"tip_rounding": 0.9}, "tip_rounding", "", "use at most 0.6577"),
+        ({"tip_chamfer": 0.7}, "tip_chamfer", "is too large for the tip", "use at most 0.6895"),
         ({"helix_angle": -0.1}, "helix_angle", "between 0 and 60", "the hand"),
     ],
 )

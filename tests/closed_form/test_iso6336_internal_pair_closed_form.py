@@ -156,7 +156,7 @@ def test_c_prime_of_rings_goes_on_below_the_stated_shifts_and_says_so():
     steps = [1e9 / two.theoretical - 1e9 / one.theoretical for one, two in ((inside, edge), (edge, beyond))]
     assert steps[1] - steps[0] == pytest.approx(2.0 * 0.00182 * 0.1**2, rel=1e-6)  # Table 9: only x_2^2 is curved
     assert beyond.single < edge.single < 1.02 * beyond.single
-    assert "2.3 lies outside" in of(2.0).remark
+    assert "2.3 is outside -0.5 to 2" in of(2.0).remark
     with pytest.raises(RangeError, match=r"between -0\.5 and 2"):
         of(-0.9, wheel=65)
 

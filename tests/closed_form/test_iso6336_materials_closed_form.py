@@ -94,7 +94,7 @@ def test_lines_are_whole_and_go_on_where_they_meet(key):
 @pytest.mark.parametrize("key", EVERY)
 def test_below_the_range_is_refused_and_above_it_is_its_end(key):
     some = laws(*key)
-    with pytest.raises(RangeError, match="is below the"):
+    with pytest.raises(RangeError, match=f"is below {some[0].lowest:.4g} HV, the lower limit"):
         allowable(*key, 0.98 * some[0].lowest)
     beyond = allowable(*key, some[-1].highest + 50.0)
     assert "above the range" in beyond.remark

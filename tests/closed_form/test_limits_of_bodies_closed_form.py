@@ -91,7 +91,7 @@ def test_holes_stay_six_hundredths_of_its_radius_below_the_root_circle():
     found, key = limit(lambda r: replace(wide, holes=replace(HOLES, circle_radius=r)), 25e-3, 36e-3)
     assert found + 4e-3 == pytest.approx(0.94 * ROOT, rel=1e-6)
     assert key == "body.holes.diameter"
-    assert "6% of its radius" in str(refusal(replace(wide, holes=replace(HOLES, circle_radius=34e-3))))
+    assert "2.4 mm (6 % of its radius)" in str(refusal(replace(wide, holes=replace(HOLES, circle_radius=34e-3))))
 
 
 def test_teeth_in_question_are_those_of_the_gear():

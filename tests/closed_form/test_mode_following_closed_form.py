@@ -163,5 +163,5 @@ def test_branches_of_random_pairs_of_two_gears_do_not_depend_on_the_values_eithe
 
 def test_values_that_do_not_rise_are_refused():
     for values in ([1.0, 1.0], [2.0, 1.0], [], [1.0, math.nan]):
-        with pytest.raises(InputError, match="rise"):
+        with pytest.raises(InputError, match="must be finite and increasing"):
             follow_modes(pair, values)

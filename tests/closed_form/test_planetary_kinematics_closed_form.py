@@ -86,8 +86,8 @@ def test_sidebands_are_those_of_a_signal_that_is_added_up():
     ("make", "said"),
     [
         (lambda: unshifted(24, 30, 5), "108 / 5 = 21.6 is not an integer"),
-        (lambda: unshifted(24, 30, 5), "take 4 planets, change a number of teeth by 2"),  # six would meet
-        (lambda: unshifted(24, 30, 5, addendum=-15.0), "take 4 or 6 planets"),
+        (lambda: unshifted(24, 30, 5), "use 4 planets, change a number of teeth by 2"),  # six would meet
+        (lambda: unshifted(24, 30, 5, addendum=-15.0), "use 4 or 6 planets"),
         (lambda: unshifted(24, 30, 6), "adjacent planets interfere: tip circles overlap by 10 mm"),
         (lambda: unshifted(24, 30, np.radians([0.0, 121.0, 240.0])), "use 120 deg"),
         (lambda: unshifted(24, 30, np.radians([0.0, 240.0, 120.0])), "must be increasing within one revolution"),
@@ -96,7 +96,7 @@ def test_sidebands_are_those_of_a_signal_that_is_added_up():
         (lambda: running(FOUND, "ring", "ring", 1.0, 1.0), "is fixed as well"),
         (lambda: running(FOUND, "ring", "sun", 0.0, 1.0), "must be finite and not zero"),
         (lambda: running(FOUND, "ring", "sun", 1.0, -1.0), "must be positive (acts in the direction of"),
-        (lambda: running(FOUND, "ring", "sun", 1.0, 1.0, 1.1), "must be between 0 and the root radius"),
+        (lambda: running(FOUND, "ring", "sun", 1.0, 1.0, 1.1), "mesh_efficiency = 1.1: must be above 0 and at most 1"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_margin(make, said):
@@ -107,7 +107,7 @@ def test_what_cannot_be_is_refused_with_its_margin(make, said):
 
 
 def test_most_planets_that_are_named_do_fit():
-    with pytest.raises(GeometryError, match="at most 4 planets"):
+    with pytest.raises(GeometryError, match="at most 4 equally spaced planets"):
         unshifted(24, 30, 6)
     assert unshifted(24, 30, 4).neighbour_clearance > 0.0
     assert unshifted(24, 30, 4).neighbour_clearance == pytest.approx(2 * 0.054 * math.sin(math.pi / 4) - 0.064)

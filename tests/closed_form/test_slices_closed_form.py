@@ -87,7 +87,9 @@ def test_the_other_hand_is_the_mirror_image():
 
 
 def test_a_hub_narrower_than_the_face_is_refused():
-    with pytest.raises(RangeError, match='is not available with width = "slices" \\(external gears only\\)'):
+    with pytest.raises(
+        RangeError, match='is not available with width = "slices" \\(bore fixed over the full face width\\)'
+    ):
         solid_influence(TOOTH, 0.0, 4.0, 0.3, BORE, dataclasses.replace(SETTINGS, source="slices"), held=(-1.0, 1.0))
 
 

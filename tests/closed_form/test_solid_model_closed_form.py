@@ -109,7 +109,12 @@ def test_a_relieved_solid_has_less(tmp_path):
 def test_what_takes_long_is_said_before_it_starts(tmp_path, monkeypatch):
     document = {"results": ["geometry"], "gear": {"a": {"teeth": 150, "module": "3 mm", "bore_radius": "60 mm"}}}
     said = []
-    monkeypatch.setattr(step_model, "write_step", lambda path, *_: said.append(path.name))
+
+    def writes(path, *_):
+        path.touch()
+        said.append(path.name)
+
+    monkeypatch.setattr(step_model, "write_step", writes)
     export_gears(build_scene(document, "long", tmp_path), tmp_path, (), "step", say=said.append)
     assert said == ["Gear a, STEP: about 20 s of CPU time for 150 teeth.", "a.step"]
     document["gear"]["a"].update(teeth=20, bore_radius="10 mm")

@@ -216,7 +216,7 @@ def test_the_ring_is_an_explicit_ring_of_sectors_and_a_row_an_explicit_row(teeth
     [
         (0.01, 0.0, None, "face_width = 0.01 modules"),
         (math.nan, 0.0, None, "face_width"),
-        (4.0, 0.2, None, "helix_angle = 71.5651 degrees at the tip"),
+        (4.0, 0.2, None, "helix_angle = 71.5651 deg at the tip"),
         (4.0, math.nan, None, "helix_angle"),
         (4.0, 0.0, (-3.0, 1.0), "held"),
         (4.0, 0.0, (1.0, 1.0), "held"),

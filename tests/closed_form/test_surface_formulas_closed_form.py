@@ -100,7 +100,7 @@ def test_flash_temperature_is_zero_where_nothing_slides_and_grows_as_load_to_thr
     mirrored = flank_speeds(pair.reversed(), np.array([-pair.x_start]), 150.0 * 16 / 24)
     assert flash_temperature(mirrored, 2e5, 0.05, STEEL)[0] == pytest.approx(once[1], rel=1e-9)
     for speed in (0.0, -1.0, math.nan):
-        with pytest.raises(RangeError, match="above zero"):
+        with pytest.raises(RangeError, match="must be greater than zero"):
             flank_speeds(pair, 0.0, speed)
 
 
