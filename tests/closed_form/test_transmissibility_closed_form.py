@@ -199,7 +199,7 @@ def test_resonance_without_damping_and_critical_damping_are_refused():
         ),
         (lambda: RigidGear(1.0, (1.0, 1.0, 1.0), 0.1, 0.1, np.ones((2, 2))), (InputError, ValueError), "5"),
         (lambda: unequal().reduced(), GeometryError, "general model"),
-        (lambda: compliance(unequal(), [-1.0]), InputError, "not negative"),
+        (lambda: compliance(unequal(), [-1.0]), InputError, "must be finite, non-negative"),
         (lambda: compliance(unequal(), [1.0], "guess"), InputError, "must be"),
         (
             lambda: mesh_parameters([0.0], [1.0], 1.0, face_width=1.0),

@@ -211,7 +211,7 @@ def check_solid(
     if not abs(tau) <= math.tan(_STEEPEST) / outer:
         angle = math.degrees(math.atan(tau * outer)) if math.isfinite(tau) else tau
         raise RangeError(
-            "helix_angle", f"{angle:.6g} deg at the {where}", f"must stay below {math.degrees(_STEEPEST):g} degrees"
+            "helix_angle", f"{angle:.6g} deg at the {where}", f"must stay below {math.degrees(_STEEPEST):g} deg"
         )
     if not -1.0 < poisson_ratio < 0.5:
         raise RangeError("poisson_ratio", poisson_ratio, "must be between -1 and 0.5")
