@@ -189,7 +189,7 @@ def test_resonance_without_damping_and_critical_damping_are_refused():
     [
         (lambda: MeshParameters(-1.0), InputError, "positive"),
         (lambda: MeshParameters(1.0, 0.9, 0.5), RangeError, "kappa"),
-        (lambda: MeshParameters(1.0, base_helix_angle=2.0), RangeError, "inside"),
+        (lambda: MeshParameters(1.0, base_helix_angle=2.0), RangeError, "must be between -90 and 90 deg"),
         (lambda: partial_face_mu(1.5), RangeError, "within"),
         (lambda: RigidGear(1.0, (1.0, 1.0, 0.0), 0.1, 0.1), InputError, "positive"),
         (
