@@ -194,4 +194,4 @@ def test_a_case_reaches_the_printed_rating():
     assert values["I.transmittable_power_H"] == pytest.approx(10477.39, rel=1e-4)
     assert values["I.transmittable_power_F"] == pytest.approx(9905.30, rel=1e-3)  # as S_F, .08 % by h_Fe
     assert values["I.transmittable_power"] == values["I.transmittable_power_F"]
-    assert any("jam by 0.11 um" in text for text in found.remarks)
+    assert any("backlash is negative by 0.11 um" in text for text in found.remarks)
