@@ -271,7 +271,7 @@ def test_a_pair_without_speed_or_strength_is_refused():
         document = tomllib.loads(text)
         del document["pair"]["I"][drop]
         scene = build_scene(document, "case", None)
-        with pytest.raises(InputError, match="is required for|is missing") as caught:
+        with pytest.raises(InputError, match=r"is required for|is missing") as caught:
             run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
         assert caught.value.key == key
     document = tomllib.loads(text)
