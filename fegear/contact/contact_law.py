@@ -11,7 +11,7 @@ written once, in `logarithm`, for single forces (plane teeth) as for line loads 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -82,7 +82,7 @@ class ContactLaw:
             for values in (self.log_slope, self.reference_load, self.power)
         )
         edges = self.edges and EdgeContacts(change(self.edges.tilt), change(self.edges.wedge), change(self.edges.room))
-        return ContactLaw(slope, reference, edges, power)
+        return replace(self, log_slope=slope, reference_load=reference, edges=edges, power=power)
 
     def at(self, positions: Index) -> ContactLaw:
         """That of some of the positions."""
@@ -101,7 +101,7 @@ class ContactLaw:
         law = self.each(lambda values: values[..., None])
         less = 0.5 * law.log_slope * np.log(total / law.reference_load)
         edges = law.edges and law.edges.under(np.sqrt(law.reference_load / total))
-        return less, ContactLaw(law.log_slope, 1.0, edges, law.power * total ** (EXPONENT - 1.0))
+        return less, replace(law, reference_load=1.0, edges=edges, power=law.power * total ** (EXPONENT - 1.0))
 
     def secant(self, compliance: Array, loads: Array) -> Array:
         """Approach over load of contacts whose own compliance at the reference load is given [m/N].

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.errors import InputError
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible_flanks import refuse_load
 
 if TYPE_CHECKING:
@@ -54,6 +56,7 @@ def load(
         If the spec has no load, or one that teeth cannot carry; if a relief or a table does not fit the gears; if no
         teeth are in contact at some roll position.
     """
+    _refuse_gears(spec, gears)
     refuse_unloaded(spec)
     if spec.width == "plane":
         from fegear.contact.plane.maker import load_plane
@@ -63,6 +66,19 @@ def load(
 
     solids = cast("Sequence[SolidInfluence]", gears)
     return load_wide(spec, solids, cache=cache, progress=progress, estimates=estimates)
+
+
+def _refuse_gears(spec: PairSpec, gears: Sequence[object]) -> None:
+    """Refuse what is not the solved gears of a pair."""
+    unsolved = [gear for gear in gears if isinstance(gear, Gear)]
+    if unsolved:
+        how = "solve_gear(gear)" if spec.width == "plane" else "SolidInfluence of each gear"
+        raise InputError("gears", f"gear with {unsolved[0].teeth} teeth", "is not solved", f"give {how}")
+    if spec.width != "plane" and len(gears) != len(MEMBERS):
+        raise InputError(
+            "gears", f"{len(gears)} given", "must be both solved gears, driver and driven",
+            "give a SolidInfluence of each gear",
+        )  # fmt: skip
 
 
 def refuse_unloaded(spec: PairSpec) -> None:

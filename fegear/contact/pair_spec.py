@@ -231,7 +231,9 @@ class PairSpec:
     name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
-        """Fill in the nominal load; refuse one that is none of the loads."""
+        """Fill in the nominal load; refuse one that is none of the loads, and loads that are one number."""
+        if np.ndim(self.loads) == 0:
+            raise InputError("loads", str(self.loads), "must be a sequence of loads", f"write loads=({self.loads},)")
         if math.isnan(self.nominal):
             object.__setattr__(self, "nominal", max(self.loads, default=math.nan))
         elif self.loads and self.nominal not in self.loads:

@@ -1,6 +1,6 @@
 """A loaded pair of its spec, without a case: the answers of a run, every field acts, refusals name what is missing."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +10,7 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.reading import build_scene
+from fegear.contact.contact_law import ContactLaw
 from fegear.contact.load import load
 from fegear.contact.pair_spec import ComplianceTable, FlankSpec, PairSpec
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
@@ -163,6 +164,21 @@ def test_what_cannot_be_loaded_is_refused(spec, key):
     with pytest.raises(InputError) as refusal:
         load(spec)
     assert refusal.value.key.startswith(key)
+
+
+def test_gears_that_are_not_solved_and_loads_that_are_one_number_are_refused():
+    with pytest.raises(InputError, match="gear with 23 teeth: is not solved; give solve_gear"):
+        load(replace(SPEC, compliance="fe"), (PINION, WHEEL))
+    with pytest.raises(InputError, match="gears = 0 given: must be both solved gears"):
+        load(replace(SPEC, compliance="fe", width="slices"))
+    with pytest.raises(InputError, match=r"loads = 3000\.0: must be a sequence of loads"):
+        PairSpec(PAIR, 3000.0)
+
+
+def test_a_law_changed_alike_keeps_every_field_that_does_not_change():
+    law = ContactLaw(np.ones(3), 2.0, None, np.full(3, 0.5))
+    assert [getattr(law.at(np.array([0])), one.name) is not None for one in fields(law)] == [True, True, False, True]
+    assert law.each(lambda values: values).reference_load == 2.0
 
 
 @dataclass
