@@ -166,7 +166,7 @@ class MeshRow:
         return self.spring.stiffness
 
     @property
-    @shows("um", "static deflection under the mean force")
+    @shows("um", "peak to peak of the static transmission error under the mean force")
     def static_te_peak_to_peak(self) -> float:
         """[m]."""
         return float(np.ptp(self.made.error(np.linspace(0.0, 1.0, 2001))))
@@ -250,7 +250,7 @@ _SHEET = Sheet(
                 when=lambda seen: not seen.one.made.a_drives,
             ),
             Remark(
-                "Mesh {key}: coupled teeth and contacts off the path are linear about the mean load.",
+                "Mesh {key}: coupled teeth and corner contact are linearised at the mean load.",
                 when=lambda seen: not seen.one.made.excitation.slotted,
             ),
             Remark(
