@@ -228,7 +228,7 @@ REFUSED = {
     "keys that are no texts": (lambda p: p.driver.changed(relief={1: 2}), "is not a text key"),
     "a table that holds itself": (lambda p: p.driver.changed(relief=HOLDS_ITSELF), "is nested more than"),
     "half a character": (lambda p: fegear.Gear(20, "3 mm", name="\ud800"), "contains an invalid character"),
-    "a list for a name": (lambda p: p.driver.changed(name=[]), "is not a text file"),
+    "a list for a name": (lambda p: p.driver.changed(name=[]), "must be a text"),
     "no teeth": (lambda p: fegear.Gear.of("a", {}), "teeth = .not given.: is required"),
     "effects as a list": (lambda p: fegear.transmission_error(p, torque=1.0, effects=["relief"]), "must be a mapping"),
     "a dictionary as cache": (lambda p: fegear.transmission_error(p, torque=1.0, cache={}), "must be a SolutionCache"),

@@ -1004,7 +1004,7 @@ def test_designed_reliefs_remove_the_transmission_error(computing, tmp_path):
     # Tables are read with straight lines; what can be ground leaves what the search says that it does.
     assert left["exact"] < 0.03 * before
     assert left["exact"] < left["ground"] < 0.5 * before
-    told = float(content["told"].split(" leave ")[1].split(" um")[0])
+    told = float(content["told"].split("transmission error ")[1].split(" um")[0])
     assert told == pytest.approx(left["ground"] * 1e6, rel=0.01)
 
 

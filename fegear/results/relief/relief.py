@@ -283,10 +283,10 @@ def what_it_leaves(results: Results, how: How) -> str:
     """What the reliefs leave of the transmission error, peak to peak, in a sentence or two."""
     design = _design(results)
     te, load = {label: one.peak_to_peak * 1e6 for label, one in design.te.items()}, f"{design.task.load:.5g} N"
-    before = f"of {te['no relief']:.3g} um peak to peak without relief, at {load}"
+    before = f"peak to peak ({te['no relief']:.3g} um without relief, at {load})"
     if how == "exact":
-        left = "nothing" if te["designed"] < _NOTHING else f"{te['designed']:.3g} um"
-        return f"Eq. 4.6: transmission error {left} {before}."
+        left = "0 um" if te["designed"] < _NOTHING else f"{te['designed']:.3g} um"
+        return f"Relief by Mark's Eq. 4.6: transmission error {left} {before}."
     shape, best = best_ground(design)
     others = [f"{one} ones {te[f'{one} tip relief']:.3g} um" for one in design.ground if one != shape]
     beside = f"; {', '.join(others)}" if others else ""
