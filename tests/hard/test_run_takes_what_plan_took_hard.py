@@ -255,7 +255,8 @@ def test_data_that_no_effect_of_a_pair_with_a_width_uses_may_be_wrong():
     document["gear"]["p"] |= {"bias": {"amount": "5 um", "start_radius": "3 mm"}}
     scene = build_scene(document, "case", Path())
     remarks = " ".join(run_plan(scene, make_plan(scene, STAGES)).remarks)
-    assert "relief is off; its effect cannot be estimated from the data given: gear.p.bias = radius 3 mm" in remarks
+    unsized = "relief is off; its influence cannot be estimated from the data specified"
+    assert f"{unsized}: gear.p.bias = radius 3 mm" in remarks
     on = build_scene(document | {"effects": {"relief": True}}, "case", Path())
     with pytest.raises(InputError, match=r"gear\.p\.bias = radius 3 mm: lies inside the base circle"):
         make_plan(on, STAGES)
