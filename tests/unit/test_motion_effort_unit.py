@@ -77,7 +77,7 @@ def test_a_motion_that_cannot_settle_is_given_up_by_work_and_shows_what_was_seen
     monkeypatch.setattr(effort, "ENDLESS_EFFORT", 4_000)
     model, told = discs(2.007, 0.0), []
     state = steady_state.steady_state(model, tolerance=1e-3, measured=100, progress=told.append)
-    assert state.kind == "not converged"
+    assert state.kind == "not settled"
     assert not state.repeats
     assert 250 <= state.followed < 1000
     assert state.measured == 100

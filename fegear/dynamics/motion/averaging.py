@@ -102,7 +102,7 @@ def _given_up(packed: Packed, x: Array, v: Array, seen: list[Passage], count: in
     """What the last repetitions looked like where start and end of a period did not become alike."""
     per_period = np.array([p.tooth_force for p in seen])
     return SteadyState(
-        packed.model, "not converged", 0, np.zeros(0, dtype=complex), math.nan,
+        packed.model, "not settled", 0, np.zeros(0, dtype=complex), math.nan,
         np.max([p.largest for p in seen], axis=0), np.min([p.smallest for p in seen], axis=0),
         np.max(per_period, axis=0), np.mean([p.apart for p in seen], axis=0),
         np.mean([p.behind for p in seen], axis=0), sum(p.changes for p in seen), left, x, v, per_period,

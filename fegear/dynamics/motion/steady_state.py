@@ -372,7 +372,7 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int, effo
         if chaotic and drifting(window, sample, chaotic=True):
             window, sample = sample, None
             run += measured
-    kind = "not converged" if sample is None else _kind(rate)
+    kind = "not settled" if sample is None else _kind(rate)
     if sample is None:
         # what is still on its way is shown, not measured: not longer than it was followed
         sample = follow(packed, window.x, window.v, min(measured, run), step, peaks=True)

@@ -39,7 +39,7 @@ class SpeedChart:
     behind: Array = shown("", "fraction of time with back-side contact", name="backside_fraction")
     periods: NDArray[np.int64] = shown("", "period of the motion in excitation periods; 0: not periodic")
     kinds: tuple[str, ...] = shown(
-        "", "periodic (stable), quasi-periodic, chaotic, long-period, not converged, or unbounded",
+        "", "periodic (stable), quasi-periodic, chaotic, long-period, unstable, not settled, or growing (unbounded)",
         name="motion",
     )  # fmt: skip
     median: Array = shown("", "dynamic factor, median over the periods", name="median_factor")
