@@ -55,12 +55,12 @@ class HelicalPairInputs:
         return f"transmissibility.{self.name}"
 
     def refuse_unbuilt(self) -> None:
-        """Refuse a model, or the model at the ends and responses of a followed range, that cannot be built.
+        """Refuse a model that cannot be built; where the mesh comes from loaded flanks, only they can say the rest."""
+        self.part.build(self.mesh or _ANY_MESH, self.prefix)
 
-        What limits a range limits its ends; where the mesh comes from loaded flanks, only they can say the rest.
-        """
+    def refuse_unbuilt_ranges(self) -> None:
+        """Refuse followed ranges in which no model can be built: what limits a range limits its ends and responses."""
         mesh = self.mesh or _ANY_MESH
-        self.part.build(mesh, self.prefix)
         for parameter, asked in (self.part.follow.ranges if self.part.follow else {}).items():
             for value in (*asked.ends, *asked.responses):
                 model_at(self.part, mesh, self.name, parameter, value)

@@ -398,10 +398,17 @@ _SHEET = Sheet(
 )  # fmt: skip
 
 
+def _inputs(scene: Scene, name: str) -> HelicalPairInputs:
+    """What a case says of a pair, with its ranges: other results leave them be."""
+    found = helical_pair_inputs(scene, name)
+    found.refuse_unbuilt_ranges()
+    return found
+
+
 MODE_TRACKING = Stage(
     subjects=_pairs,
     needs=mesh_needs,
-    inputs=helical_pair_inputs,
+    inputs=_inputs,
     compute=_compute,
     present=_SHEET.present,
     check=_check,
