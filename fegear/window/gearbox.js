@@ -130,7 +130,7 @@ const fegearGearbox = (() => {
       label.hidden = !bent;
       value.textContent = `${digits(f, 3)} ×`;
       if (bent) slider.value = f > 0 ? round(100 * Math.log10(f)) : 0;
-      told.textContent = bent ? `Deflection of the shafts drawn ${digits(f, 3)} scale factor; maximum displacement ${digits(bent.largest, 3)} µm. Bearings are shown in their unloaded position.` : "The deflection of the shafts comes with the next results.";
+      told.textContent = bent ? `Deflection of the shafts drawn ${digits(f, 3)} times as large; maximum displacement ${digits(bent.largest, 3)} µm. Bearings are shown in their unloaded position.` : "The deflection of the shafts comes with the next results.";
       canvas.setAttribute("aria-label", `Gearbox: shafts ${Object.keys(data.places).join(", ")}; meshes ${Object.keys(data.meshes).join(", ")}. ${told.textContent}`);
     }
     let pressed = null;

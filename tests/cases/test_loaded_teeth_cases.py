@@ -99,7 +99,7 @@ def test_the_pair_compared_with_calculix_as_it_really_is():
     # 1000 rpm: the contact moves along the line of action with the base circle's speed.
     speed = 1000 * 2 * np.pi / 60 * values_of(results, "I").driver.base_radius * 1e3
     assert np.ptp(history["x"]) / np.ptp(history["t"]) == pytest.approx(speed, rel=1e-9)
-    assert any("Pair {name}: corner contact outside the path of" in remark for remark in results.remarks)
+    assert any("corner contact outside the path of contact, up to" in remark for remark in results.remarks)
     assert set(np.unique(tables["load_sharing_loads_I"]["total_load"])) == {50.0, 150.0, 250.0, 350.0}
     # The rows of the nominal load are those of the pair's own table, in its units.
     for key in ("load_sharing", "transmission_error"):
@@ -134,7 +134,7 @@ def test_nasa_gears_relief_with_coupling():
     assert 0.0 < designed.error < 2e-3 * mean
     # What the paper's diagonal-only design (5.4) leaves, now known: 8 % of the mean.
     assert values["I.te_peak_to_peak.diagonal_only"].value / mean == pytest.approx(0.080, abs=0.005)
-    assert any("without the neighbours' loads" in remark for remark in results.remarks)
+    assert any("relief designed without tooth coupling (Mark 5.4)" in remark for remark in results.remarks)
     harris = tables["harris_map_I"]
     at = harris["total_load"] == 1615.0
     assert np.ptp(harris["te_designed"][at]) < 1e-6
@@ -168,7 +168,7 @@ def test_a_search_without_tip_corners_says_what_they_would_make_of_it():
     said, now = remark.split("instead of")
     for values, words in ((with_them, said), (without, now)):
         left = values["I.te_peak_to_peak.linear_tip_relief"].value
-        assert f"leave {left:.3g} um" in words
+        assert f"remaining transmission error {left:.3g} um" in words
         for member in ("driver", "driven"):
             assert f"{values[f'I.{member}.linear_tip_amount'].value:.3g} um" in words
             assert f"{values[f'I.{member}.linear_tip_start'].value:.4g} deg" in words

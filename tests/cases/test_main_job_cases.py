@@ -144,5 +144,5 @@ def test_a_tooth_mesh_of_the_users_own_takes_the_place_of_the_generated_one():
         assert values[name] == pytest.approx(generated[name], rel=5e-3)
         assert values[name] != generated[name]
     assert "four_square_test_gear.msh" in str([outcome.settings for outcome in results.outcomes.values()])
-    with pytest.raises(InputError, match=r"gear.a.tooth_mesh = .*is no file"):
+    with pytest.raises(InputError, match=r"gear\.a\.tooth_mesh = .*file not found"):
         run("lin_table1", "gear.a.tooth_mesh=none.msh")

@@ -298,7 +298,7 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.click(button("Tool"))
     browser.until(f"{drawn}.length > {len(empty)} + 2000")
     browser.click(button("Deformed"))
-    browser.until("document.querySelector('.mesh-told').textContent.includes('not the shape of a deformed tooth')")
+    browser.until("document.querySelector('.mesh-told').textContent.includes('not the deformed tooth shape')")
 
     # What is compared no more is let go of, its pictures included, which nobody has scrolled to.
     kept = []
