@@ -156,7 +156,7 @@ def test_exports_carry_the_relief_or_say_that_they_do_not(tmp_path):
     assert removed(scene.gears["a"], right)[0].max() * 3000.0 > 160.0
     told = "\n".join(done.remarks)
     assert "Gear a, inp, msh, vtu: flanks as generated, without the relief of the case." in told
-    assert "Gear b, DXF: flanks without relief, because its amount counts in deflections" in told
+    assert "Gear b, DXF: flanks without relief, because amount depends on the deflection (amount_over_delta)." in told
     for name in ("a.msh", "a.vtu", "a.inp"):
         assert b"as generated, without relief" in (tmp_path / name).read_bytes()[:400], name
     properties = ezdxf.readfile(tmp_path / "b_gear_spline.dxf").header.custom_vars.properties
@@ -181,9 +181,9 @@ def test_a_helical_gear_is_drawn_across_its_axis_and_has_no_plane_mesh(tmp_path)
     """A helical case wrote nothing and said nothing."""
     both = 'title = "H"\nresults = ["tooth-contact"]\n' + HELICAL.format("a", "left") + HELICAL.format("b", "right")
     scene = scene_of(tmp_path, both + '[pair.I]\ndriver = "a"\ndriven = "b"\n')
-    with pytest.raises(InputError, match="are helical"):
+    with pytest.raises(InputError, match=r"--gear = a, b: must be spur gears for inp, msh \(plane meshes\); use dxf"):
         export_gears(scene, tmp_path, (), "msh,inp")
-    with pytest.raises(InputError, match="is helical"):
+    with pytest.raises(InputError, match=r"--gear = a: must be a spur gear for vtu \(plane meshes\)"):
         export_gears(scene, tmp_path, ("a",), "vtu")
     assert not list(tmp_path.iterdir()) or {path.name for path in tmp_path.iterdir()} == {"case.toml"}
     done = export_gears(scene, tmp_path, ("a",), "dxf,msh")
