@@ -117,7 +117,7 @@ def dragged(at: Session) -> None:
 
 def ground(at: Session) -> None:
     """The nearest that can be ground."""
-    at.press("Nearest that can be ground")
+    at.press("Best grindable tip relief")
     at.wait("document.querySelector('#designed section') !== null", 120.0)
     at.press("All results")
     at.wait("document.querySelector('#designed .main-svg') !== null", 120.0)
