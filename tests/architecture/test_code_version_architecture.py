@@ -193,6 +193,6 @@ def test_two_checkouts_that_share_a_cache_give_their_own_answers(tmp_path):
             _, said = found(name, f"sweep_{name}_{turn}", *sweep)
             table = (tmp_path / f"sweep_{name}_{turn}" / "tables" / "sweep.csv").read_text().splitlines()[1]
             assert float(table.split(",")[1]) == pytest.approx(answer[name], rel=1e-9)
-            assert ("finished by an earlier sweep" in said) is (turn == "again")
+            assert ("taken from an earlier sweep" in said) is (turn == "again")
             assert swept.setdefault(name, table) == table
     assert answer["other"] > 1.02 * answer["one"]
