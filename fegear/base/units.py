@@ -264,6 +264,7 @@ PER_SI: dict[str, float] = {
     "MPa.mm/N": 1e-3,
     "MPa/N": 1e-6,
     "Hz": 1.0,
+    "kHz": 1e-3,
     "rpm": 9.549296585513721,
     "arcsec": 206264.80624709636,
     "N/(mm.um)": 1e-9,

@@ -272,6 +272,24 @@ def test_a_bundle_draws_all_lines_of_a_member_before_the_next() -> None:
     assert figure.panels[0].y.label == "deflection"
 
 
+def test_a_figure_has_a_view_for_each_of_some_objects() -> None:
+    panels = (Over("x", ("deflection",)), Over("x", (Line("lacking"),), "deflection", when=lambda s: s.key == "b"))
+    chart = Chart("f", "F", "C", panels, of="swing", views="parts", view="member {key}", most_views=2)
+    (figure,) = chart.figures(replace(SEEN, loads=()))
+    assert [(view.label, len(view.panels)) for view in figure.views] == [("member a", 1), ("member b", 2)]
+    drawn = [view.panels[0].items[0] for view in figure.views]
+    assert [one.x.tolist() for one in drawn if isinstance(one, Curve)] == [[0.0, 1.0], [0.0, 2.0]]
+    assert (figure.panels, figure.most_views) == ((), 2)
+
+
+def test_a_complex_quantity_has_a_column_for_each_part() -> None:
+    cell = Cell("x", name="{key}", si=lambda seen: seen.one.x * (1.0 + 2.0j), each="parts", parts=True)
+    (table,) = Rows("t", "T", ("x", cell), of="swing").tables(replace(SEEN, loads=()))
+    assert [column.name for column in table.columns] == ["x", "a_re", "a_im", "b_re", "b_im"]
+    np.testing.assert_allclose(table.columns[4].values, [0.0, 4.0])
+    assert {column.unit for column in table.columns} == {"mm"}
+
+
 def test_elements_are_repeated_together() -> None:
     both = Each("parts", Number("largest", owner="{key}"), lambda seen: [seen.key], when=lambda seen: seen.key == "b")
     value, key = both.values(SEEN)

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.shown import declared
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import (
     MOST_CURVES,
     Bars,
@@ -200,8 +200,13 @@ class Chart:
         Objects for each of which there is such a figure; whether there is one.
     under : text
         Load or speed that all of it holds for; LOADS for the load of a pair that has one only.
-    columns : int or where
-        As that of `Figure`.
+    columns, most_views : int or where, int
+        As those of `Figure`.
+    views : where, optional
+        Objects for each of which the figure has a view with all panels; paths of these begin there, and the object
+        declares their quantities.
+    view : text
+        Label of a view.
     """
 
     name: Text
@@ -213,6 +218,9 @@ class Chart:
     when: Where | None = None
     under: Text = ""
     columns: int | Where = 1
+    views: Where | None = None
+    view: Text = "{key}"
+    most_views: int = 4
 
     def figures(self, seen: Seen) -> Iterator[Figure]:
         """Those that there are."""
@@ -220,12 +228,18 @@ class Chart:
             if not one.holds(self.when) or (owner := one.find(self.of)) is None:
                 continue
             under = _only_load(one) if self.under == LOADS else one.said(self.under)
-            panels = tuple(panel for over in self.panels if one.holds(over.when) for panel in _panels(one, owner, over))
+            panels = self._all_panels(one, owner) if self.views is None else ()
+            views = () if self.views is None else tuple(
+                View(each.said(self.view), self._all_panels(each, each.one)) for each in one.each(self.views)
+            )  # fmt: skip
             columns = self.columns if isinstance(self.columns, int) else one.find(self.columns)
             yield Figure(
-                one.said(self.name), one.said(self.title), one.said(self.caption), panels, columns=columns,
-                under=under,
+                one.said(self.name), one.said(self.title), one.said(self.caption), panels, views, columns,
+                self.most_views, under=under,
             )  # fmt: skip
+
+    def _all_panels(self, seen: Seen, owner: Any) -> tuple[Panel, ...]:
+        return tuple(panel for over in self.panels if seen.holds(over.when) for panel in _panels(seen, owner, over))
 
 
 def _only_load(seen: Seen) -> str:

@@ -45,6 +45,8 @@ class Cell:
         In place of the declared ones; `further` follows the declared meaning.
     each : where, optional
         Objects for each of which there is such a column.
+    parts : bool
+        Whether it is complex: two columns, ``name_re`` and ``name_im``.
     """
 
     quantity: str
@@ -54,6 +56,7 @@ class Cell:
     meaning: Text = ""
     further: Text = ""
     each: Where | None = None
+    parts: bool = False
 
 
 @dataclass(frozen=True)
@@ -189,8 +192,17 @@ def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Co
                     made += _flat(one, one.one, spec.elements, load)
         else:
             for one in seen.each(spec.each):
-                made += _cell(one, owner if spec.each is None else one.one, spec, load)
+                cells = _cell(one, owner if spec.each is None else one.one, spec, load)
+                made += [part for cell in cells for part in _parts(cell)] if spec.parts else cells
     return made
+
+
+def _parts(column: Column) -> tuple[Column, Column]:
+    """Real and imaginary part of a complex column."""
+    return tuple(
+        replace(column, name=f"{column.name}_{end}", si=part)
+        for end, part in (("re", column.si.real), ("im", column.si.imag))
+    )
 
 
 def _cell(seen: Seen, owner: Any, spec: Cell, load: int | None) -> list[Column]:
