@@ -325,3 +325,42 @@ def test_a_sheet_is_presented_in_its_order_and_lacks_what_is_not_there() -> None
     assert outcome.remarks == ("I swings.", "I")
     assert outcome.settings == {"at": 1}
     assert outcome.figures == ()
+
+
+def test_views_show_one_object_at_a_time() -> None:
+    panels = (Over("x", ("largest",)), Over("x", ("lacking",), when="lacking"))
+    (figure,) = Chart("f", "F", "C", panels, views="parts", view="part {key}", most_views=1).figures(SEEN)
+    assert [view.label for view in figure.views] == ["part a", "part b"]
+    assert (figure.most_views, [len(view.panels) for view in figure.views]) == (1, [1, 1])
+    items = [view.panels[0].items[0] for view in figure.views]
+    assert [float(np.max(one.x)) for one in items if isinstance(one, Curve)] == [1.0, 2.0]
+
+
+def test_a_family_keeps_members_and_a_line_takes_another_abscissa() -> None:
+    many = Family(lambda _: [SWING] * 9, "", "ramp", most=3, keep=lambda _: (5,))
+    over = Over("x", (Line("deflection", "{key}", each=many),))
+    (figure,) = Chart("f", "F", "C", (over,), of="swing").figures(SEEN)
+    assert [item.name for item in figure.panels[0].items if isinstance(item, Curve)] == ["0", "4", "5", "8"]
+    moved = Line("deflection", x_si=lambda seen: seen.data.swing.x + 1e-3)
+    (curve,) = next(Chart("f", "F", "C", (Over("x", (moved,)),), of="swing").figures(SEEN)).panels[0].items
+    assert isinstance(curve, Curve)
+    np.testing.assert_allclose(curve.x, [1.0, 2.0])
+
+
+def test_rows_over_a_grid_of_each_object_below_each_other() -> None:
+    columns = (Cell("word", lambda seen: f"part {seen.key}", lambda _: SWING), Cell("heat", name="removed"))
+    (table,) = Rows("t", "T", columns, stacked=lambda _: {"a": FIELD, "b": FIELD}, on=("z", "x")).tables(SEEN)
+    assert table.keys() == ("word", "z", "x", "removed")
+    assert table["word"].tolist() == ["part a"] * 6 + ["part b"] * 6
+    np.testing.assert_allclose(table["z"][:6], np.repeat(FIELD.z, 3) * 1e3)
+    np.testing.assert_allclose(table["removed"], [0, 1, 2, 3, 4, 5] * 2)
+    (one,) = Rows("t", "T", ("heat",), of=lambda _: FIELD, on=("z", "x")).tables(SEEN)
+    np.testing.assert_allclose(one["x"], list(FIELD.x * 1e3) * 2)
+
+
+def test_a_repetition_names_the_quantity() -> None:
+    asked = Each(lambda _: {"x": SWING, "deflection": SWING}, Cell("{key}", si=lambda _: [1e-3, 0.0], name="own_{key}"))
+    (table,) = Rows("t", "T", (asked,), of="swing").tables(SEEN)
+    assert [(one.name, one.unit) for one in table.columns] == [("own_x", "mm"), ("own_deflection", "um")]
+    (value,) = Number("{key}", of=lambda _: SWING, each=lambda _: {"largest": 1}).values(SEEN)
+    assert (value.name, value.value) == ("I.largest", pytest.approx(6.0))

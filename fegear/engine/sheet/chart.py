@@ -43,12 +43,15 @@ class Family:
         ``series`` for members without order, ``ramp`` for ordered ones; else the role of all, or a text that gives it.
     most : int
         More are not drawn: evenly chosen, the first and the last among them.
+    keep : where, optional
+        Numbers of the members that are drawn whatever is chosen, in place of the first and the last.
     """
 
     of: Where
     label: Text = "{key}"
     role: str = "series"
     most: int = MOST_CURVES
+    keep: Where | None = None
 
 
 #: The loads of a pair: as many as can be told apart, the nominal one among them.
@@ -71,6 +74,8 @@ class Line:
         Numbers in place of the quantity's own; None there: no line.
     x : str
         Quantity that it is drawn over, where it is not the panel's.
+    x_si : where, optional
+        Numbers in place of that quantity's own.
     of : where, optional
         What declares both, if it is not what the chart is of. None there: no line.
     each : Family or LOADS, optional
@@ -99,6 +104,7 @@ class Line:
     first: int | None = None
     ends: bool = False
     si: Where | None = None
+    x_si: Where | None = None
 
 
 @dataclass(frozen=True)
@@ -309,7 +315,8 @@ def _there(seen: Seen, owner: Any, quantity: str, si: Where | None) -> bool:
 def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
     """Lines of every member that is drawn."""
     family, members = bundle.family, list(seen.each(bundle.family.of))
-    chosen = few(len(members), (0, len(members) - 1), family.most)
+    keep = (0, len(members) - 1) if family.keep is None else seen.find(family.keep)
+    chosen = few(len(members), keep, family.most)
     for k, role in zip(chosen, _roles(family.role, chosen), strict=True):
         member = members[k]
         for line in bundle.lines:
@@ -339,8 +346,8 @@ def _item(
 ) -> Item:  # fmt: skip
     """One curve, row of bars or of stems, in the units in which its quantities are read."""
     upto, (of, quantity) = slice(line.first), reach(owner, line.y)
-    si = None if line.si is None else seen.find(line.si)
-    along, y = drawn(*reach(owner, line.x or base), load=load)[upto], drawn(of, quantity, si, load=load)
+    si, x_si = (None if where is None else seen.find(where) for where in (line.si, line.x_si))
+    along, y = drawn(*reach(owner, line.x or base), x_si, load=load)[upto], drawn(of, quantity, si, load=load)
     y = y[upto] if y.ndim else np.full(along.shape, y)
     if line.ends:
         along, y = along[[0, -1]], y[[0, -1]]

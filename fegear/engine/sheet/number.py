@@ -24,7 +24,7 @@ class Number:
     Parameters
     ----------
     quantity : str
-        Its attribute, or the path to it (``path.load``).
+        Its attribute, or the path to it (``path.load``); ``{key}`` for the one that a repetition names.
     error : where, optional
         Its estimated error, one number or one for each load; unknown where it is None.
     of : where
@@ -54,14 +54,15 @@ class Number:
         for one in seen.each(self.each):
             if not one.holds(self.when) or (found := one.find(self.of)) is None:
                 continue
-            number = getattr(*reach(found, self.quantity)) if self.si is None else one.find(self.si)
+            quantity = one.said(self.quantity)
+            number = getattr(*reach(found, quantity)) if self.si is None else one.find(self.si)
             if number is None or (np.ndim(number) == 0 and np.isnan(number)):
                 continue
             error = None if self.error is None else one.find(self.error)
             if error is not None:
                 error = float(error if np.ndim(error) == 0 or one.nominal is None else error[one.nominal])
             yield value_of(
-                *reach(found, self.quantity), one.said(self.owner), error, si=number,
+                *reach(found, quantity), one.said(self.owner), error, si=number,
                 load=one.nominal, name=one.said(self.name), meaning=one.said(self.meaning),
                 further=one.said(self.further),
             )  # fmt: skip

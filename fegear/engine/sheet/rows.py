@@ -37,6 +37,7 @@ class Cell:
     Parameters
     ----------
     quantity : str
+        Of several that are alike one that the object of a repetition names: ``{key}``.
     si : where, optional
         Numbers in place of the quantity's own; None there: no column.
     of : where, optional
@@ -66,6 +67,7 @@ class Off:
     Parameters
     ----------
     quantity : str
+        As that of a `Cell`.
     error : where
         None there: no column.
     meaning : text
@@ -104,7 +106,8 @@ class Rows:
         Objects whose rows stand one below the other; `columns` are of these, a single number or word of an object
         stands in all of its rows.
     on : tuple of str
-        Axes of the grid over which the quantities are known; a row for each of its points.
+        Axes of the grid over which the quantities are known; a row for each of its points. Single numbers and words
+        stand before the axes, in all rows.
     printed, matlab : bool
         As those of `Table`.
     """
@@ -128,13 +131,18 @@ class Rows:
             yield Table(one.said(self.name), self._columns(one, owner), one.said(self.title), self.printed, self.matlab)
 
     def _columns(self, seen: Seen, owner: Any) -> tuple[Column, ...]:
-        if self.on:
-            cells = [one for one in self.columns if isinstance(one, str)]
-            tables = [one.table for one in self.columns if isinstance(one, Every)]
-            return columns_on_grid(owner, self.on, *cells, table=tables[0] if tables else "")
         if self.stacked is None:
-            return tuple(_flat(seen, owner, self.columns, seen.nominal))
-        return stacked([_even(_flat(one, one.one, self.columns, seen.nominal)) for one in seen.each(self.stacked)])
+            return tuple(self._of_one(seen, owner))
+        return stacked([_even(self._of_one(one, one.one)) for one in seen.each(self.stacked)])
+
+    def _of_one(self, seen: Seen, owner: Any) -> list[Column]:
+        """Columns of one object."""
+        if not self.on:
+            return _flat(seen, owner, self.columns, seen.nominal)
+        columns = _flat(seen, owner, self.columns, None)
+        single = [column for column in columns if not column.si.ndim]
+        cells = [replace(column, si=column.si.ravel()) for column in columns if column.si.ndim]
+        return _even([*single, *columns_on_grid(owner, self.on), *cells])
 
 
 @dataclass(frozen=True)
@@ -206,12 +214,12 @@ def _parts(column: Column) -> tuple[Column, Column]:
 
 
 def _cell(seen: Seen, owner: Any, spec: Cell, load: int | None) -> list[Column]:
-    declares = owner if spec.of is None else seen.find(spec.of)
+    declares, quantity = owner if spec.of is None else seen.find(spec.of), seen.said(spec.quantity)
     words: dict[str, Any] = {key: seen.said(getattr(spec, key)) for key in ("name", "meaning", "further")}
     if spec.si is not None:
         si = _under(seen.find(spec.si), load)
-        return [] if si is None else [column_of(*_declares(declares, spec.quantity), si, **words)]
-    return [_plain(declares, spec.quantity, load, **words)] if _has(declares, spec.quantity) else []
+        return [] if si is None else [column_of(*_declares(declares, quantity), si, **words)]
+    return [_plain(declares, quantity, load, **words)] if _has(declares, quantity) else []
 
 
 def _off(seen: Seen, owner: Any, spec: Off, load: int | None) -> list[Column]:
@@ -222,7 +230,7 @@ def _off(seen: Seen, owner: Any, spec: Off, load: int | None) -> list[Column]:
         errors = _under(seen.find(spec.error), load)
     if errors is None:
         return []
-    column = column_of(*_declares(declares, spec.quantity), errors, name=seen.said(spec.name))
+    column = column_of(*_declares(declares, seen.said(spec.quantity)), errors, name=seen.said(spec.name))
     return [error_column(column, errors, seen.said(spec.meaning))]
 
 
