@@ -80,6 +80,19 @@ def shown(
     return field(metadata={_KEY: _how(unit, meaning, name, label, table)}, **options)
 
 
+def shown_as(how: Shown, *, name: str = "", table: str = "", **options: Any) -> Any:
+    """Declare that a field is shown as something known: a symbol of a standard (`fegear.formulas.symbols`).
+
+    Parameters
+    ----------
+    how : Shown
+    name, table : str
+    **options
+        As those of `shown`.
+    """
+    return field(metadata={_KEY: _how(how.unit, how.meaning, name or how.name, how.label, table)}, **options)
+
+
 def shows(unit: str = "", meaning: str = "", *, name: str = "", label: str = "", table: str = "") -> Callable[[_F], _F]:
     """Declare how a property is shown; stands below ``@property`` or ``@cached_property``."""
 

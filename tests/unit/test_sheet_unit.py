@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.base.shown import shown, shows
+from fegear.base.shown import declared, shown, shown_as, shows
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Bars, Curve, HeatMap, Stems
 from fegear.engine.sheet.chart import LOADS, Bundle, Chart, Family, Line, Map, Over
@@ -153,6 +153,9 @@ def test_values_are_of_the_nominal_load_with_their_errors() -> None:
     over_loads = Number("largest", error=lambda _: np.array([1e-7, 2e-7]), of="swing")
     assert next(iter(over_loads.values(SEEN))).error == pytest.approx(0.2)
     assert next(iter(Number("largest", exact, "swing").values(SEEN))).error == 0.0
+    endless = Number("largest", si=lambda _: float("inf"), of="swing")
+    assert [one.si for one in endless.values(SEEN)] == [float("inf")]
+    assert list(replace(endless, finite=True).values(SEEN)) == []
     each = list(Number("largest", each="parts", owner="{key}").values(SEEN))
     assert [one.name for one in each] == ["a.largest", "b.largest"]
 
@@ -182,6 +185,31 @@ def test_a_chart_draws_families_bars_and_bands() -> None:
     assert isinstance(bars, Bars)
     np.testing.assert_allclose(bars.y, [2.0])
     assert third.y.label == "how far"
+
+
+@dataclass(frozen=True)
+class Gear:
+    """One number of a gear, at its place among others; shown as what the swing declares, under another name."""
+
+    place: float = shown("", "place")
+    sag: float | None = shown_as(declared(Swing, "deflection"), name="gear_sag")
+
+
+def test_a_line_over_objects_has_a_point_of_each_and_what_a_member_lacks_is_not_drawn() -> None:
+    pair = [Gear(0.0, 1e-6), Gear(1.0, 3e-6)]
+    family = Family(lambda _: {"a": pair, "b": [Gear(0.0, None)]}, role=lambda seen: f"as {seen.key}")
+    bars = Line("sag", error=lambda _: [5e-7, 5e-7], kind="bars", each=family)
+    lacking = Line("sag", "lacking", of=lambda _: None)
+    idle = Line("sag", "idle", when=lambda seen: seen.key != "a")
+    chart = Chart("c", "C", "", (Over("place", (bars, Bundle(family, (lacking, idle)))),), of=lambda _: pair)
+    (figure,) = chart.figures(SEEN)
+    (panel,) = figure.panels
+    assert (panel.x.label, panel.y.label, panel.y.unit) == ("place", "deflection", "um")
+    (only,) = panel.items
+    assert isinstance(only, Bars)
+    assert (only.name, only.role) == ("a", "as a")
+    np.testing.assert_allclose((only.x, only.y, only.error), [(0.0, 1.0), (1.0, 3.0), (0.5, 0.5)])
+    assert declared(Gear, "sag").name == "gear_sag"
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.shown import declared
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
@@ -39,7 +40,7 @@ class Family:
         A mapping of names to objects, or a sequence of objects.
     label : text
         Of a member: ``{key}`` is its name, ``{one.…}`` what it declares.
-    role : str
+    role : text
         ``series`` for members without order, ``ramp`` for ordered ones; else the role of all, or a text that gives it.
     most : int
         More are not drawn: evenly chosen, the first and the last among them.
@@ -49,7 +50,7 @@ class Family:
 
     of: Where
     label: Text = "{key}"
-    role: str = "series"
+    role: Text = "series"
     most: int = MOST_CURVES
     keep: Where | None = None
 
@@ -77,7 +78,8 @@ class Line:
     x_si : where, optional
         Numbers in place of that quantity's own.
     of : where, optional
-        What declares both, if it is not what the chart is of. None there: no line.
+        What declares both, if it is not what the chart is of: an object, or a sequence of them with a point each. None
+        there: no line.
     each : Family or LOADS, optional
         Members for each of which there is one.
     kind : {"curve", "bars", "stems", "points"}
@@ -279,7 +281,19 @@ def _panel(seen: Seen, owner: Any, over: Over) -> Panel:
 def _axis(seen: Seen, owner: Any, what: str | Axis | Callable[[Seen], Axis], options: dict[str, Any]) -> Axis:
     if isinstance(what, Axis):
         return what
-    return axis_of(*reach(owner, what), **options) if isinstance(what, str) else what(seen)
+    return axis_of(*reach(_first(owner), what), **options) if isinstance(what, str) else what(seen)
+
+
+def _first(owner: Any) -> Any:
+    """What declares the quantities of a sequence of objects."""
+    return owner[0] if isinstance(owner, Sequence) else owner
+
+
+def _drawn(owner: Any, quantity: str, si: Any = None, *, load: int | None = None) -> Array:
+    """Numbers of a quantity as they are drawn, of a sequence of objects one of each."""
+    if si is None and isinstance(owner, Sequence):
+        si = [getattr(*reach(one, quantity)) for one in owner]
+    return drawn(*reach(_first(owner), quantity), si, load=load)
 
 
 def _owner(seen: Seen, owner: Any, line: Line | Map) -> Any:
@@ -309,7 +323,7 @@ def _items(seen: Seen, owner: Any, line: Line | Bundle | Map, base: str) -> Iter
 
 def _there(seen: Seen, owner: Any, quantity: str, si: Where | None) -> bool:
     """Whether there is anything to be drawn of a quantity."""
-    return (getattr(*reach(owner, quantity)) if si is None else seen.find(si)) is not None
+    return (getattr(*reach(_first(owner), quantity)) if si is None else seen.find(si)) is not None
 
 
 def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
@@ -321,15 +335,15 @@ def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
         member = members[k]
         for line in bundle.lines:
             found = member.one if line.of is None else member.find(line.of)
-            if not _there(member, found, line.y, line.si):
+            if not member.holds(line.when) or found is None or not _there(member, found, line.y, line.si):
                 continue
             look = member.said(line.role) or member.said(role)
             yield _item(member, found, line, base, member.said(line.label), look, seen.nominal)
 
 
-def _roles(role: str, chosen: list[int]) -> list[str]:
+def _roles(role: Text, chosen: list[int]) -> list[Text]:
     if role == "ramp":
-        return ramp(len(chosen))
+        return [*ramp(len(chosen))]
     return [f"series:{k}" if role == "series" else role for k in chosen]
 
 
@@ -345,15 +359,15 @@ def _item(
     seen: Seen, owner: Any, line: Line, base: str, label: str, role: str, load: int | None, *, banded: bool = True
 ) -> Item:  # fmt: skip
     """One curve, row of bars or of stems, in the units in which its quantities are read."""
-    upto, (of, quantity) = slice(line.first), reach(owner, line.y)
+    upto = slice(line.first)
     si, x_si = (None if where is None else seen.find(where) for where in (line.si, line.x_si))
-    along, y = drawn(*reach(owner, line.x or base), x_si, load=load)[upto], drawn(of, quantity, si, load=load)
+    along, y = _drawn(owner, line.x or base, x_si, load=load)[upto], _drawn(owner, line.y, si, load=load)
     y = y[upto] if y.ndim else np.full(along.shape, y)
     if line.ends:
         along, y = along[[0, -1]], y[[0, -1]]
     error = None if line.error is None or not banded else seen.find(line.error)
     if error is not None:
-        error = drawn(of, quantity, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
+        error = _drawn(owner, line.y, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
     look = line.look(seen) if callable(line.look) else line.look
     if line.kind == "bars":
         return Bars(along, y, label, role, error)

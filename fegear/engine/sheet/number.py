@@ -36,6 +36,8 @@ class Number:
         declared meaning.
     each, when : where, optional
         Objects for each of which there is such a value; whether there is one.
+    finite : bool
+        Whether an infinite one is no value either.
     """
 
     quantity: str
@@ -48,6 +50,7 @@ class Number:
     further: Text = ""
     each: Where | None = None
     when: Where | None = None
+    finite: bool = False
 
     def values(self, seen: Seen) -> Iterator[Value]:
         """Those that there are."""
@@ -56,7 +59,7 @@ class Number:
                 continue
             quantity = one.said(self.quantity)
             number = getattr(*reach(found, quantity)) if self.si is None else one.find(self.si)
-            if number is None or (np.ndim(number) == 0 and np.isnan(number)):
+            if number is None or (np.ndim(number) == 0 and (np.isnan(number) or (self.finite and np.isinf(number)))):
                 continue
             error = None if self.error is None else one.find(self.error)
             if error is not None:

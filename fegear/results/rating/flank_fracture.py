@@ -1,31 +1,24 @@
-"""Result ``flank-fracture``: exposure of surface-hardened flanks over depth, and the case depth that they need.
-
-Tables, values and remarks of the result ``flank-fracture``.
-
-Figures of the result ``flank-fracture``: exposure, stress and strength, and hardness over depth, for either gear.
-"""
+"""Result ``flank-fracture``: exposure of surface-hardened flanks over depth, and the case depth that they need."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import FegearError, InputError, RangeError
-from fegear.base.shown import shown
+from fegear.base.shown import shown, shows
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, column_over, columns_of, value_of
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.figure.panel import Panel
+from fegear.engine.figure.items import Mark
 from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Every, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE, Exposure
 from fegear.formulas.iso6336.part5_materials import recommended
 from fegear.geometry.pair import MEMBERS, Member
@@ -33,11 +26,10 @@ from fegear.results.rating.rating import given, rated
 from fegear.results.rating.shared_load import NotRated, external_rated_pairs, needs_shares, with_shares
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from fegear.base.arrays import Array
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
+    from fegear.engine.sheet.seen import Seen
     from fegear.formulas.hardened_case import HardenedCase
 
 
@@ -81,15 +73,43 @@ class FlankFractureInputs:
 
 
 @dataclass(frozen=True)
+class Below:
+    """A gear over depth below one place of the path, shape (M,)."""
+
+    letter: str
+    depth: Array = shown("mm", "depth y below the flank", label="depth below the flank")
+    load_stress: Array = shown("MPa", "tau_eff,L", label="shear stress")
+    stress: Array = shown("MPa", "tau_eff")
+    exposure: Array = shown("", "A_FF", label="material exposure A_FF")
+    strength: Array = shown("MPa", "tau_per(y)")
+    hardness: Array = shown("", "HV(y), Vickers", label="hardness HV")
+    residual: Array = shown(
+        "MPa", "residual stress sigma_RS(y), uniform over profile and face width", name="residual_stress"
+    )
+
+    @property
+    def key(self) -> str:
+        """Its letter as names of columns have it."""
+        return self.letter.translate(str.maketrans("", "", "_{}"))
+
+    def every(self, step: int) -> Below:
+        """It at every so manyth depth."""
+        arrays = [one.name for one in fields(self) if one.name != "letter"]
+        return replace(self, **{name: getattr(self, name)[::step] for name in arrays})
+
+
+@dataclass(frozen=True)
 class GearExposure:
     """One gear below its flank.
 
     Parameters
     ----------
-    depth, hardness, residual : ndarray, shape (M,)
     found : Exposure
+    depth, hardness, residual : ndarray, shape (M,)
+    over_path : ndarray, shape (N,)
+        Largest A_FF below each place, from the depth of the half-width on.
     most : float
-        A_FF,max from the depth of the half-width on.
+        Largest of these.
     most_load : float
         The same without residual stress.
     place, at_depth : float
@@ -99,17 +119,27 @@ class GearExposure:
     """
 
     found: Exposure
-    place: float
-    depth: Array = shown("mm", "depth y below the flank", label="depth below the flank")
-    hardness: Array = shown("", "HV(y), Vickers")
-    residual: Array = shown(
-        "MPa", "residual stress sigma_RS(y), uniform over profile and face width", name="residual_stress"
-    )
+    depth: Array
+    hardness: Array
+    residual: Array
+    over_path: Array = shown("", "A_FF, maximum below b_H", name="exposure")
+    place: float = shown("mm", "position of the maximum exposure on the line of action, from the pitch point")
     most: float = shown("", f"maximum material exposure (permissible {PERMISSIBLE:g})", name="A_FF")
     most_load: float = shown("", "maximum exposure without residual stress (upper bound)", name="A_FF_load")
     at_depth: float = shown("mm", "depth of the maximum exposure", name="A_FF_depth")
     crushing: float = shown("mm", "Eht_c of ISO 6336-5, minimum against case crushing")
     least_agma: float = shown("mm", "h_e,min of AGMA 2101 with ISO's sigma_H")
+
+    @property
+    @shows("", f"safety factor, 1/A_FF (minimum {1.0 / PERMISSIBLE:g})", name="S_FF")
+    def safety(self) -> float:
+        """Against flank fracture."""
+        return 1.0 / self.most
+
+    def below(self, k: int, letter: str = "") -> Below:
+        """It below the k-th place of the path, under the letter of that place."""
+        stress, load, exposure = (one[k] for one in (self.found.stress, self.found.load_stress, self.found.exposure))
+        return Below(letter, self.depth, load, stress, exposure, self.found.strength, self.hardness, self.residual)
 
 
 @dataclass(frozen=True)
@@ -245,94 +275,14 @@ def _below(
     hardening = AGMA_CRUSHING.get(treatment.get(inputs.materials[i], ""), np.nan)
     iso = ISO_CRUSHING[inputs.qualities[i]] if inputs.materials[i] == "case-hardened-steel" else np.nan
     return GearExposure(
-        found, float(x[place]), depth, hardness, residual, float(counted[place, deep]), float(load.max()),
-        float(depth[deep]), crushing_depth(pair, stress, iso), crushing_depth(pair, stress, hardening),
+        found, depth, hardness, residual, counted.max(axis=1), float(x[place]), float(counted[place, deep]),
+        float(load.max()), float(depth[deep]), crushing_depth(pair, stress, iso),
+        crushing_depth(pair, stress, hardening),
     )  # fmt: skip
 
 
 def _check(scene: Scene, name: str) -> None:
     _inputs(scene, name)
-
-
-def _present(data: FlankFractureData | NotRated, inputs: FlankFractureInputs | NotRated) -> Outcome:
-    if isinstance(data, NotRated) or isinstance(inputs, NotRated):
-        return Outcome(data, remarks=(data.remark,) if isinstance(data, NotRated) else ())
-    return Outcome(
-        data, fracture_tables(data, inputs), fracture_values(data, inputs), {"places": len(data.x), "depths": _DEPTHS},
-        fracture_remarks(data, inputs), fracture_figures(data, inputs),
-    )  # fmt: skip
-
-
-#: Depths in a table by point and depth: every so manyth.
-_EVERY = 4
-
-
-def fracture_tables(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Table, ...]:
-    """Pressure and largest exposure over the path; both gears below the points A to E; case depths and their limits."""
-    return _path(data, inputs), *_table_below(data, inputs), _depths(data, inputs)
-
-
-def _path(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
-    name = inputs.asked.name
-    columns = [*columns_of(data, "x", "sharing", "radius", "pressure", "half_width")]
-    for member in MEMBERS:
-        gear = data.gears[member]
-        counted = np.where(gear.depth >= data.half_width[:, None], gear.found.exposure, -np.inf)
-        columns.append(Column(f"exposure_{member}", counted.max(axis=1), "", f"A_FF, maximum below b_H, {member} gear"))
-    return Table(f"flank_fracture_{name}", tuple(columns), f"Flank fracture of pair {name} over the path of contact")
-
-
-def _table_below(data: FlankFractureData, inputs: FlankFractureInputs) -> Iterator[Table]:
-    for member, gear_name in zip(MEMBERS, inputs.asked.gears, strict=True):
-        gear = data.gears[member]
-        every = slice(0, None, _EVERY)
-        columns = [
-            *(column_of(gear, key, getattr(gear, key)[every]) for key in ("depth", "hardness", "residual")),
-            Column("strength", gear.found.strength[every], "MPa", "tau_per(y)"),
-        ]
-        for letter, i in data.points.items():
-            key = letter.translate(str.maketrans("", "", "_{}"))
-            columns += [
-                Column(f"load_stress_{key}", gear.found.load_stress[i, every], "MPa", f"tau_eff,L below {letter}"),
-                Column(f"stress_{key}", gear.found.stress[i, every], "MPa", f"tau_eff below {letter}"),
-                Column(f"exposure_{key}", gear.found.exposure[i, every], "", f"A_FF below {letter}"),
-            ]
-        title = f"Below the flanks of gear {gear_name} ({member}) of pair {inputs.asked.name}"
-        yield Table(f"flank_fracture_{inputs.asked.name}_{member}", tuple(columns), title)
-
-
-def _depths(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
-    name, pair = inputs.asked.name, inputs.asked.pair
-    limits = [recommended(pair.gear(member).module) for member in MEMBERS]
-    least, most, largest = (np.array(values) for values in zip(*limits, strict=True))
-    gears = [data.gears[member] for member in MEMBERS]
-    columns = (
-        Column("gear", np.array(inputs.asked.gears), "", "driver, driven"),
-        Column("case_depth", np.array([case.case_depth for case in inputs.cases]), "mm", "CHD at 550 HV (case)"),
-        Column("usual_from", least, "mm", "usual minimum, 0.15 m_n"),
-        Column("usual_to", most, "mm", "usual maximum, 0.25 m_n"),
-        Column("largest", largest, "mm", "upper limit: 0.4 m_n, at most 6 mm"),
-        column_over(gears, "crushing"),
-        column_over(gears, "least_agma"),
-    )
-    return Table(f"case_depth_{name}", columns, f"Case depths of pair {name} and limits", printed=True)
-
-
-def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Value, ...]:
-    """Largest exposure of either gear with its place, its safety, and case depth with what it needs."""
-    found = []
-    for member, case in zip(MEMBERS, inputs.cases, strict=True):
-        key, gear = f"{inputs.asked.name}.{member}", data.gears[member]
-        found += [
-            value_of(gear, "most", key),
-            Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"safety factor, 1/A_FF (minimum {1.0 / PERMISSIBLE:g})"),
-            value_of(gear, "most_load", key),
-            value_of(gear, "at_depth", key),
-            Value(f"{key}.case_depth", case.case_depth, "mm", None, "at 550 HV (case)"),
-            Value(f"{key}.case_depth_crushing", gear.crushing, "mm", None, "minimum against case crushing, ISO 6336-5"),
-            Value(f"{key}.case_depth_agma", gear.least_agma, "mm", None, "minimum of AGMA 2101, with sigma_H of ISO"),
-        ]  # fmt: skip
-    return tuple(value for value in found if math.isfinite(value.si))
 
 
 def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[str, ...]:
@@ -391,44 +341,129 @@ def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tu
     return tuple(dict.fromkeys(told))
 
 
-_MPA = 1e-6
+def _present(data: FlankFractureData | NotRated, inputs: FlankFractureInputs | NotRated) -> Outcome:
+    if isinstance(data, NotRated) or isinstance(inputs, NotRated):
+        return Outcome(data, remarks=(data.remark,) if isinstance(data, NotRated) else ())
+    return _SHEET.present(data, inputs)
 
 
-def fracture_figures(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Figure, ...]:
-    """One figure a gear."""
-    return tuple(_figure(member, data, inputs) for member in MEMBERS)
+@dataclass(frozen=True)
+class Flank:
+    """A gear of the pair as it is shown: its exposure over depth below A to E and where it is largest, and its case."""
+
+    found: GearExposure
+    points: tuple[Below, ...]
+    worst: Below
+    gear: str = shown("", "driver, driven", table="depths")
+    case_depth: float = shown("mm", "CHD at 550 HV (case)", table="depths")
+    usual_from: float = shown("mm", "usual minimum, 0.15 m_n", table="depths")
+    usual_to: float = shown("mm", "usual maximum, 0.25 m_n", table="depths")
+    largest: float = shown("mm", "upper limit: 0.4 m_n, at most 6 mm", table="depths")
+
+    @property
+    def rows(self) -> list[Below]:
+        """Depths of the points that stand in a table."""
+        return [one.every(_EVERY) for one in self.points]
 
 
-def _figure(member: Member, data: FlankFractureData, inputs: FlankFractureInputs) -> Figure:
-    name, i, gear = inputs.asked.name, MEMBERS.index(member), data.gears[member]
-    depth, case = gear.depth * 1e3, inputs.cases[i]
-    abscissa = Axis("depth below the flank", "mm", zero=True)
-    marks = (Mark("x", case.case_depth * 1e3, "CHD"),) if case.case_depth == case.case_depth else ()
-    worst = int(abs(data.x - gear.place).argmin())
-    exposures = [
-        Curve(depth, gear.found.exposure[k], f"at {letter}", f"series:{n}", markers=False)
-        for n, (letter, k) in enumerate(data.points.items())
-    ]
-    stresses = [
-        Curve(depth, gear.found.load_stress[worst] * _MPA, "load only", "series:1", dash="dash", markers=False),
-        Curve(depth, gear.found.stress[worst] * _MPA, "with residual stress", "series:0", markers=False),
-        Curve(depth, gear.found.strength * _MPA, "strength", "ink", markers=False),
-    ]
-    hardness = [Curve(depth, gear.hardness, "hardness", "ink", markers=False)]
-    caption = (
-        f"Gear {inputs.asked.gears[i]} ({member}) of pair {name}: material exposure A_FF over depth below points A "
-        f"to E (permissible {PERMISSIBLE:g}); equivalent shear stress at the maximum exposure, "
-        f"{gear.place * 1e3:.3g} mm from the pitch point, with local strength; hardness."
-    )
-    return Figure(
-        f"flank_fracture_{name}_{member}", f"Flank fracture of gear {inputs.asked.gears[i]}", caption,
-        (
-            Panel(abscissa, Axis("material exposure A_FF", zero=True), tuple(exposures),
-                  (*marks, Mark("y", PERMISSIBLE, f"{PERMISSIBLE:g}"), Mark("x", gear.at_depth * 1e3, "largest"))),
-            Panel(abscissa, Axis("shear stress", "MPa", zero=True), tuple(stresses), marks),
-            Panel(abscissa, Axis("hardness HV"), tuple(hardness), marks),
+def _flanks(seen: Seen) -> dict[Member, Flank]:
+    data, inputs, gears = seen.data, seen.asked, {}
+    for member, gear, case in zip(MEMBERS, inputs.asked.gears, inputs.cases, strict=True):
+        found = data.gears[member]
+        points = tuple(found.below(k, letter) for letter, k in data.points.items())
+        worst = found.below(int(abs(data.x - found.place).argmin()))
+        limits = recommended(inputs.asked.pair.gear(member).module)
+        gears[member] = Flank(found, points, worst, gear, case.case_depth, *limits)
+    return gears
+
+
+def _case(seen: Seen) -> tuple[Mark, ...]:
+    depth = seen.one.case_depth
+    return (Mark("x", depth * 1e3, "CHD"),) if depth == depth else ()
+
+
+def _limits(seen: Seen) -> tuple[Mark, ...]:
+    largest = Mark("x", seen.one.found.at_depth * 1e3, "largest")
+    return *_case(seen), Mark("y", PERMISSIBLE, f"{PERMISSIBLE:g}"), largest
+
+
+def _value(quantity: str, of: str = "found", name: str = "", meaning: str = "") -> Number:
+    return Number(quantity, of=of, owner="{name}.{key}", name=name, meaning=meaning, finite=True)
+
+
+#: Depths in a table by point and depth: every so manyth.
+_EVERY = 4
+_PLAIN = {"markers": False}
+_SHEET = Sheet(
+    name=lambda inputs: inputs.asked.name,
+    tables=(
+        Rows(
+            "flank_fracture_{name}", "Flank fracture of pair {name} over the path of contact",
+            (
+                "x", "sharing", "radius", "pressure", "half_width",
+                Cell("over_path", each="gears", name="exposure_{key}", further=", {key} gear"),
+            ),
         ),
-    )  # fmt: skip
+        Rows(
+            "flank_fracture_{name}_{key}", "Below the flanks of gear {one.gear} ({key}) of pair {name}",
+            (
+                "depth", "hardness", "residual", "strength",
+                Each("rows", *(
+                    Cell(one, name=f"{one}_{{one.key}}", further=" below {one.letter}")
+                    for one in ("load_stress", "stress", "exposure")
+                )),
+            ),
+            of=lambda seen: seen.one.rows[0], each=_flanks,
+        ),
+        Rows(
+            "case_depth_{name}", "Case depths of pair {name} and limits",
+            (Every("depths"), "found.crushing", "found.least_agma"),
+            of=lambda seen: list(_flanks(seen).values()), printed=True,
+        ),
+    ),
+    values=(
+        Each(
+            _flanks,
+            _value("most"),
+            _value("safety"),
+            _value("most_load"),
+            _value("at_depth"),
+            _value("case_depth", of="", meaning="at 550 HV (case)"),
+            _value("crushing", name="case_depth_crushing", meaning="minimum against case crushing, ISO 6336-5"),
+            _value("least_agma", name="case_depth_agma", meaning="minimum of AGMA 2101, with sigma_H of ISO"),
+        ),
+    ),
+    figures=(
+        Chart(
+            "flank_fracture_{name}_{key}", "Flank fracture of gear {one.gear}",
+            f"Gear {{one.gear}} ({{key}}) of pair {{name}}: material exposure A_FF over depth below points A to E "
+            f"(permissible {PERMISSIBLE:g}); equivalent shear stress at the maximum exposure, {{one.found.place:.3g}} "
+            "from the pitch point, with local strength; hardness.",
+            (
+                Over(
+                    "depth",
+                    (Line("exposure", each=Family("points", "at {one.letter}", most=_PLACES), look=_PLAIN),),
+                    options={"zero": True}, x_options={"zero": True}, marks=_limits,
+                ),
+                Over(
+                    "depth",
+                    (
+                        Line("load_stress", "load only", "series:1", look={"dash": "dash", **_PLAIN}),
+                        Line("stress", "with residual stress", "series:0", look=_PLAIN),
+                        Line("strength", "strength", "ink", look=_PLAIN),
+                    ),
+                    options={"zero": True}, x_options={"zero": True}, marks=_case,
+                ),
+                Over(
+                    "depth", (Line("hardness", "hardness", "ink", look=_PLAIN),), x_options={"zero": True}, marks=_case
+                ),
+            ),
+            of="worst", each=_flanks,
+        ),
+    ),
+    remarks=(lambda seen: fracture_remarks(seen.data, seen.asked),),
+    settings={"places": "x.size", "depths": lambda _seen: _DEPTHS},
+)  # fmt: skip
 
 
 FLANK_FRACTURE = Stage(
