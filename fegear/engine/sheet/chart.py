@@ -311,7 +311,8 @@ def _items(seen: Seen, owner: Any, line: Line | Bundle | Map, base: str) -> Iter
     elif isinstance(line, Bundle):
         yield from _bundle(seen, line, base)
     elif isinstance(line.each, Family):
-        yield from _bundle(seen, Bundle(line.each, (replace(line, label=line.label or line.each.label),)), base)
+        alone = replace(line, label=line.label or line.each.label, when=None)  # the panel asked for all
+        yield from _bundle(seen, Bundle(line.each, (alone,)), base)
     elif line.each is None:
         if (found := _owner(seen, owner, line)) is not None and _there(seen, found, line.y, line.si):
             yield _item(seen, found, line, base, seen.said(line.label), seen.said(line.role) or "blue", seen.nominal)
