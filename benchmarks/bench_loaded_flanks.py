@@ -42,7 +42,7 @@ def main() -> None:
     """Print seconds of every stretch, then a line for every body."""
     scene = read_scene(Path(sys.argv[1]) if len(sys.argv) > 1 else CASE)
     asked = pair_spec(scene, next(iter(scene.pairs)))
-    gaps = asked.gaps(relief=asked.relief, misalignment=asked.misalignment)
+    gaps = asked.gaps()
     settings, rows = solid_settings_of(scene, asked.gears[0]), []
     for body, name in BODIES.items():
         clock = Clock()

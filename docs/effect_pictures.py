@@ -10,26 +10,18 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from fegear.base.effects import EFFECTS
 from fegear.case.reading import read_scene
 from fegear.output.effects import sentence, write_effects
 from fegear.studies.effects import effect_study, kernel_table, stage_table
 
 DOCS = Path(__file__).parent
 CASES = DOCS.parent / "cases"
-SPACING = ", ".join(["'5 um'", *["'0 um'"] * 27])
-RESULTS = 'results=["transmission-error"]'
 SPEEDS = "dynamics.speeds={ start = '2000 rpm', stop = '16000 rpm', count = 57 }"
 FACTOR = ('results=["dynamic-factor"]', SPEEDS)
-#: Case, options and effects of each picture: cases that feel them.
-STUDIES = (
+#: Case, options and effects of pictures that show more than the scenes of their effects.
+LARGER = (
     ("pinion_and_wheel", (), ("neighbour_coupling", "hertz", "corner_contact")),
-    ("lin_tip_relief", (RESULTS, "pair.I.loads=['8890 N']"), ("relief",)),
-    (
-        "lin_tip_relief",
-        (RESULTS, "pair.I.loads=['8890 N']", f"gear.a.spacing_errors={{ values = [{SPACING}] }}",
-         "gear.a.relief={ tip = { amount = '20 um', normalised_length = 1.0 } }"),
-        ("spacing_errors",),
-    ),
     ("lin_dynamic_factor", FACTOR, ("contact_loss", "parametric", "friction")),
     ("litvin_shaft_angle", (), ("misalignment",)),
     (
@@ -39,6 +31,13 @@ STUDIES = (
         ("torque_ripple",),
     ),
 )  # fmt: skip
+
+
+def studies() -> list[tuple[str, tuple[str, ...], tuple[str, ...]]]:
+    """Case, options and effects of every picture."""
+    drawn = {effect for _, _, effects in LARGER for effect in effects}
+    others = [(row.scene[0], row.scene[1:], (name,)) for name, row in EFFECTS.items() if name not in drawn]
+    return [*LARGER, *others]
 
 
 def replaced(text: str, mark: str, new: str) -> str:
@@ -52,7 +51,7 @@ def main() -> None:
     """Run the studies and write."""
     images = DOCS / "images" / "effects"
     images.mkdir(parents=True, exist_ok=True)
-    for name, overrides, effects in STUDIES:
+    for name, overrides, effects in studies():
         scene, switched, fixed = effect_study(CASES / f"{name}.toml", overrides, effects)
         if fixed:
             raise SystemExit(f"{name}: {fixed}")

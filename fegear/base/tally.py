@@ -10,6 +10,8 @@ from contextvars import ContextVar
 from types import MappingProxyType
 from typing import ParamSpec, TypeVar
 
+from fegear.base.effects import EFFECTS
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -17,23 +19,13 @@ R = TypeVar("R")
 KERNELS = MappingProxyType(
     {
         "tooth shapes": "one tooth shape solved by FE",
-        "neighbours": "compliances of neighbouring teeth at many positions",
         "load sharing": "contact problems at many positions and loads",
         "Hertz widths": "half-widths of contacts at many positions",
-        "nonlinear steps": "one Newton step of load sharing with load-dependent contact stiffness",
-        "corner searches": "position and gap of tip edges outside the path of contact",
-        "corner contacts": "contact law at a tip edge",
-        "reliefs": "removal of a modified flank at many positions",
-        "spacing errors": "pitch deviations of the teeth in one base pitch",
         "steady motions": "steady-state motion at one speed",
         "passages": "time integration over one interval",
-        "changes of contact": "a change between contact and loss of contact in a motion",
-        "springs in time": "a time-varying spring, in one integration interval",
-        "ripple lines": "one line of a torque ripple at one speed, or in one integration interval",
-        "friction fits": "friction torque of one gear pair at one speed",
         "tooth contacts": "first contact of helical flanks at many angles",
-        "misaligned flanks": "a flank displaced from its nominal axis",
         "neglected effects": "estimate of an effect that is off, for one pair, design or motion",
+        **{kernel: what for effect in EFFECTS.values() for kernel, what in effect.kernels.items()},
     }
 )
 

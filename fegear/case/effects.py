@@ -3,77 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Annotated, Any, Literal, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, get_type_hints
 
-from pydantic import Field
+from pydantic import Field, create_model
 
+from fegear.base.effects import (
+    EFFECTS,
+    GAPS,
+    GROUPS,
+    Described,
+    FaceEffects,
+    MotionEffects,
+    ToothEffects,
+)
 from fegear.case.part import Part
-from fegear.contact.effects import GAPS
 
 
-class Described(NamedTuple):
-    """A pair without effects.
-
-    Attributes
-    ----------
-    gears : collection of str
-        Keys of its gears.
-    pair : mapping
-        Its own keys.
-    wide, carried, moving : bool
-        Whether it is loaded with its width, shafts of the case carry its gears, and the case has a train.
-    rippling : bool
-        Whether the train has torques that fluctuate.
-    """
-
-    gears: Collection[str]
-    pair: Mapping[str, Any]
-    wide: bool
-    carried: bool = False
-    moving: bool = False
-    rippling: bool = False
-
-    def has(self, *keys: str) -> bool:
-        """Whether a gear or the pair has one of these keys."""
-        return any(key in self.gears or key in self.pair for key in keys)
-
-
-@dataclass(frozen=True, slots=True)
-class Effect:
-    """What there is to know of an effect besides what it is.
-
-    Parameters
-    ----------
-    needs : str
-        What it needs.
-    kernels : tuple of str
-        Kernels of `fegear.base.tally.KERNELS` that run only with it, in scenes where nothing else calls for them.
-    called : callable
-        Whether a pair calls for it where effects start as described.
-    on : bool or str
-        Value that switches it on.
-    words : str
-        What figures call it, where that is not its name.
-    """
-
-    needs: str
-    kernels: tuple[str, ...]
-    called: Callable[[Described], bool]
-    on: bool | str = True
-    words: str = ""
-
-
-def _always(_pair: Described) -> bool:
-    return True
-
-
-def _moving(pair: Described) -> bool:
-    return pair.moving
-
-
-class EffectsPart(Part):
+class _Switches(Part):
     """Physical effects by name."""
 
     start: Literal["none", "described"] = Field(
@@ -81,74 +28,10 @@ class EffectsPart(Part):
         description="Initial state of all effects: `none`, or those required by the gears and pairs described (as in "
         "Python). Effects set here take precedence.",
     )
-    corner_contact: Annotated[bool, Effect("no `friction`", ("corner searches", "corner contacts"), _always)] = Field(
-        default=False, description="Corner contact: contact outside the path of contact due to tooth deflection."
-    )
-    neighbour_coupling: Annotated[
-        bool,
-        Effect(
-            'plane (2D) teeth with compliance source "fe"', ("neighbours",),
-            lambda pair: pair.pair.get("compliance", {}).get("source", "fe") == "fe",
-        ),
-    ] = Field(default=False, description="Coupling of neighbouring teeth through the gear body.")  # fmt: skip
-    hertz: Annotated[
-        Literal["load-dependent", "linear", "none"],
-        Effect(
-            "a compliance source other than a table",
-            ("nonlinear steps",),
-            _always,
-            on="load-dependent",
-            words="load-dependent contact width",
-        ),
-    ] = Field(
-        default="none",
-        description="Hertzian contact deformation: load-dependent, linearised at nominal load, or none.",
-    )
-    relief: Annotated[
-        bool,
-        Effect(
-            "`relief` on a gear; for 3D pairs also `lead`, `bias`, `topography`, and `modification` of the pair",
-            ("reliefs",),
-            lambda pair: pair.has("relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())),
-        ),
-    ] = Field(default=False, description="Include profile and flank line modifications.")
-    spacing_errors: Annotated[
-        bool,
-        Effect("`spacing_errors` on a gear", ("spacing errors",), lambda pair: pair.has("spacing_errors")),
-    ] = Field(default=False, description="Include pitch deviations (`spacing_errors`).")
-    contact_loss: Annotated[bool, Effect("results in time", ("changes of contact",), _moving)] = Field(
-        default=False, description="Loss of contact, backlash and impacts in the time domain."
-    )
-    friction: Annotated[
-        bool,
-        Effect(
-            "`parametric` where it moves, no `neighbour_coupling`, no `corner_contact`", ("friction fits",),
-            lambda _pair: False,
-        ),
-    ] = Field(default=False, description="Sliding friction between the teeth.")  # fmt: skip
-    parametric: Annotated[
-        bool,
-        Effect(
-            "results in time", ("springs in time",), _moving, words="time-varying stiffness"
-        ),
-    ] = Field(default=False, description="Include the time-varying mesh stiffness (parametric "
-                                         "excitation).")  # fmt: skip
-    torque_ripple: Annotated[
-        bool,
-        Effect("`train.torque_ripple`", ("ripple lines",), lambda pair: pair.rippling),
-    ] = Field(default=False, description="Torque ripple of the train, in addition to mesh excitation.")
-    misalignment: Annotated[
-        bool,
-        Effect(
-            "`misalignment` of a helical or 3D pair, `line_error` of a 3D pair, or shafts for both gears",
-            ("misaligned flanks",),
-            lambda pair: pair.wide and (pair.carried or pair.has("misalignment", "line_error")),
-        ),
-    ] = Field(default=False, description="Include misalignment and line errors of pairs.")
 
     def is_on(self, name: str) -> bool:
         """Whether an effect is switched on."""
-        return getattr(self, name) not in (False, "none")
+        return bool(getattr(self, name) != EFFECTS[name].off)
 
     def example(self, name: str) -> str:
         """Value that switches an effect on, as a case file writes it."""
@@ -164,12 +47,19 @@ class EffectsPart(Part):
         return frozenset(self.model_fields_set)
 
 
-#: What there is to know of each effect, by its name.
-EFFECTS: dict[str, Effect] = {
-    name: next(one for one in field.metadata if isinstance(one, Effect))
-    for name, field in EffectsPart.model_fields.items()
-    if name != "start"
-}
+if TYPE_CHECKING:
+
+    class EffectsPart(_Switches, ToothEffects, MotionEffects, FaceEffects):  # type: ignore[misc]  # frozen by pydantic
+        """Physical effects by name."""
+
+else:  # the same fields, all off
+    EffectsPart = create_model(
+        "EffectsPart", __base__=_Switches, __module__=__name__, __doc__=_Switches.__doc__,
+        **{
+            name: (kind, Field(default=EFFECTS[name].off, description=EFFECTS[name].about))
+            for group in GROUPS for name, kind in get_type_hints(group).items()
+        },
+    )  # fmt: skip
 
 
 def started(effects: EffectsPart, pairs: Sequence[Described]) -> EffectsPart:

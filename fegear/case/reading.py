@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from fegear.base.effects import Described
 from fegear.base.errors import PATH, InputError, shown
 from fegear.base.unit_text import plain_number
-from fegear.case.effects import Described, started
+from fegear.case.effects import started
 from fegear.case.known_keys import keys_at
 from fegear.case.model import Case
 from fegear.case.nearest import nearest

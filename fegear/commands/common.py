@@ -36,7 +36,7 @@ def _complete_results(incomplete: str) -> list[str]:
 
 def complete_effects(incomplete: str) -> list[str]:
     """What an effect that is being typed may become."""
-    from fegear.case.effects import EFFECTS
+    from fegear.base.effects import EFFECTS
 
     return [name for name in sorted(EFFECTS) if name.startswith(incomplete)]
 

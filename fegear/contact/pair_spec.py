@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Self
 
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import EFFECTS, MISALIGNMENT, RELIEF, SPACING_ERRORS, FaceEffects, ToothEffects
 from fegear.base.errors import InputError
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
@@ -173,8 +174,10 @@ class Misalignment:
 
 
 @dataclass(frozen=True)
-class PairSpec:
+class PairSpec(ToothEffects, FaceEffects):
     """Two gears in mesh, what their flanks have, their loads, and which effects count.
+
+    Effects are those of `fegear.base.effects`, each a keyword: all on but for what is given.
 
     Parameters
     ----------
@@ -191,11 +194,6 @@ class PairSpec:
     table : ComplianceTable or None
         Of plane teeth, in place of either.
     driver, driven : FlankSpec
-    corner_contact, neighbour_coupling, relief, spacing_errors, misalignment : bool
-        Effects: contact before and after the path of contact, loaded teeth that deflect their neighbours,
-        modifications, spacing errors; for teeth with a width what `errors` has.
-    hertz : {"load-dependent", "linear", "none"}
-        The contact's width follows its load, is that under the nominal load, or is the compliances' own.
     errors : Misalignment
     cutter : tuple of FlankModification
         What the pinion's cutter leaves, counted with `relief`.
@@ -217,12 +215,6 @@ class PairSpec:
     table: ComplianceTable | None = None
     driver: FlankSpec = field(default_factory=FlankSpec)
     driven: FlankSpec = field(default_factory=FlankSpec)
-    corner_contact: bool = True
-    neighbour_coupling: bool = True
-    hertz: Hertz = "load-dependent"
-    relief: bool = True
-    spacing_errors: bool = True
-    misalignment: bool = True
     errors: Misalignment = field(default_factory=Misalignment)
     cutter: tuple[FlankModification, ...] = ()
     positions: int = 16
@@ -248,7 +240,12 @@ class PairSpec:
 
     def is_on(self, effect: str) -> bool:
         """Whether an effect counts."""
-        return getattr(self, effect) not in (False, "none")
+        return bool(getattr(self, effect) != EFFECTS[effect].off)
+
+    def with_effect(self, effect: str) -> Self:
+        """The same with an effect that is off, or on in part."""
+        more: dict[str, Any] = {effect: EFFECTS[effect].on}
+        return replace(self, **more)
 
     def flanks(self, member: Member) -> FlankSpec:
         """Those of driver or driven."""
@@ -307,31 +304,33 @@ class PairSpec:
 
     def has_data(self, effect: str) -> bool:
         """Whether there is anything that an effect could count."""
-        if effect == "relief":
-            given = any(flank.relief or flank.over_face for flank in self.both) or bool(self.cutter)
-            return given and not any(flank.wants_delta for flank in self.both)
-        if effect == "spacing_errors":
-            return any(flank.spacing.size for flank in self.both)
-        return effect != "misalignment" or self.errors.given
+        modified = any(flank.relief or flank.over_face for flank in self.both) or bool(self.cutter)
+        in_delta = self.width != "plane" and any(flank.wants_delta for flank in self.both)  # of plane teeth only
+        given = {
+            RELIEF.name: modified and not in_delta,
+            SPACING_ERRORS.name: any(flank.spacing.size for flank in self.both),
+            MISALIGNMENT.name: self.errors.given,
+        }
+        return given.get(effect, True)
 
     def on(self, shafts: ShaftGaps) -> PairSpec:
         """The same on shafts that open other gaps."""
         return replace(self, errors=replace(self.errors, shafts=shafts))
 
-    def gaps(self, *, relief: bool, misalignment: bool, spacing_errors: bool = False) -> FlankGaps:
-        """What keeps the flanks of teeth with a width apart, by these effects."""
+    def gaps(self) -> FlankGaps:
+        """What keeps the flanks of teeth with a width apart, by the effects that are on."""
         apart, pair = FlankGaps(), self.placed
-        if relief:
+        if self.relief:
             driver, driven = (flank.profile(pair, member) for member, flank in zip(MEMBERS, self.both, strict=True))
             first, second = (flank.surface(pair, member) for member, flank in zip(MEMBERS, self.both, strict=True))
             apart = FlankGaps(driver, driven, driver_flank=(*first, *self.cutter), driven_flank=second)
-        if misalignment:
+        if self.misalignment:
             off = self.errors
             apart = replace(
                 apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt, shafts=off.shafts,
                 driver_flank=(*apart.driver_flank, *off.cutting),
             )  # fmt: skip
-        if spacing_errors:
+        if self.spacing_errors:
             apart = replace(
                 apart, driver_spacing=self.driver.spacing, driven_spacing=self.driven.spacing,
                 base_pitch=self.base_pitch,

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import EFFECTS
 from fegear.base.errors import InputError
 from fegear.base.tally import tallying
-from fegear.case.effects import EFFECTS, EffectsPart
 from fegear.case.nearest import nearest
 from fegear.case.reading import Scene, build_scene, case_text, read_document
 from fegear.engine.figure.axis import Axis
@@ -97,18 +97,20 @@ def felt_effects(scene: Scene) -> tuple[str, ...]:
 
 def switch(document: Document, effect: str, *, on: bool) -> Document:
     """A case's document with an effect switched; data that have a meaning only with it go when it is switched off."""
-    state = EFFECTS[effect].on if on else EffectsPart.model_fields[effect].default
-    changed = {**document, "effects": {**document.get("effects", {}), effect: state}}
-    if effect == "misalignment" and not on:
-        changed["pair"] = _without(document["pair"], "misalignment")
-    if effect == "contact_loss" and not on and "train" in document:
-        train = document["train"]
-        changed["train"] = {**train, "mesh": _without(train.get("mesh", {}), "backlash")}
-    return changed
+    row = EFFECTS[effect]
+    changed = {**document, "effects": {**document.get("effects", {}), effect: row.on if on else row.off}}
+    return changed if on or not row.alone_with_it else _without(changed, *row.alone_with_it)
 
 
-def _without(tables: Document, key: str) -> Document:
-    return {name: {k: v for k, v in table.items() if k != key} for name, table in tables.items()}
+def _without(document: Document, table: str, *path: str) -> Document:
+    """A document without a key of all entries of a table, whose names lie before it."""
+    if table not in document:
+        return document
+    *inner, key = path
+    if inner:
+        return {**document, table: _without(document[table], *path)}
+    entries = document[table].items()
+    return {**document, table: {name: {k: v for k, v in one.items() if k != key} for name, one in entries}}
 
 
 def measure(scene: Scene) -> Measured:
@@ -211,17 +213,15 @@ def stage_table(scenes: Iterable[Scene]) -> str:
     for effect, fact in EFFECTS.items():
         stages = [f"`{stage.name}`" for stage in STAGES if effect in stage.effects]
         results = ", ".join(f"`{result}`" for result in sorted(felt[effect])) or "none"
-        about = EffectsPart.model_fields[effect].description or ""
-        rows.append((f"`{effect}`", about, fact.needs, ", ".join(stages) or "none", results))
-    return _table(("effect", "meaning", "requirement", "stages that include it", "results it may change"), rows)
+        rows.append((f"`{effect}`", fact.about, fact.without, fact.needs, ", ".join(stages) or "none", results))
+    heads = ("effect", "meaning", "assumed without it", "requirement")
+    return _table((*heads, "stages that include it", "results it may change"), rows)
 
 
 def kernel_table() -> str:
     """Kernels that run only with an effect, in Markdown."""
-    from fegear.base.tally import KERNELS
-
     rows = [
-        (f"`{effect}`", "; ".join(f"{kernel} ({KERNELS[kernel]})" for kernel in fact.kernels) or "none")
+        (f"`{effect}`", "; ".join(f"{kernel} ({what})" for kernel, what in fact.kernels.items()) or "none")
         for effect, fact in EFFECTS.items()
     ]
     return _table(("effect", "kernels that run only with it"), rows)
@@ -292,7 +292,7 @@ def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Fig
     title : str
         Of the case.
     """
-    name = EFFECTS[found.effect].words or found.effect.replace("_", " ")
+    name = EFFECTS[found.effect].said
     name = f"{name[0].upper()}{name[1:]}"
     panels, what = _compared(curve, f"{name}\n{title}"), "CPU time" if curve is None else "change"
     seconds = (

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import AT_REST, switched_on
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.geometry.pair import GearPair, Member
 from fegear.verify.kept import kept
@@ -117,7 +118,7 @@ def _planet_and_ring() -> Engagement:
         "results": ["load-sharing"],
         "gear": {name: gear | common for name, gear in gears.items()},
         "pair": {"I": {"driver": "planet", "driven": "ring", "torque": "500 N*m"}},
-        "effects": {"corner_contact": True, "neighbour_coupling": True, "hertz": "load-dependent"},
+        "effects": switched_on(*AT_REST),
     }
     spec = pair_spec(build_scene(case, "case", Path()), "I")
     solved = [solve_gear(gear, reach=3, estimate_error=False) for gear in (spec.pair.driver, spec.pair.driven)]

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from fegear.base.effects import CONTACT_LOSS, HERTZ, PARAMETRIC, switched_on
 from fegear.base.errors import MissingLibraryError
 from fegear.verify.row import Compared, Rows, near
 
@@ -36,7 +37,7 @@ _CASE: dict[str, Any] = {
         "balance": "brake",
     },
     "transmission_error": {"even_positions": 500},
-    "effects": {"contact_loss": True, "parametric": True, "hertz": "load-dependent"},
+    "effects": switched_on(CONTACT_LOSS.name, PARAMETRIC.name, HERTZ.name),
 }
 
 

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.kinds import KINDS
@@ -390,7 +391,7 @@ class Bench:
         """Give gears other reliefs; the case before is pinned, so that both are shown over each other."""
         text = self._on_desk().text
         text = with_values(text, {("gear", gear, "relief"): None for gear in reliefs})
-        written: dict[KeyPath, str | None] = {("effects", "relief"): "true"}
+        written: dict[KeyPath, str | None] = {("effects", RELIEF.name): "true"}
         written |= {("gear", name, "relief"): literal(one) for name, one in reliefs.items() if one is not None}
         if self.pinned is None:
             self.pin()

@@ -9,6 +9,7 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Literal
 
+from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
@@ -125,7 +126,7 @@ def moved_relief(desk: Desk, gear: str, end: str, start: float, amount: float, i
         key, text = start_as_given(given, handle, start)
         changes[(*table, key)] = text
         changes |= {(*table, other): None for other in STARTS if other != key}
-    return with_values(desk.text, {**changes, ("effects", "relief"): "true"})
+    return with_values(desk.text, {**changes, ("effects", RELIEF.name): "true"})
 
 
 def _tables(document: Mapping[str, Any], kind: str) -> dict[str, dict[str, Any]]:
@@ -146,7 +147,7 @@ def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
     left = {name: {key for key in one if name != gear or key != "relief"} for name, one in gears.items()}
     changes: dict[Path, str | None] = {("gear", gear, "relief"): None}
     if not any(keys & _MODIFIED for keys in left.values()) and not any("modification" in one for one in pairs.values()):
-        changes["effects", "relief"] = None
+        changes["effects", RELIEF.name] = None
     return with_values(text, changes)
 
 

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from fegear.base.effects import EFFECTS
 from fegear.base.errors import InputError
 from fegear.base.tally import KERNELS, note, tallied, tallying
-from fegear.case.effects import EFFECTS
 from fegear.case.reading import read_scene
 from fegear.cli import app
 from fegear.results.catalogue import STAGES
@@ -24,24 +24,9 @@ from fegear.studies.effects import Switched, effect_study, kernel_table, stage_t
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases"
-STATIC = ("accuracy.tolerance=1e-2", "pair.I.loads=['350 N']", 'results=["transmission-error"]')
 TE = ('results=["transmission-error"]', "pair.I.loads=['8890 N']")
-SPACING = "gear.a.spacing_errors={ values = [" + ", ".join(["'3 um'", *["'0 um'"] * 27]) + "] }"
-RELIEF = "gear.a.relief={ tip = { amount = '20 um', normalised_length = 1.0 } }"
-MOTION = ('results=["dynamic-factor"]', "dynamics.speeds=['6000 rpm', '12000 rpm']")
 #: Scenes in which nothing but the effect calls for its kernels.
-SCENES = {
-    "neighbour_coupling": ("calculix_pair", STATIC),
-    "hertz": ("calculix_pair", (*STATIC, "effects.corner_contact=false")),
-    "corner_contact": ("calculix_pair", STATIC),
-    "relief": ("lin_tip_relief", TE),
-    "spacing_errors": ("lin_tip_relief", (*TE, SPACING, RELIEF)),
-    "contact_loss": ("lin_dynamic_factor", MOTION),
-    "parametric": ("lin_dynamic_factor", (*MOTION, "effects.hertz=none")),
-    "friction": ("lin_dynamic_factor", MOTION),
-    "misalignment": ("litvin_shaft_angle", ("tooth_contact.positions=24",)),
-    "torque_ripple": ("torque_ripple", ('results=["tooth-force"]',)),
-}
+SCENES = {name: (effect.scene[0], effect.scene[1:]) for name, effect in EFFECTS.items()}
 
 
 @functools.cache
@@ -158,13 +143,13 @@ def test_the_page_of_effects_says_what_the_code_does():
     for effect in SCENES:
         assert f"images/effects/{effect}.png" in page
         assert (ROOT / "docs" / "images" / "effects" / f"{effect}.png").is_file()
-    assert {effect for stage in STAGES for effect in stage.effects} == set(SCENES)
+    assert {effect for stage in STAGES for effect in stage.effects} == set(EFFECTS)
 
 
 def test_the_page_can_be_made_again():
     spec = importlib.util.spec_from_file_location("effect_pictures", ROOT / "docs" / "effect_pictures.py")
     made = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(made)
-    assert {effect for _, _, effects in made.STUDIES for effect in effects} == set(SCENES)
+    assert sorted(effect for _, _, effects in made.studies() for effect in effects) == sorted(EFFECTS)
     page = (ROOT / "docs" / "effects.md").read_text("utf-8")
     assert made.replaced(page, "kernels", kernel_table()) == page

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -112,8 +113,8 @@ def gaps(*overrides):
     asked = pair_spec(read_scene(CASE, [*COARSE, *overrides]), "I")
     pair = asked.placed
     lines = contact_lines(pair, pair.x_start + pair.base_pitch * np.array([0.2, 0.7]), 1e-3)
-    plain = asked.gaps(relief=True, misalignment=False)
-    found = asked.gaps(relief=True, misalignment=asked.misalignment)
+    plain = replace(asked, relief=True, misalignment=False).gaps()
+    found = replace(asked, relief=True).gaps()
     bare = FlankGaps(plain.driver_relief, plain.driven_relief)
     return (found.at(pair, lines) - bare.at(pair, lines))[lines.present], lines, asked
 

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 import fegear
+from fegear.base.effects import EFFECTS, Described
 from fegear.base.errors import InputError
-from fegear.case.effects import EFFECTS, Described, EffectsPart, started
+from fegear.case.effects import EffectsPart, started
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError
 from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.built.members import gear_name
@@ -180,8 +181,8 @@ def described_relief(scene: Scene, gear: str) -> DescribedRelief:
     if scene.case.gear[gear].relief is None:
         return DescribedRelief()
     flanks = gear_flanks(scene, gear, drawn=True)
-    if "relief" in flanks.wrong:
-        raise flanks.wrong["relief"]
+    if RELIEF.name in flanks.wrong:
+        raise flanks.wrong[RELIEF.name]
     if flanks.wants_delta:
         return DescribedRelief(left_out="amount depends on the deflection (amount_over_delta)")
     built: dict[str, Relief] = {}

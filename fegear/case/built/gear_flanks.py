@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from fegear.base.effects import RELIEF, SPACING_ERRORS
 from fegear.base.errors import InputError
 from fegear.case.csv_file import one_column, read_columns
 from fegear.case.part import Part, at
@@ -62,13 +63,13 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> FlankSpec:
     except InputError as error:
         if effects.relief:
             raise
-        wrong["relief"] = error
+        wrong[RELIEF.name] = error
     try:
         spacing = _spacing_errors(scene, gear)
     except InputError as error:
         if effects.spacing_errors:
             raise
-        wrong["spacing_errors"] = error
+        wrong[SPACING_ERRORS.name] = error
     return FlankSpec(relief, spacing, gear=gear, measured=measured, wrong=wrong)
 
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.effects import AT_REST, CORNER_CONTACT, EFFECTS
 from fegear.base.printed import percent
 from fegear.base.tally import note
 from fegear.case.effects import EffectsPart
-from fegear.contact.effects import AT_REST
 from fegear.contact.loaded_teeth import Answer, Change, Neglected
 from fegear.geometry.pair import MEMBERS
 
@@ -52,8 +52,9 @@ def remark(who: str, effects: EffectsPart, tolerance: float, effect: str, sizes:
 def remedy(effects: EffectsPart, effect: str) -> str:
     """The line that switches an effect on, and what has to go for it."""
     line = f"Set {effect} = {effects.example(effect)} under [effects]"
-    if effect in ("corner_contact", "neighbour_coupling") and effects.friction:
-        return f"{line} and switch friction off: friction requires uncoupled tooth pairs."
+    in_the_way = [other for other in EFFECTS[effect].excludes if effects.is_on(other)]
+    if in_the_way:
+        return f"{line} and switch {in_the_way[0]} off: {in_the_way[0]} requires uncoupled tooth pairs."
     return f"{line}."
 
 
@@ -83,7 +84,7 @@ def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart)
         f"off: one tooth pair {'more' if off >= 0.0 else 'less'} is in contact over only "
         f"{abs(off) * engagement.pair.base_pitch * 1e6:.3g} um of the base pitch, which gives a very narrow spike in "
         "transmission error and stiffness. The peak-to-peak value is discontinuous at an integer contact ratio, and "
-        f"so is any optimum based on it. {remedy(effects, 'corner_contact')} With it both are continuous."
+        f"so is any optimum based on it. {remedy(effects, CORNER_CONTACT.name)} With it both are continuous."
     )
     return (said,)
 
@@ -117,10 +118,10 @@ def neglected_in_design(
             continue
         note(COUNTED)
         sizes = []
-        if effect == "corner_contact":
+        if effect == CORNER_CONTACT.name:
             change = changes(designed, {effect: other}, [load], ("transmission error",))[effect][0]
             sizes = [_size(change, load)] if change.share > tolerance else []
-        for member in MEMBERS if effect != "corner_contact" else ():
+        for member in MEMBERS if effect != CORNER_CONTACT.name else ():
             relief = designed.driver_relief if member == "driver" else designed.driven_relief
             if isinstance(relief, MinimumExcitationRelief):
                 x = np.linspace(designed.pair.x_start, designed.pair.x_end, 25)
@@ -131,7 +132,7 @@ def neglected_in_design(
                     share = percent(abs(size) / largest)
                     where = f"{share} of its maximum, at x = {x[at] * 1e3:.4g} mm"
                     sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
-        if effect == "corner_contact" and ground is not None:
+        if effect == CORNER_CONTACT.name and ground is not None:
             shape, best = ground
             other_best = grindable(other, load, shape, task.metric)
             if abs(other_best.objective - best.objective) > max(tolerance, _EQUALLY_GOOD) * best.objective:

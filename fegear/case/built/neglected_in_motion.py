@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.effects import CONTACT_LOSS, FRICTION
 from fegear.base.errors import FegearError
 from fegear.base.printed import percent
 from fegear.base.tally import note
@@ -16,7 +17,7 @@ from fegear.case.effects import EffectsPart
 from fegear.contact.plane.neglected_effects import COUNTED
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from fegear.case.built.train import MotionInputs
     from fegear.dynamics.motion.steady_state import SteadyState
@@ -116,6 +117,13 @@ def friction_changes(asked: MotionInputs, data: GearTrain, states: Sequence[Stea
     return _changes(replace(asked, friction=True), data, steady[int(np.argmax(factors))]) if steady else []
 
 
+#: What one more effect changes, by the effects of which that is estimated.
+SIZED: dict[str, Callable[[MotionInputs, GearTrain, Sequence[SteadyState]], list[FactorChange]]] = {
+    CONTACT_LOSS.name: contact_loss_changes,
+    FRICTION.name: friction_changes,
+}
+
+
 @dataclass(frozen=True)
 class NeglectedInMotion:
     """Effects of a motion that are off.
@@ -136,9 +144,8 @@ def neglected_in_motion(asked: MotionInputs, data: GearTrain, states: Sequence[S
     """What contact loss and friction would change where they are off."""
     changes: dict[str, tuple[FactorChange, ...]] = {}
     failed: dict[str, str] = {}
-    off = {"contact_loss": not asked.contact_loss, "friction": not asked.friction}
-    for effect, estimate in (("contact_loss", contact_loss_changes), ("friction", friction_changes)):
-        if not off[effect] or not states:
+    for effect, estimate in SIZED.items():
+        if getattr(asked, effect) or not states:
             continue
         try:
             note(COUNTED)
@@ -153,7 +160,7 @@ def motion_remarks(
 ) -> tuple[str, ...]:
     """Contact loss and friction that are off and would change the dynamic factor by more than the tolerance."""
     said = []
-    for effect in ("contact_loss", "friction"):
+    for effect in SIZED:
         if effect in found.failed:
             said.append(f"{effect} is off; its influence cannot be estimated: {found.failed[effect]}")
         sizes = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
@@ -142,4 +143,4 @@ def check_wide_pair(scene: Scene, name: str) -> None:
                 f"gear.{flank.gear}.relief", "amount_over_delta", "is defined for the plane (2D) model only",
                 "specify the amount as a length for 3D gears",
             )  # fmt: skip
-    spec.gaps(relief=effects.relief, misalignment=False)
+    replace(spec, spacing_errors=False).gaps()

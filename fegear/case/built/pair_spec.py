@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from fegear.base.effects import EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.base.errors import InputError
 from fegear.case.built.flank_errors import cutter_modification, flank_errors
 from fegear.case.built.flank_modifications import with_face
@@ -40,11 +41,13 @@ def pair_spec(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     if over_face and width == "plane":
         width = "solid"
     driver, driven = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
+    had = PLANE_EFFECTS if width == "plane" else WIDE_EFFECTS
+    counted: dict[str, Any] = {
+        effect: getattr(effects, effect) if effect in had else EFFECTS[effect].off for effect in WIDE_EFFECTS
+    }
     spec = PairSpec(
         pair, part.all_loads(pair), part.normal_load(pair) or math.nan, width, part.compliance.source,
-        driver=driver, driven=driven, corner_contact=effects.corner_contact,
-        neighbour_coupling=effects.neighbour_coupling, hertz=effects.hertz, relief=effects.relief,
-        spacing_errors=effects.spacing_errors, misalignment=effects.misalignment and width != "plane", name=name,
+        driver=driver, driven=driven, name=name, **counted,
     )  # fmt: skip
     if width == "plane":
         table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None

@@ -1,4 +1,4 @@
-"""From the flanks of a spec to those of an engagement of plane teeth: reliefs, spacing errors, Welbourn's Delta."""
+"""From a spec to an engagement of plane teeth: its effects, reliefs, spacing errors, Welbourn's Delta."""
 
 from __future__ import annotations
 
@@ -38,6 +38,12 @@ def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: 
     perfect = Engagement(engagement.compliance)
     at = pair.x_hpstc - 1e-9 * pair.base_pitch
     return float(perfect.solve(perfect.grid([at]), [load]).transmission_error[0, 0]) + 2.0 * largest_spacing_error
+
+
+def as_specified(spec: PairSpec, engagement: Engagement) -> Engagement:
+    """The engagement with the effects of teeth at rest that a spec has on."""
+    compliance = replace(engagement.compliance, coupling=spec.neighbour_coupling, hertz=spec.hertz)
+    return replace(engagement, compliance=compliance, corner_contact=spec.corner_contact)
 
 
 def spaced(spec: PairSpec, engagement: Engagement) -> Engagement:

@@ -9,7 +9,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_element_compliance
-from fegear.contact.plane.flanks import with_flanks
+from fegear.contact.plane.flanks import as_specified, with_flanks
 from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
@@ -54,8 +54,7 @@ def load_plane(
 def engagement_at_rest(spec: PairSpec, *gears: GearInfluence | GearCompliance) -> Engagement:
     """The engagement of perfect flanks, the same one for every load and relief: it keeps what these do not change."""
     sources = compliance_sources(spec, gears)
-    compliance = PairCompliance(spec.pair, *sources, spec.neighbour_coupling, spec.hertz, spec.nominal)
-    return Engagement(compliance, corner_contact=spec.corner_contact)
+    return as_specified(spec, Engagement(PairCompliance(spec.pair, *sources, nominal_load=spec.nominal)))
 
 
 def compliance_sources(spec: PairSpec, gears: Sequence[GearInfluence | GearCompliance]) -> Sources:

@@ -10,20 +10,19 @@ positions would differ by what both miss.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.base.effects import CORNER_CONTACT, EFFECTS, HERTZ, NEIGHBOUR_COUPLING, PLANE_EFFECTS, SPACING_ERRORS
 from fegear.base.errors import InputError
 from fegear.base.tally import note
-from fegear.contact.effects import PLANE_EFFECTS
 from fegear.contact.loaded_teeth import Answer, Change, Neglected
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.engagement import Engagement, Loaded
-from fegear.contact.plane.flanks import relieved, spaced
+from fegear.contact.plane.flanks import as_specified, relieved, spaced
 from fegear.contact.plane.peaks import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
@@ -40,10 +39,18 @@ _BESIDE = (1e-7, *(float(d) for d in np.geomspace(1e-3, 6e-2, 13)))
 COUNTED = "neglected effects"
 
 
+#: Whether an effect changes nothing in an engagement that has it.
+_IDLE: dict[str, Callable[[Engagement], bool]] = {
+    CORNER_CONTACT.name: lambda e: not any(corner.exists for corner in e.meshing.corners),
+    NEIGHBOUR_COUPLING.name: lambda e: all(source.reach == 0 for source in e.compliance.both),
+    HERTZ.name: lambda e: all(source.log_slope <= 0.0 and source.power <= 0.0 for source in e.compliance.both),
+}
+
+
 def effects_off(spec: PairSpec, known: Sequence[str]) -> list[str]:
     """Effects that are off, and contacts whose stiffness is assumed to be that under the nominal load."""
-    found = [effect for effect in known if not spec.is_on(effect)]
-    return [*found, "hertz"] if spec.hertz == "linear" else found
+    found = [effect for effect in known if getattr(spec, effect) != EFFECTS[effect].on]
+    return sorted(found, key=spec.is_on)  # those that are on in part come last
 
 
 def with_effect(spec: PairSpec, engagement: Engagement, effect: str) -> Engagement | None:
@@ -57,27 +64,17 @@ def with_effect(spec: PairSpec, engagement: Engagement, effect: str) -> Engageme
     for flank in spec.both:
         if effect in flank.wrong:
             raise flank.wrong[effect]
-    compliance = engagement.compliance
-    sources = (compliance.driver, compliance.driven)
-    if effect == "relief":
-        return relieved(spec, engagement) if any(flank.relief for flank in spec.both) else None
-    if effect == "corner_contact":
-        other = replace(engagement, corner_contact=True)
-        changes_something = any(corner.exists for corner in other.meshing.corners)
-    elif effect == "neighbour_coupling":
-        other = replace(engagement, compliance=replace(compliance, coupling=True))
-        changes_something = any(source.reach > 0 for source in sources)
-    elif effect == "hertz":
-        other = replace(engagement, compliance=replace(compliance, hertz="load-dependent"))
-        changes_something = any(source.log_slope > 0.0 or source.power > 0.0 for source in sources)
-    else:
-        changes_something = any(flank.spacing.size for flank in spec.both)
-        other = spaced(spec, engagement) if changes_something else engagement
-    if not changes_something:
+    if not spec.has_data(effect):
         return None
+    more = spec.with_effect(effect)
+    other = as_specified(more, engagement)
+    if effect in _IDLE and _IDLE[effect](other):
+        return None
+    if more.spacing_errors and not spec.spacing_errors:
+        other = spaced(more, other)
     # An amount of relief that counts in deflections changes with them.
-    again = spec.relief and any(flank.wants_delta for flank in spec.both)
-    return relieved(spec, other) if again else other
+    again = more.relief and (not spec.relief or any(flank.wants_delta for flank in spec.both))
+    return relieved(more, other) if again else other
 
 
 def neglected_effects(
@@ -110,7 +107,7 @@ def neglected_effects(
     if not others:
         return Neglected({}, wrong)
     note(COUNTED, len(others))
-    cycle = _uneven(others["spacing_errors"]) if "spacing_errors" in others else 0
+    cycle = _uneven(others[SPACING_ERRORS.name]) if SPACING_ERRORS.name in others else 0
     return Neglected(changes(engagement, others, loads, answers, cycle), wrong)
 
 

@@ -102,6 +102,11 @@ class PairCompliance:
             raise InputError("effects.hertz", '"linear"', "requires a load for the contact width")
 
     @property
+    def both(self) -> tuple[GearCompliance, GearCompliance]:
+        """Of driver and driven."""
+        return self.driver, self.driven
+
+    @property
     def face_width(self) -> float:
         """Common face width [m]."""
         return self.pair.face_width
@@ -245,7 +250,7 @@ class PairCompliance:
         early = at.x < 0.5 * (self.pair.x_start + self.pair.x_end)
         (soft1, least1), (soft2, least2) = (
             (softer * source.log_slope / self.log_slope / self.face_width, least)
-            for source in (self.driver, self.driven)
+            for source in self.both
             for softer, least in (source.tip_wedge,)
         )
         wedge, least = np.where(early, soft2, soft1), np.where(early, least2, least1)

@@ -114,7 +114,7 @@ class LoadedWidePair:
     @property
     def unrelieved(self) -> FlankGaps:
         """What keeps the flanks apart of the effects that are on, without reliefs and spacing errors."""
-        return self.spec.gaps(relief=False, misalignment=self.spec.misalignment)
+        return replace(self.spec, relief=False, spacing_errors=False).gaps()
 
     def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:  # noqa: ARG002
         """See `LoadedTeeth`: of mean transmission error and K_Hbeta, at the nominal load."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.solution_cache import SolutionCache
-from fegear.contact.effects import GAPS
 from fegear.contact.wide.error import flank_error, no_estimate, with_misses
+from fegear.contact.wide.flanks import as_specified
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.over_pitch import over_pitch
@@ -85,11 +85,13 @@ def load_flanks(
     found : LoadedFlanks
         Under all loads.
     """
-    flanks = FlankPair(
-        spec.placed, bodies, spec.neighbour_coupling, spec.hertz, spec.panel, spec.positions,
-        usual_gap(spec.placed, max(spec.loads)) if spec.corner_contact else 0.0, cache, progress,
+    most_gap = usual_gap(spec.placed, max(spec.loads)) if spec.corner_contact else 0.0
+    bare = FlankPair(
+        spec.placed, bodies, panel=spec.panel, positions=spec.positions, most_gap=most_gap, cache=cache,
+        progress=progress,
     )  # fmt: skip
-    gaps = spec.gaps(**{effect: spec.is_on(effect) for effect in GAPS})
+    flanks = as_specified(spec, bare)
+    gaps = spec.gaps()
     found = flanks.solve(spec.loads, gaps, flanks.compliance(spec.nominal))
     for _ in range(_LONGER_EDGES):
         if not found.reaches_the_last_edges:

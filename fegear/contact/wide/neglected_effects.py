@@ -6,9 +6,10 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from fegear.base.effects import CORNER_CONTACT, GAPS, WIDE_EFFECTS
 from fegear.base.errors import InputError
-from fegear.contact.effects import GAPS, WIDE_EFFECTS
 from fegear.contact.loaded_teeth import Change, Neglected
+from fegear.contact.wide.flanks import as_specified
 from fegear.contact.wide.tip_edges import usual_gap
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def neglected_effects(spec: PairSpec, flanks: FlankPair, gaps: FlankGaps, over: 
         if spec.is_on(effect) or not spec.has_data(effect):
             continue
         try:
-            if effect == "corner_contact":
+            if effect == CORNER_CONTACT.name:
                 sizes = _with_edges(spec, flanks, gaps, over)
             else:
                 finer = replace(flanks, positions=over.found.lines.roll.size)
@@ -73,17 +74,14 @@ def _with(
     for flank in spec.both:
         if effect in flank.wrong:
             raise flank.wrong[effect]
-    known, i = without.known, spec.loads.index(spec.nominal)
-    if effect == "neighbour_coupling":
-        flanks = replace(flanks, coupling=True)
-        known = flanks.compliance(spec.nominal)
-    elif effect == "hertz":
+    known, i, more = without.known, spec.loads.index(spec.nominal), spec.with_effect(effect)
+    changed = as_specified(more, flanks)
+    if (changed.pair, changed.coupling) != (flanks.pair, flanks.coupling):
+        flanks, known = changed, changed.compliance(spec.nominal)
+    elif changed.hertz != flanks.hertz:
         known = replace(known, fixed_half_width=None)
-    else:
-        gaps = spec.gaps(**{one: spec.is_on(one) or one == effect for one in GAPS})
-        if effect == "misalignment" and spec.misaligned != flanks.pair:
-            flanks = replace(flanks, pair=spec.misaligned)
-            known = flanks.compliance(spec.nominal)
+    if effect in GAPS:
+        gaps = more.gaps()
     found = flanks.solve([spec.nominal], gaps, known)
     return (
         float(found.mean_transmission_error[0] - without.mean_transmission_error[i]),

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+from fegear.base.effects import HERTZ, MISALIGNMENT, NEIGHBOUR_COUPLING, RELIEF
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, case_text, listed, plain_name, quantity, text
 from fegear.exchange.rexs.bearings import bearing_tables, bearings_of, fixed_bearing, stopped_along
@@ -435,9 +436,9 @@ class _Any(dict[int, str]):
 
 
 def _effects(*, bent: bool, relieved: bool) -> Table:
-    keys = [Key("neighbour_coupling", "true"), Key("hertz", text("load-dependent"))]
-    keys += [Key("relief", "true", "relief and lead of the gears")] if relieved else []
-    keys += [Key("misalignment", "true", "misalignment from the shafts")] if bent else []
+    keys = [Key(NEIGHBOUR_COUPLING.name, "true"), Key(HERTZ.name, text("load-dependent"))]
+    keys += [Key(RELIEF.name, "true", "relief and lead of the gears")] if relieved else []
+    keys += [Key(MISALIGNMENT.name, "true", "misalignment from the shafts")] if bent else []
     return Table("effects", tuple(keys))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import fegear
-from fegear.case.effects import EFFECTS
+from fegear.base.effects import EFFECTS
 from fegear.engine.citation import Citation, bibliography
 from fegear.output.fields import field_file
 from fegear.output.file_names import file_name

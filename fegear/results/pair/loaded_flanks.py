@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from fegear.base import effects
 from fegear.base.printed import percent
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
@@ -85,7 +86,7 @@ def _settings(seen: Seen) -> dict[str, object]:
     return {
         "width": spec.width, "positions": spec.positions, "panels": spec.panel_count,
         "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
-        "hertz": spec.hertz, "neighbour_coupling": spec.neighbour_coupling,
+        effects.HERTZ.name: spec.hertz, effects.NEIGHBOUR_COUPLING.name: spec.neighbour_coupling,
         "base_pitch": spec.base_pitch, "nominal_load": spec.nominal, "loads": list(spec.loads),
         "positions_of_stated": seen.data.over.found.lines.roll.size,
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},

@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from fegear.base.effects import AT_REST
 from fegear.case.built.neglected_effects import whole_ratio_remarks
 from fegear.case.built.pair_checks import check_plane_pair
 from fegear.case.built.pair_notes import pair_notes
 from fegear.case.built.pair_spec import pair_spec
-from fegear.contact.effects import AT_REST
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
+from fegear.base.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
-from fegear.contact.effects import PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, few, ramp

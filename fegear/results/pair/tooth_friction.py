@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import FRICTION
 from fegear.base.shown import shown, shows
 from fegear.case.built.train import friction_coefficient
 from fegear.contact.plane.pair_history import PairHistory
@@ -242,7 +243,7 @@ TOOTH_FRICTION = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    requires=(Need("friction", "it computes the forces and losses of friction"),),
+    requires=(Need(FRICTION.name, "it computes the forces and losses of friction"),),
     cites=_cites,
     forecast=_forecast,
 )

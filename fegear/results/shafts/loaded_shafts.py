@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+from fegear.base.effects import MISALIGNMENT, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bodies
-from fegear.contact.effects import WIDE_EFFECTS
 from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
@@ -168,7 +168,7 @@ LOADED_SHAFTS = Stage(
     present=_SHEET.present,
     needs=_needs,
     check=_check,
-    effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else ("misalignment",),
+    effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else (MISALIGNMENT.name,),
     forecast=_forecast,
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
 )

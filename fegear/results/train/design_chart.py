@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import CONTACT_LOSS, PARAMETRIC
 from fegear.base.errors import FegearError, InputError
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.tooth_influence import GearToSolve, gear_to_solve
@@ -281,8 +282,8 @@ DESIGN_CHART = Stage(
     present=_present,
     check=_check,
     requires=(
-        Need("contact_loss", "required for reliefs with loss of contact"),
-        Need("parametric", "relief acts on single tooth pairs"),
+        Need(CONTACT_LOSS.name, "required for reliefs with loss of contact"),
+        Need(PARAMETRIC.name, "relief acts on single tooth pairs"),
     ),
     cites=citing(Citation("lin-townsend-oswald", "design charts of tip relief by dynamic factor")),
     forecast=_forecast,

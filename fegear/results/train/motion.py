@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.printed import percent
-from fegear.case.built.neglected_in_motion import NeglectedInMotion, motion_remarks, neglected_in_motion
+from fegear.case.built.neglected_in_motion import SIZED, NeglectedInMotion, motion_remarks, neglected_in_motion
 from fegear.case.built.train import MotionInputs, build_train, motion_inputs, steady_motions, train_inputs
 from fegear.case.part import at
 from fegear.dynamics.motion.motion_model import MotionModel
@@ -304,7 +304,7 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     """One steady motion for each speed; one that does not repeat takes longer, which only damping foretells."""
     speeds = int(scene.case.dynamics.speed_values.size)
     settings = {"speeds": speeds, "periods": forecasts.periods(scene), "tolerance": scene.case.dynamics.tolerance}
-    off = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
+    off = sum(not scene.case.effects.is_on(effect) for effect in SIZED)
     neglected = off if scene.sizes_neglected else 0
     return Forecast(settings, forecasts.seconds_per_speed(scene) * speeds + 0.1 * neglected)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base import effects
 from fegear.case.built.train import TrainInputs, train_inputs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import column_of
@@ -238,7 +239,7 @@ TORQUE_RIPPLE = Stage(
     compute=_compute,
     present=_present,
     check=needs_one_speed,
-    requires=(Need("torque_ripple", "the torques of train.torque_ripple are its load"),),
+    requires=(Need(effects.TORQUE_RIPPLE.name, "the torques of train.torque_ripple are its load"),),
     cites=citing(Citation("mark", "gear train of rotors, shafts and meshes, excited by a torque", "section 2")),
     forecast=_forecast,
 )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from fegear.base.effects import NEIGHBOUR_COUPLING
 from fegear.base.errors import RangeError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.members import gear_name
@@ -243,5 +244,5 @@ class CaseTable:
 
 def without_neighbours(asked: Asked) -> Asked:
     """The same for a source that knows one tooth alone: the effect that couples neighbours is off."""
-    effects = asked.scene.case.effects.model_copy(update={"neighbour_coupling": False})
+    effects = asked.scene.case.effects.model_copy(update={NEIGHBOUR_COUPLING.name: False})
     return replace(asked, scene=replace(asked.scene, case=asked.scene.case.model_copy(update={"effects": effects})))
