@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fegear.dynamics.train.charts import SpeedChart
-from fegear.dynamics.train.modes import Campbell
+from fegear.dynamics.train.modes import Campbell, Modes
 from fegear.dynamics.train.spectra import MeshForceSpectrum
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
@@ -24,14 +24,22 @@ from fegear.output.draw_plotly.layout import plotly_json
 from fegear.output.draw_png.sheet import Sheet
 from fegear.results.gear.drawing import Drawing, pair_figure, path_marks, roll_marks
 from fegear.results.pair.loaded_teeth import pitch_marks
-from fegear.results.train.dynamic_factor import _figure as _factor_figure
-from fegear.results.train.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
-from fegear.results.train.natural_modes import _campbell_figure
+from fegear.results.train.dynamic_factor import DYNAMIC_FACTOR, DynamicFactorData
+from fegear.results.train.mesh_force_lines import MOST_HARMONICS, SpectrumData
+from fegear.results.train.mesh_force_spectrum import MESH_FORCE_SPECTRUM
+from fegear.results.train.natural_modes import NATURAL_MODES, ModesData
 from fegear.studies.swept import Swept, varying
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)
 PAIR = GearPair(GEAR, GEAR)
-TRAIN = SimpleNamespace(names=("I", "II"), speed_ratio=1.0, speed_of="motor", ripple=())
+TRAIN = SimpleNamespace(
+    names=("I", "II"), speed_ratio=1.0, speed_of="motor", ripple=(), train=SimpleNamespace(bodies=())
+)
+
+
+def figure_of(stage, data, asked, key):
+    """One of the figures that a result shows."""
+    return next(one for one in stage.present(data, asked).figures if one.name == key)
 
 
 def drawn_texts(panel: Panel, head: tuple[str, str] = ("", "")) -> tuple[set[str], set[str]]:
@@ -79,18 +87,18 @@ def spectrum():
         np.array([1000.0]), orders, np.ones((2, 64), dtype=bool), frequencies,
         0.5 * np.stack([lines, lines])[..., None].astype(complex), np.array([1e3, 1e3]),
     )  # fmt: skip
-    figure, *_ = _spectrum_figures(SpectrumData(TRAIN, 0, found, None, None))
-    return figure
+    asked = SimpleNamespace(name="I", terms=None, part=SimpleNamespace(harmonics=64, one_speed=1000.0))
+    return figure_of(MESH_FORCE_SPECTRUM, SpectrumData(TRAIN, 0, found, None, None), asked, "mesh_force_spectrum_I")
 
 
 def test_spectra_end_where_little_is_left_and_say_so(spectrum):
     (panel,) = spectrum.panels
     first, second = panel.items
-    assert first.x.max() <= 5.0 * _MOST_HARMONICS
+    assert first.x.max() <= 5.0 * MOST_HARMONICS
     assert second.x.size == 0  # a hundred million times weaker
     assert first.y.min() >= 1e-3 * first.y.max()
     power = 1.0 / np.arange(1.0, 65.0) ** 2
-    left = power[4.0 * np.arange(1.0, 65.0) > 5.0 * _MOST_HARMONICS].sum() / power.sum()
+    left = power[4.0 * np.arange(1.0, 65.0) > 5.0 * MOST_HARMONICS].sum() / power.sum()
     assert f"hold {left:.2g} of the mean square" in spectrum.caption
 
 
@@ -111,8 +119,9 @@ def test_a_campbell_diagram_names_every_mode_and_marks_crossings_and_the_operati
     natural = np.array([900.0, 905.0, 3000.0])
     factors = np.array([[3.0, 6.0, 9.0], [4.0, 8.0, 12.0]])
     critical = natural / factors[:, :, None]
-    figure = _campbell_figure(TRAIN, Campbell(speeds, natural, lines, critical), 500.0)
-    (panel,) = figure.panels
+    modes = Modes(np.array([0.0, *natural]), np.zeros((0, 4)), np.full((4, 2), 0.5))
+    data = ModesData(TRAIN, modes, Campbell(speeds, natural, lines, critical))
+    (panel,) = figure_of(NATURAL_MODES, data, SimpleNamespace(part=SimpleNamespace(speed=500.0)), "campbell").panels
     words = [mark.label for mark in panel.marks if mark.axis == "y" and mark.label]
     assert words == ["modes 1: 900 Hz, 2: 905 Hz", "mode 3: 3000 Hz"]
     assert [mark.label for mark in panel.marks if mark.axis == "x"] == ["operating speed 4774.6 rpm"]
@@ -121,8 +130,8 @@ def test_a_campbell_diagram_names_every_mode_and_marks_crossings_and_the_operati
     points = [item for item in panel.items if isinstance(item, Points)]
     assert sum(np.size(item.x) for item in points) == int(((critical >= 100.0) & (critical <= 1000.0)).sum())
     assert "mesh I, harmonic 1, mode 1: 2864.8 rpm" in points[0].notes
-    assert not any(mark.axis == "x" for mark in _campbell_figure(
-        TRAIN, Campbell(speeds, natural, lines, critical), math.nan).panels[0].marks)  # fmt: skip
+    (panel,) = figure_of(NATURAL_MODES, data, SimpleNamespace(part=SimpleNamespace(speed=None)), "campbell").panels
+    assert not any(mark.axis == "x" for mark in panel.marks)
 
 
 def test_values_that_differ_by_round_off_do_not_vary():
@@ -180,8 +189,11 @@ def test_a_dynamic_factor_over_too_few_speeds_says_where_peaks_may_be_missed():
         speeds, factor, factor, none, none, whole, ("periodic",) * 5, factor, factor, whole, none, factor,
         0 * whole, none, none,
     )  # fmt: skip
-    figure = _factor_figure("I", chart, "motor")
+    motion = SimpleNamespace(contact_loss=False, direction="up", method="shooting", parametric=True)
+    asked = SimpleNamespace(mesh="I", motion=motion)
+    figure = figure_of(DYNAMIC_FACTOR, DynamicFactorData(chart, "motor"), asked, "dynamic_factor_I")
     assert "From 1909.86 to 2864.79 rpm the dynamic factor changes by 43 %" in figure.caption
     assert all(item.marked for item in figure.panels[0].items)
     smooth = replace(chart, dynamic_factor=np.full(5, 1.2))
-    assert "changes by" not in _factor_figure("I", smooth, "motor").caption
+    figure = figure_of(DYNAMIC_FACTOR, DynamicFactorData(smooth, "motor"), asked, "dynamic_factor_I")
+    assert "changes by" not in figure.caption

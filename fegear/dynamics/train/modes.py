@@ -9,11 +9,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, Complex, first_of_largest
 from fegear.base.errors import RangeError
-from fegear.base.shown import shown
+from fegear.base.shown import shown, shows
 from fegear.dynamics.train.matrices import damping_matrix, elements
 from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
@@ -41,6 +41,12 @@ class Modes:
     frequencies: Array = shown("Hz", "undamped natural frequency with mean mesh stiffness", name="frequency")
     shapes: Array = shown("", "rotation angle for unit modal mass [rad/(kg^0.5 m)]", name="shape")
     mesh_energy: Array = shown("", "share of the mode's strain energy in this mesh", name="energy")
+
+    @property
+    @shows("", "mode number; 0: rigid-body motion", name="mode")
+    def number(self) -> NDArray[np.int64]:
+        """0 to size - 1."""
+        return np.arange(self.frequencies.size)
 
 
 def modes(train: Train) -> Modes:

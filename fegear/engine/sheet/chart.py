@@ -55,6 +55,8 @@ class Family:
     keep: Where | None = None
 
 
+#: As many members of a family as there are.
+ALL = 10**6
 #: The loads of a pair: as many as can be told apart, the nominal one among them.
 LOADS: Literal["loads"] = "loads"
 

@@ -205,7 +205,7 @@ def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Co
     return made
 
 
-def _parts(column: Column) -> tuple[Column, Column]:
+def _parts(column: Column) -> tuple[Column, ...]:
     """Real and imaginary part of a complex column."""
     return tuple(
         replace(column, name=f"{column.name}_{end}", si=part)

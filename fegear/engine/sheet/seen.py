@@ -96,6 +96,11 @@ class Seen:
         return bool(np.size(found)) if isinstance(found, np.ndarray) else bool(found)
 
 
+def itself(seen: Seen) -> Any:
+    """The member of this repetition, where it is numbers: ``Cell("energy", itself, ..., each="energies")``."""
+    return seen.one
+
+
 def reach(owner: Any, quantity: str) -> tuple[Any, str]:
     """What declares a quantity, and its attribute there: ``path.load`` is ``load`` of ``owner.path``."""
     *path, attribute = quantity.split(".")

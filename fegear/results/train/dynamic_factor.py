@@ -4,34 +4,40 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.printed import percent
+from fegear.base.shown import shown
 from fegear.case.built.train import MotionInputs, backlash_of, motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, columns_of, drawn, error_column
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Points
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
-from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
+from fegear.results.train.gear_train import (
+    RPM,
+    carries_nothing,
+    gear_train,
+    meshes,
+    needs_speeds,
+    needs_train,
+    pull_remarks,
+)
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.dynamics.train.charts import SpeedChart
     from fegear.dynamics.train.tooth_force import Pull
+    from fegear.engine.sheet.seen import Seen
     from fegear.results.train.motion import SweepData
 
-
-_RPM = 30.0 / np.pi
 
 #: A change of the dynamic factor from one speed to the next that is too large to see peaks between them.
 _COARSE = 0.1
@@ -113,66 +119,126 @@ def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFact
     return DynamicFactorData(chart, data.speed_of, motion.in_time, pull, still)
 
 
-def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
-    name, motion, chart = asked.mesh, asked.motion, found.chart
-    if chart is None:
-        return Outcome(found, remarks=(f"Mesh {name} has no mean force and therefore no dynamic factor.",))
-    parting = motion.contact_loss and found.in_time
-    zero = "" if parting else "; zero without effects.contact_loss"
-    of_body = f"of {found.speed_of}"
-    factor = column_of(chart, "dynamic_factor")
-    table = Table(
-        f"dynamic_factor_{name}",
-        (
-            column_of(chart, "speeds", meaning=of_body),
-            factor,
-            column_of(chart, "apart", further=zero),
-            column_of(chart, "behind", further=zero),
-            *_without_ripple(found.still),
-            *columns_of(chart, "periods", "mesh_force_factor", "kinds", "median", "upper", "measured"),
-            # the other end of what is seen of a motion that is still on its way
-            *(columns_of(chart, "lower") if "not settled" in chart.kinds else ()),
-            *(columns_of(chart, "multiplier") if found.in_time else ()),
-            *(columns_of(chart, "repetitions", "difference") if found.in_time and motion.method == "averaging" else ()),
-            *((error_column(factor, _errors(chart, motion.tolerance)),) if found.in_time else ()),
-        ),
-        f"Dynamic factor of mesh {name} over speed",
-    )
-    held = chart.at(~chart.growing) if not chart.growing.all() else chart
-    worst, where = held.worst
-    at = int(np.argmax(held.dynamic_factor))
-    repeats = held.kinds[at] == "periodic"
-    error = float(_errors(held, motion.tolerance)[at]) if found.in_time and repeats else None
-    sample = "" if repeats else f"; maximum of {held.measured[at]} periods of a non-periodic motion"
-    over = "over the speeds" if held is chart else "over the speeds with bounded motion"
-    values = [
-        Value(f"{name}.largest_dynamic_factor", worst, "", error, f"{over}, direction {motion.direction}{sample}"),
-        Value(f"{name}.speed_of_largest", where, "rpm", None, of_body),
-    ]
-    if found.still is not None:
-        still = float(found.still.dynamic_factor[np.isfinite(found.still.dynamic_factor)].max(initial=0.0))
-        without = "over the speeds, without torque ripple"
-        values.append(Value(f"{name}.largest_dynamic_factor_without_ripple", still, "", None, without))
-    if parting:
-        lost = float(chart.apart.max())
-        values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "fraction of time"))
-    remarks = [*pull_remarks(found.pull)]
-    if found.in_time and not motion.parametric:
-        remarks.append(
-            f"Mesh {name}: effects.parametric is off: constant mean mesh stiffness; the dynamic factor refers to the "
-            "mesh force."
-        )
-    averaged = found.in_time and motion.method == "averaging"
-    still_held = found.still.at(~chart.growing) if found.still is not None and held is not chart else found.still
-    figures = (_figure(name, held, found.speed_of, still_held, averaged=averaged),) if held.speeds.size > 1 else ()
-    return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
-
-
 def _errors(chart: SpeedChart, tolerance: float) -> Array:
     """Estimated errors of dynamic factors of motions in time; not a number where a motion does not repeat."""
     # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
     repeats = np.array([kind == "periodic" for kind in chart.kinds])
     return np.where(repeats, np.maximum(tolerance * chart.dynamic_factor, chart.off), np.nan)
+
+
+@dataclass(frozen=True)
+class LargestFactor:
+    """Largest dynamic factor over the speeds with bounded motion: where, how it is meant, and its estimated error."""
+
+    over: str
+    error: float | None
+    factor: float = shown("", "maximum dynamic factor", name="largest_dynamic_factor")
+    speed: float = shown("rpm", "its speed", name="speed_of_largest")
+    without_ripple: float | None = shown(
+        "", "over the speeds, without torque ripple", name="largest_dynamic_factor_without_ripple"
+    )
+    contact_loss: float | None = shown("", "fraction of time", name="largest_contact_loss")
+
+
+@dataclass(frozen=True)
+class ShownFactors:
+    """Factors of a mesh as they are tabulated and drawn."""
+
+    found: DynamicFactorData
+    motion: MotionInputs
+
+    @property
+    def chart(self) -> SpeedChart | None:
+        """At all speeds."""
+        return self.found.chart
+
+    @property
+    def known(self) -> SpeedChart:
+        """The same of a mesh that carries a mean force."""
+        return cast("SpeedChart", self.chart)
+
+    @property
+    def parting(self) -> bool:
+        """Whether teeth could lose contact."""
+        return self.motion.contact_loss and self.found.in_time
+
+    @property
+    def zero(self) -> str:
+        """What the shares of time without contact are where they could not."""
+        return "" if self.parting else "; zero without effects.contact_loss"
+
+    @property
+    def lower(self) -> Array | None:
+        """The other end of what is seen of a motion that is still on its way."""
+        return self.known.lower if "not settled" in self.known.kinds else None
+
+    @property
+    def multiplier(self) -> Array | None:
+        """Of motions in time."""
+        return self.known.multiplier if self.found.in_time else None
+
+    @property
+    def averaged(self) -> SpeedChart | None:
+        """What the averaging iteration found."""
+        return self.chart if self.found.in_time and self.motion.method == "averaging" else None
+
+    @property
+    def errors(self) -> Array | None:
+        """Of the dynamic factors of motions in time."""
+        return _errors(self.known, self.motion.tolerance) if self.found.in_time else None
+
+    @cached_property
+    def held(self) -> SpeedChart:
+        """At the speeds with bounded motion; at all where there are none."""
+        growing = self.known.growing
+        return self.known.at(~growing) if not growing.all() else self.known
+
+    @property
+    def largest(self) -> LargestFactor:
+        """Over the speeds with bounded motion."""
+        held, still = self.held, self.found.still
+        worst, speed = held.worst
+        at = int(np.argmax(held.dynamic_factor))
+        repeats = held.kinds[at] == "periodic"
+        over = "over the speeds" if held is self.known else "over the speeds with bounded motion"
+        sample = "" if repeats else f"; maximum of {held.measured[at]} periods of a non-periodic motion"
+        return LargestFactor(
+            f"{over}, direction {self.motion.direction}{sample}",
+            float(_errors(held, self.motion.tolerance)[at]) if self.found.in_time and repeats else None,
+            worst, speed,
+            None if still is None else float(still.dynamic_factor[np.isfinite(still.dynamic_factor)].max(initial=0.0)),
+            float(self.known.apart.max()) if self.parting else None,
+        )  # fmt: skip
+
+    @property
+    def several(self) -> bool:
+        """Whether there is anything over speed."""
+        return self.chart is not None and self.held.speeds.size > 1
+
+    @property
+    def drawn_still(self) -> Array | None:
+        """Dynamic factors without torque ripple there; nan where they are endless."""
+        still = self.found.still
+        if still is None:
+            return None
+        factor = still.dynamic_factor if self.known.growing.all() else still.at(~self.known.growing).dynamic_factor
+        return np.where(np.isfinite(factor), factor, np.nan)
+
+    @property
+    def odd(self) -> SpeedChart | None:
+        """Speeds of motions that do not repeat."""
+        odd = np.array([kind != "periodic" for kind in self.held.kinds])
+        return self.held.at(odd) if odd.any() else None
+
+    @property
+    def apart(self) -> Array | None:
+        """Share of the time without contact [%], where there is any."""
+        return 100.0 * self.held.apart if self.held.apart.any() else None
+
+    @property
+    def behind(self) -> Array | None:
+        """Share of the time with back-side contact [%], where there is any."""
+        return 100.0 * self.held.behind if self.held.behind.any() else None
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -192,64 +258,121 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def _without_ripple(still: SpeedChart | None) -> tuple[Column, ...]:
-    """Columns of what the meshes do by themselves."""
-    if still is None:
-        return ()
-    parts = (("dynamic_factor", "tooth force"), ("mesh_force_factor", "mesh force"))
-    return tuple(
-        column_of(still, key, name=f"{key}_without_ripple", meaning=f"maximum {what} / mean mesh force, without "
-                                                                    "torque ripple")
-        for key, what in parts
-    )  # fmt: skip
-
-
-def _figure(
-    name: str, chart: SpeedChart, speed_of: str, still: SpeedChart | None = None, *, averaged: bool = False
-) -> Figure:
-    """Dynamic factor over speed, the share of the time without contact where there is any, and how averaging went.
-
-    `still`: the same without torque ripple.
-    """
-    speed, x = drawn(chart, "speeds"), Axis(f"speed of {speed_of}", "rpm")
-    items: list[Curve | Points] = [
-        Curve(speed, chart.dynamic_factor, "tooth force", "own force", markers=True, width=1.2),
-        Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", markers=True, width=0.9),
-    ]
-    if still is not None:
-        alone = np.where(np.isfinite(still.dynamic_factor), still.dynamic_factor, np.nan)
-        items.append(Curve(speed, alone, "tooth force without torque ripple", "static", markers=False, width=1.2))
-    odd = np.array([kind != "periodic" for kind in chart.kinds])
-    if odd.any():
-        notes = tuple(kind for kind in chart.kinds if kind != "periodic")
-        items.append(Points(speed[odd], chart.dynamic_factor[odd], "non-periodic motion", "red", notes=notes, size=7))
-    panels = [Panel(x, Axis("maximum / mean force"), tuple(items), height=1.3)]
-    shares = (("no contact", "no contact", chart.apart), ("back-side contact", "back flanks", chart.behind))
-    lost = tuple(Curve(speed, 100.0 * share, label, role) for label, role, share in shares if share.any())
-    if lost:
-        panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
-    if averaged:
-        counts = Curve(speed, chart.repetitions.astype(float), "averaging", "ink", markers=True, width=0.9)
-        panels.append(Panel(x, Axis("periods until convergence", zero=True), (counts,), height=0.5))
-    worst, where = chart.worst
+def _coarse(chart: SpeedChart) -> str:
+    """Say where the factor changes too much from one speed to the next."""
     smaller = np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
     changed = np.abs(np.diff(chart.dynamic_factor))
     # teeth that fly apart may carry nothing while they are looked at
     step = np.divide(changed, smaller, out=np.zeros_like(changed), where=smaller > 0.0)
     at = int(np.argmax(step))
-    coarse = (
-        f" From {speed[at]:.6g} to {speed[at + 1]:.6g} rpm the dynamic factor changes by {percent(step[at])}: peaks "
-        "may be missed, use a finer speed grid there."
-        if step[at] > _COARSE else ""
-    )  # fmt: skip
-    return Figure(
-        f"dynamic_factor_{name}",
-        f"Dynamic factor of mesh {name}",
-        f"Mesh {name}: maximum tooth pair force (dynamic factor) and maximum mesh force, both relative to the mean "
-        f"mesh force; points: the {speed.size} computed speeds. Maximum dynamic factor {worst:.4g} at "
-        f"{where * _RPM:.6g} rpm.{coarse}",
-        tuple(panels),
+    if step[at] <= _COARSE:
+        return ""
+    low, high = chart.speeds[at : at + 2] * RPM
+    return (
+        f" From {low:.6g} to {high:.6g} rpm the dynamic factor changes by {percent(step[at])}: peaks may be missed, "
+        "use a finer speed grid there."
     )
+
+
+def _caption(seen: Seen) -> str:
+    chart: SpeedChart = seen.data.held
+    worst, where = chart.worst
+    return (
+        f"Mesh {seen.name}: maximum tooth pair force (dynamic factor) and maximum mesh force, both relative to the "
+        f"mean mesh force; points: the {chart.speeds.size} computed speeds. Maximum dynamic factor {worst:.4g} at "
+        f"{where * RPM:.6g} rpm.{_coarse(chart)}"
+    )
+
+
+def _constant_stiffness(seen: Seen) -> bool:
+    return seen.data.chart is not None and seen.data.found.in_time and not seen.data.motion.parametric
+
+
+_WITHOUT_RIPPLE = "maximum {} / mean mesh force, without torque ripple"
+_MARKED = {"markers": True, "width": 0.9}
+
+
+def _speed(seen: Seen) -> Axis:
+    return Axis(f"speed of {seen.data.found.speed_of}", "rpm")
+
+
+_SHEET = Sheet(
+    name=lambda asked: str(asked.mesh),
+    of=lambda data, asked: ShownFactors(data, asked.motion),
+    tables=(
+        Rows(
+            "dynamic_factor_{name}", "Dynamic factor of mesh {name} over speed",
+            (
+                Cell("speeds", meaning="of {d.found.speed_of}"), "dynamic_factor", Cell("apart", further="{d.zero}"),
+                Cell("behind", further="{d.zero}"),
+                *(
+                    Cell(
+                        key, f"found.still.{key}", name=f"{key}_without_ripple", meaning=_WITHOUT_RIPPLE.format(force)
+                    )
+                    for key, force in (("dynamic_factor", "tooth force"), ("mesh_force_factor", "mesh force"))
+                ),
+                "periods", "mesh_force_factor", "kinds", "median", "upper", "measured", Cell("lower", "lower"),
+                Cell("multiplier", "multiplier"), Cell("repetitions", "averaged.repetitions"),
+                Cell("difference", "averaged.difference"), Off("dynamic_factor", "errors"),
+            ),
+            of="chart",
+        ),
+    ),
+    values=(
+        Number("factor", lambda seen: seen.data.largest.error, "largest", meaning="{d.largest.over}", when="chart"),
+        Number("speed", of="largest", meaning="of {d.found.speed_of}", when="chart"),
+        Number("without_ripple", of="largest", when="chart"),
+        Number("contact_loss", of="largest", when="chart"),
+    ),
+    figures=(
+        Chart(
+            "dynamic_factor_{name}", "Dynamic factor of mesh {name}", _caption,
+            (
+                Over(
+                    _speed,
+                    (
+                        Line("dynamic_factor", "tooth force", "own force", x="speeds", look=_MARKED | {"width": 1.2}),
+                        Line("mesh_force_factor", "mesh force", "mesh force", x="speeds", look=_MARKED),
+                        Line(
+                            "dynamic_factor", "tooth force without torque ripple", "static", x="speeds",
+                            si="drawn_still", look={"markers": False, "width": 1.2},
+                        ),
+                        Line(
+                            "dynamic_factor", "non-periodic motion", "red", x="speeds", of="odd", kind="points",
+                            look=lambda seen: {"notes": seen.data.odd.kinds, "size": 7},
+                        ),
+                    ),
+                    Axis("maximum / mean force"), panel={"height": 1.3},
+                ),
+                Over(
+                    _speed,
+                    (
+                        Line("apart", "no contact", "no contact", x="speeds", si="apart"),
+                        Line("behind", "back-side contact", "back flanks", x="speeds", si="behind"),
+                    ),
+                    Axis("time", "%", zero=True), panel={"height": 0.5},
+                    when=lambda seen: seen.data.apart is not None or seen.data.behind is not None,
+                ),
+                Over(
+                    _speed, (Line("repetitions", "averaging", "ink", x="speeds", look=_MARKED),),
+                    Axis("periods until convergence", zero=True), panel={"height": 0.5}, when="averaged",
+                ),
+            ),
+            of="held", when="several",
+        ),
+    ),
+    remarks=(
+        Remark(
+            "Mesh {name} has no mean force and therefore no dynamic factor.", when=lambda seen: seen.data.chart is None
+        ),
+        lambda seen: pull_remarks(seen.data.found.pull),
+        Remark(
+            "Mesh {name}: effects.parametric is off: constant mean mesh stiffness; the dynamic factor refers to the "
+            "mesh force.",
+            when=_constant_stiffness,
+        ),
+    ),
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
@@ -263,7 +386,7 @@ DYNAMIC_FACTOR = Stage(
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
     forecast=_forecast,

@@ -4,30 +4,90 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 from fegear.case.dynamics import DynamicsPart
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
-from fegear.engine.declared import column_of, value_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Bars, Curve, Mark, Points
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen, itself
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Reads, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
 from fegear.results import forecasts
-from fegear.results.train.gear_train import TRAIN_SOURCES, gear_train, needs_train, the_train
+from fegear.results.train.gear_train import RPM, TRAIN_SOURCES, gear_train, needs_train, the_train
 
-_RPM = 30.0 / math.pi
 #: A share of energy below this is none.
 _ROUND_OFF = 1e-6
 #: Share of the height of a Campbell diagram that the word of a mode takes.
 _ROOM_OF_MODES = 0.05
+#: Upper end of a Campbell diagram over the highest natural frequency.
+_ABOVE = 1.25
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Share of the strain energy of every flexible mode in one mesh, or in the shafts."""
+
+    name: str
+    role: str
+    energy: Array = shown("", "strain energy share")
+
+    @property
+    @shows("", "number of the mode")
+    def place(self) -> NDArray[np.int64]:
+        """From 0."""
+        return np.arange(self.energy.size)
+
+
+@dataclass(frozen=True)
+class HarmonicLine:
+    """A harmonic over speed, a curve of the Campbell diagram."""
+
+    name: str
+    role: str
+    dash: str
+    speed: Array = shown("rpm", "speed")
+    frequency: Array = shown("kHz", "frequency")
+
+
+@dataclass(frozen=True)
+class Meetings:
+    """Where harmonics of one mesh, or of one torque ripple, meet natural modes: a row for each harmonic and mode."""
+
+    name: str
+    role: str
+    n: NDArray[np.int64] = shown("", "harmonic of the mesh frequency")
+    mode: NDArray[np.int64] = shown("", "natural mode")
+    speed: Array = shown("rpm", "speed at which they meet")
+    natural: Array = shown("kHz", "natural frequency")
+
+    @classmethod
+    def of(cls, name: str, role: str, harmonics: NDArray[np.int64], critical: Array, natural: Array) -> Meetings:
+        """Of speeds [rad/s], shape (harmonics, modes)."""
+        line, mode = np.indices(critical.shape).reshape(2, -1)
+        return cls(name, role, harmonics[line], mode + 1, critical.ravel(), natural[mode])
+
+    @property
+    @shows("", "mesh of the harmonic", name="mesh")
+    def owner(self) -> NDArray[np.str_]:
+        """Name, in every row."""
+        return np.full(self.n.shape, self.name)
+
+    def at(self, which: NDArray[np.bool_]) -> Meetings:
+        """Only some of them."""
+        return Meetings(
+            self.name, self.role, self.n[which], self.mode[which], self.speed[which], self.natural[which]
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -38,6 +98,95 @@ class ModesData:
     modes: Modes
     campbell: Campbell | None
 
+    @property
+    def shapes(self) -> dict[str, Array]:
+        """Angle of every body in every mode."""
+        train = self.train.train
+        return {body.name: self.modes.shapes[train.dof[body.name]] for body in train.bodies}
+
+    @property
+    def flexible(self) -> dict[str, float]:
+        """Natural frequencies above zero [Hz], by the number of the mode."""
+        return {str(k): f for k, f in enumerate(self.modes.frequencies) if k > 0}
+
+    @property
+    def shares(self) -> list[Shares]:
+        """Where the flexible modes deform."""
+        energy = self.modes.mesh_energy[1:]
+        found = [Shares(f"mesh {name}", f"series:{m}", energy[:, m]) for m, name in enumerate(self.train.names)]
+        shafts = 1.0 - energy.sum(axis=1)
+        return [*found, Shares("shafts", "grey", shafts)] if shafts.max(initial=0.0) > _ROUND_OFF else found
+
+    @cached_property
+    def meetings(self) -> list[Meetings]:
+        """Of the meshes; none without speeds."""
+        diagram, train = self.campbell, self.train
+        if diagram is None:
+            return []
+        harmonics, speeds = 1 + np.arange(diagram.critical.shape[1]), diagram.critical * train.speed_ratio
+        return [
+            Meetings.of(name, f"series:{m}", harmonics, speeds[m], diagram.natural)
+            for m, name in enumerate(train.names)
+        ]
+
+    @property
+    def of_ripple(self) -> list[Meetings]:
+        """Of the torque ripple; of a fixed frequency there is none."""
+        diagram, train = self.campbell, self.train
+        return [] if diagram is None else [
+            Meetings.of(one.name, "", one.harmonics, ripple_critical(one, diagram.natural) * train.speed_ratio,
+                        diagram.natural)
+            for one in train.ripple if one.order is not None
+        ]  # fmt: skip
+
+    @property
+    def diagram(self) -> Campbell | None:
+        """Where there are several speeds and flexible modes."""
+        found = self.campbell
+        return found if found is not None and found.speeds.size > 1 and self.flexible else None
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest speed of the diagram [rpm]."""
+        speed = self.lines[0].speed * RPM
+        return float(speed.min()), float(speed.max())
+
+    @property
+    def top(self) -> float:
+        """Upper end of the diagram [Hz]."""
+        return _ABOVE * max(self.flexible.values())
+
+    @cached_property
+    def lines(self) -> list[HarmonicLine]:
+        """Harmonics of the meshes, and of torque ripple below the upper end of the diagram."""
+        diagram, train = self.campbell, self.train
+        if diagram is None:
+            return []
+        speed = diagram.speeds * train.speed_ratio
+        found = [
+            HarmonicLine(f"mesh {name}, harmonic {h + 1}", f"series:{m}", DASHES[h % len(DASHES)], speed, line)
+            for m, name in enumerate(train.names)
+            for h, line in enumerate(diagram.lines[m])
+        ]
+        for k, one in enumerate(train.ripple, start=len(train.names)):
+            for n, line in zip(one.harmonics, one.frequencies(diagram.speeds), strict=True):
+                label = f"torque ripple {one.name}" + (f", harmonic {n}" if len(one.harmonics) > 1 else "")
+                if line.min() <= self.top:
+                    found.append(HarmonicLine(label, f"series:{k}", "dot", speed, line))
+        return found
+
+    @property
+    def crossings(self) -> list[Meetings]:
+        """Meetings of the meshes within the speeds of the diagram."""
+        low, high = self.ends
+        return [one.at((one.speed * RPM >= low) & (one.speed * RPM <= high)) for one in self.meetings]
+
+    @property
+    def critical(self) -> list[Meetings]:
+        """Meetings of the meshes at a speed."""
+        found = [one.at(np.isfinite(one.speed) & (one.speed > 0.0)) for one in self.meetings]
+        return found if self.diagram is not None and any(one.n.size for one in found) else []
+
 
 def _modes(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> ModesData:
     from fegear.dynamics.train.modes import campbell, modes
@@ -47,133 +196,7 @@ def _modes(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> Modes
     return ModesData(data, modes(data.train), campbell(data.train, speeds, asked.part.lines) if speeds.size else None)
 
 
-def _present_modes(known: ModesData, asked: Reads[DynamicsPart]) -> Outcome:
-    data, found, diagram = known.train, known.modes, known.campbell
-    train = data.train
-    count = np.arange(found.frequencies.size)
-    columns = [
-        Column("mode", count, "", "mode number; 0: rigid-body motion"),
-        column_of(found, "frequencies"),
-        *(
-            column_of(found, "mesh_energy", found.mesh_energy[:, m], name=f"energy_{mesh.name}")
-            for m, mesh in enumerate(train.meshes)
-        ),
-        *(
-            column_of(found, "shapes", found.shapes[train.dof[body.name]], name=f"shape_{body.name}")
-            for body in train.bodies
-        ),
-    ]
-    tables = [Table("natural_modes", tuple(columns), "Natural frequencies and mode shapes")]
-    if diagram is not None:
-        line, mode = (1 + one for one in np.indices(diagram.critical.shape)[1:])
-        mesh = np.repeat(np.array(data.names, dtype=str), line[0].size)
-        columns = [
-            Column("mesh", mesh, "", "mesh of the harmonic"),
-            Column("n", line.ravel(), "", "harmonic of the mesh frequency"),
-            Column("mode", mode.ravel(), "", "natural mode"),
-            Column("speed", diagram.critical.ravel() * data.speed_ratio, "rpm", f"speed of {data.speed_of}"),
-        ]
-        title = "Critical speeds of the mesh harmonics"
-        tables.append(Table("critical_speeds", tuple(columns), title))
-        tables += _ripple_table(data, diagram)
-    values = tuple(
-        value_of(found, "frequencies", "", si=found.frequencies[k], name=f"natural_frequency_{k}") for k in count[1:]
-    )
-    return Outcome(
-        known,
-        tuple(tables),
-        values,
-        figures=_modes_figures(known, math.nan if asked.part.speed is None else asked.part.speed),
-    )
-
-
-def _ripple_table(data: GearTrain, diagram: Campbell) -> list[Table]:
-    """Speeds at which torque ripple meets natural frequencies; of a fixed frequency there is none."""
-    found = [(one, ripple_critical(one, diagram.natural)) for one in data.ripple if one.order is not None]
-    if not found:
-        return []
-    place = [1 + np.indices(critical.shape) for _, critical in found]
-    columns = (
-        Column("ripple", np.array([one.name for one, c in found for _ in range(c.size)], dtype=str), "", "name"),
-        Column("n", np.concatenate([one.harmonics[p[0].ravel() - 1] for (one, _), p in zip(found, place, strict=True)]),
-               "", "harmonic number"),
-        Column("mode", np.concatenate([p[1].ravel() for p in place]), "", "natural mode"),
-        Column("speed", np.concatenate([c.ravel() for _, c in found]) * data.speed_ratio, "rpm",
-               f"speed of {data.speed_of}"),
-    )  # fmt: skip
-    title = "Critical speeds of the torque ripple"
-    return [Table("torque_ripple_critical_speeds", columns, title)]
-
-
-def _ripple_curves(train: GearTrain, speed: NDArray[np.float64], top: float) -> list[Curve]:
-    """Frequencies of torque ripple over speed, below the upper end of the diagram [Hz]."""
-    drawn = []
-    for k, one in enumerate(train.ripple):
-        for n, line in zip(one.harmonics, one.frequencies(speed / train.speed_ratio / _RPM), strict=True):
-            if line.min() > top:
-                continue
-            label = f"torque ripple {one.name}" + (f", harmonic {n}" if len(one.harmonics) > 1 else "")
-            role = f"series:{len(train.names) + k}"
-            drawn.append(Curve(speed, line * 1e-3, label, role, dash="dot", width=1.4, markers=False))
-    return drawn
-
-
-def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
-    """Where each mode deforms, and where harmonics of the meshes meet the modes; the rigid motion is not drawn."""
-    frequencies, energy = data.modes.frequencies[1:], data.modes.mesh_energy[1:]
-    if not frequencies.size:
-        return ()
-    place, shafts = np.arange(frequencies.size), 1.0 - energy.sum(axis=1)
-    bars = [Bars(place, energy[:, m], f"mesh {name}", f"series:{m}") for m, name in enumerate(data.train.names)]
-    if shafts.max() > _ROUND_OFF:
-        bars.append(Bars(place, shafts, "shafts", "grey"))
-    x = Axis("mode and natural frequency", categories=tuple(f"{k + 1}\n{f:.5g} Hz" for k, f in enumerate(frequencies)))
-    modes = Figure(
-        "natural_modes", "Natural modes",
-        "Strain energy distribution of the modes in meshes and shafts.",
-        (Panel(x, Axis("strain energy share", limits=(0.0, 1.0)), tuple(bars), stacked=True),),
-    )  # fmt: skip
-    if data.campbell is None or data.campbell.speeds.size < 2:
-        return (modes,)
-    return modes, _campbell_figure(data.train, data.campbell, speed), *_critical_figure(data.train, data.campbell)
-
-
-def _campbell_figure(train: GearTrain, diagram: Campbell, operating: float) -> Figure:
-    speed = diagram.speeds * train.speed_ratio * _RPM
-    low, high, top = float(speed.min()), float(speed.max()), 1.25e-3 * float(diagram.natural.max())
-    items: list[Curve | Points] = []
-    for m, name in enumerate(train.names):
-        for h in range(diagram.lines.shape[1]):
-            label, dash = f"mesh {name}, harmonic {h + 1}", DASHES[h % len(DASHES)]
-            line = diagram.lines[m, h] * 1e-3
-            items.append(Curve(speed, line, label, f"series:{m}", dash=dash, width=1.4, markers=False))
-    items += _ripple_curves(train, speed, 1e3 * top)
-    for m, name in enumerate(train.names):
-        line, mode = np.indices(diagram.critical[m].shape)
-        met = diagram.critical[m] * train.speed_ratio * _RPM
-        inside = np.isfinite(met) & (met >= low) & (met <= high)
-        notes = tuple(
-            f"mesh {name}, harmonic {h + 1}, mode {k + 1}: {at:.5g} rpm"
-            for h, k, at in zip(line[inside], mode[inside], met[inside], strict=True)
-        )
-        natural = diagram.natural[mode[inside]] * 1e-3
-        items.append(Points(met[inside], natural, "", f"series:{m}", "circle", size=6.0, notes=notes))
-    marks = [Mark("y", at * 1e-3, word) for at, word in _mode_words(diagram.natural, _ROOM_OF_MODES * 1e3 * top)]
-    if low <= operating * _RPM <= high:
-        marks.append(Mark("x", operating * _RPM, f"operating speed {operating * _RPM:.5g} rpm"))
-    rippled = " Dotted: torque ripple; torque_ripple_critical_speeds.csv has its speeds." if train.ripple else ""
-    return Figure(
-        "campbell", "Campbell diagram",
-        "Intersections of mesh harmonics (inclined) and undamped natural frequencies (horizontal); speeds in "
-        f"critical_speeds.csv.{rippled}",
-        (Panel(
-            Axis(f"speed of {train.speed_of}", "rpm", limits=(low, high)), Axis("frequency", "kHz", limits=(0.0, top)),
-            tuple(items), tuple(marks), height=1.3,
-        ),),
-    )  # fmt: skip
-
-
-def _mode_words(natural: NDArray[np.float64], room: float) -> list[tuple[float, str]]:
+def _mode_words(natural: Array, room: float) -> list[tuple[float, str]]:
     """Each natural frequency [Hz] with its word; modes closer than the room of a word share that of the highest."""
     found, together = [], []
     for k, at in enumerate(natural):
@@ -184,21 +207,124 @@ def _mode_words(natural: NDArray[np.float64], room: float) -> list[tuple[float, 
     return found
 
 
-def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
-    points = []
-    for m, name in enumerate(train.names):
-        line, mode = np.indices(diagram.critical[m].shape)
-        speed = diagram.critical[m] * train.speed_ratio * _RPM
-        known = np.isfinite(speed) & (speed > 0.0)
-        notes = tuple(f"mode {k + 1}" for k in mode[known])
-        points.append(Points(speed[known], line[known] + 1, f"mesh {name}", f"series:{m}", size=8, notes=notes))
-    if not any(np.size(row.x) for row in points):
-        return ()
-    axes = Axis(f"speed of {train.speed_of}", "rpm", log=True), Axis("harmonic of the mesh frequency", whole=True)
-    return (Figure(
-        "critical_speeds", "Critical speeds",
-        "Speeds at which a mesh harmonic coincides with a natural frequency.", (Panel(*axes, tuple(points)),),
-    ),)  # fmt: skip
+def _marks(seen: Seen) -> list[Mark]:
+    """Natural frequencies with their numbers, and the speed of the case."""
+    data: ModesData = seen.data
+    at, (low, high) = math.nan if seen.asked.part.speed is None else seen.asked.part.speed * RPM, data.ends
+    natural = np.array(list(data.flexible.values()))
+    marks = [Mark("y", f * 1e-3, word) for f, word in _mode_words(natural, _ROOM_OF_MODES * data.top)]
+    return [*marks, Mark("x", at, f"operating speed {at:.5g} rpm")] if low <= at <= high else marks
+
+
+def _crossing_notes(seen: Seen) -> dict[str, object]:
+    one = seen.one
+    met = zip(one.n, one.mode, one.speed * RPM, strict=True)
+    notes = tuple(f"mesh {one.name}, harmonic {n}, mode {k}: {at:.5g} rpm" for n, k, at in met)
+    return {"notes": notes, "symbol": "circle", "size": 6.0}
+
+
+_SPEED = Cell("speed", meaning="speed of {d.train.speed_of}")
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    tables=(
+        Rows(
+            "natural_modes", "Natural frequencies and mode shapes",
+            (
+                "number", "frequencies",
+                Cell(
+                    "mesh_energy", itself, lambda seen: seen.data.modes, "energy_{key}",
+                    each=lambda seen: dict(zip(seen.data.train.names, seen.data.modes.mesh_energy.T, strict=True)),
+                ),
+                Cell(
+                    "shapes", itself, lambda seen: seen.data.modes, "shape_{key}", each=lambda seen: seen.data.shapes
+                ),
+            ),
+            of="modes",
+        ),
+        Rows(
+            "critical_speeds", "Critical speeds of the mesh harmonics", ("owner", "n", "mode", _SPEED),
+            stacked="meetings", when="meetings",
+        ),
+        Rows(
+            "torque_ripple_critical_speeds", "Critical speeds of the torque ripple",
+            (
+                Cell("owner", name="ripple", meaning="name"), Cell("n", meaning="harmonic number"), "mode", _SPEED,
+            ),
+            stacked="of_ripple", when="of_ripple",
+        ),
+    ),
+    values=(
+        Number(
+            "frequencies", of=lambda seen: seen.data.modes, si=itself, name="natural_frequency_{key}", each="flexible"
+        ),
+    ),
+    figures=(
+        Chart(
+            "natural_modes", "Natural modes", "Strain energy distribution of the modes in meshes and shafts.",
+            (
+                Over(
+                    lambda seen: Axis(
+                        "mode and natural frequency",
+                        categories=tuple(f"{k}\n{f:.5g} Hz" for k, f in seen.data.flexible.items()),
+                    ),
+                    (
+                        Line(
+                            "energy", "{one.name}", x="place", kind="bars",
+                            each=Family("shares", role="{one.role}", most=ALL),
+                        ),
+                    ),
+                    Axis("strain energy share", limits=(0.0, 1.0)), panel={"stacked": True},
+                ),
+            ),
+            when="flexible",
+        ),
+        Chart(
+            "campbell", "Campbell diagram",
+            lambda seen: "Intersections of mesh harmonics (inclined) and undamped natural frequencies (horizontal); "
+            "speeds in critical_speeds.csv."
+            + (
+                " Dotted: torque ripple; torque_ripple_critical_speeds.csv has its speeds."
+                if seen.data.train.ripple else ""
+            ),
+            (
+                Over(
+                    lambda seen: Axis(f"speed of {seen.data.train.speed_of}", "rpm", limits=seen.data.ends),
+                    (
+                        Line(
+                            "frequency", "{one.name}", x="speed", each=Family("lines", role="{one.role}", most=ALL),
+                            look=lambda seen: {"dash": seen.one.dash, "width": 1.4, "markers": False},
+                        ),
+                        Line(
+                            "natural", x="speed", kind="points", look=_crossing_notes,
+                            each=Family("crossings", "", "{one.role}", most=ALL),
+                        ),
+                    ),
+                    lambda seen: Axis("frequency", "kHz", limits=(0.0, seen.data.top * 1e-3)), _marks,
+                    panel={"height": 1.3},
+                ),
+            ),
+            when="diagram",
+        ),
+        Chart(
+            "critical_speeds", "Critical speeds",
+            "Speeds at which a mesh harmonic coincides with a natural frequency.",
+            (
+                Over(
+                    lambda seen: Axis(f"speed of {seen.data.train.speed_of}", "rpm", log=True),
+                    (
+                        Line(
+                            "n", "mesh {one.name}", x="speed", kind="points",
+                            each=Family("critical", role="{one.role}", most=ALL),
+                            look=lambda seen: {"size": 8, "notes": tuple(f"mode {k}" for k in seen.one.mode)},
+                        ),
+                    ),
+                    Axis("harmonic of the mesh frequency", whole=True),
+                ),
+            ),
+            when="critical",
+        ),
+    ),
+)  # fmt: skip
 
 
 NATURAL_MODES = Stage(
@@ -206,7 +332,7 @@ NATURAL_MODES = Stage(
     needs=needs_train,
     inputs=Reads.of(lambda scene: scene.case.dynamics),
     compute=_modes,
-    present=_present_modes,
+    present=_SHEET.present,
     cites=TRAIN_SOURCES,
     forecast=lambda _scene, _subject: forecasts.constant(0.005),
 )

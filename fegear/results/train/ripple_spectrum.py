@@ -1,100 +1,141 @@
-"""Lines of torque ripple in the spectrum of a mesh force: tables, values and what figures show of them."""
+"""Lines of torque ripple in the spectrum of a mesh force as they are tabulated and drawn."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.declared import column_of
-from fegear.engine.figure.items import Points, Stems
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
-from fegear.results.train.gear_train import RPM
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Complex
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.torque_response import RippleSpectrum
 
 
-def _names(found: RippleSpectrum) -> Array:
-    return np.array([found.ripple[k].name for k in found.of], dtype=str)
+@dataclass(frozen=True)
+class DrawnLines:
+    """Lines of one exciter: uprights over frequency at one speed, points over frequency and speed at several."""
+
+    name: str
+    role: str
+    notes: tuple[str, ...]
+    frequency: Array = shown("kHz", "frequency")
+    amplitude: Array = shown("N", "force amplitude")
+    speed: Array = shown("rpm", "speed", default_factory=lambda: np.empty(0))
+    numbers: tuple[str, ...] = field(default=())
 
 
-def _sizes(mesh: int, found: RippleSpectrum) -> Array:
-    """Amplitudes of the force in a mesh [N], shape (lines, speeds)."""
-    return np.abs(found.forces[mesh])
+@dataclass(frozen=True)
+class Strongest:
+    """Largest line and root mean square of what one exciter does to a mesh at one speed."""
+
+    source: str
+    where: str
+    largest: float = shown("N", "amplitude of the largest line")
+    rms: float = shown("N", "root mean square of all spectral lines")
 
 
-def ripple_values(name: str, mesh: int, found: RippleSpectrum) -> tuple[Value, ...]:
-    """Largest line and root mean square of each ripple in a mesh, at the one speed."""
-    size, whose = _sizes(mesh, found)[:, 0], np.array(found.of)
-    values = []
-    for k, one in enumerate(found.ripple):
-        own = size[whose == k]
-        at = int(one.harmonics[int(np.argmax(own))])
-        where = f"amplitude, torque ripple {one.name}" + (f", its harmonic {at}" if own.size > 1 else "")
-        rms = math.sqrt(0.5 * float(np.sum(own**2)))
-        values += [
-            Value(f"{name}.largest_line_from_{one.name}", float(own.max()), "N", None, where),
-            Value(f"{name}.rms_from_{one.name}", rms, "N", None, "root mean square of all spectral lines"),
+@dataclass(frozen=True)
+class RippleLines:
+    """Lines of torque ripple in one mesh, a row for each line and speed, the speed fastest."""
+
+    found: RippleSpectrum
+    train: GearTrain
+    mesh: int
+
+    @cached_property
+    def whose(self) -> NDArray[np.int64]:
+        """Number of the ripple of every row."""
+        return np.repeat(self.found.of, self.found.speeds.size)
+
+    @property
+    def n(self) -> NDArray[np.int64]:
+        """Harmonic of the ripple."""
+        return np.repeat(self.found.harmonics, self.found.speeds.size)
+
+    @property
+    @shows("", "exciting torque ripple")
+    def ripple(self) -> NDArray[np.str_]:
+        """Names."""
+        return np.array([self.found.ripple[k].name for k in self.whose], dtype=str)
+
+    @property
+    @shows("rpm", "speed")
+    def speed(self) -> Array:
+        """Of the body that speeds refer to [rad/s]."""
+        return np.tile(self.found.speeds * self.train.speed_ratio, len(self.found.of))
+
+    @property
+    def frequency(self) -> Array:
+        """[Hz]."""
+        return self.found.frequencies.ravel()
+
+    @property
+    @shows("N.m", "0-peak")
+    def torque(self) -> Array:
+        """[N m]."""
+        return np.repeat(np.abs(self.found.torques), self.found.speeds.size)
+
+    @property
+    def _carried(self) -> Complex:
+        return self.found.forces[self.mesh].ravel()
+
+    @property
+    @shows("N", "0-peak")
+    def force(self) -> Array:
+        """[N]."""
+        return np.abs(self._carried)
+
+    @property
+    @shows("deg", "phase of the force (cosine) at time zero")
+    def phase(self) -> Array:
+        """[rad]."""
+        return np.angle(self._carried)
+
+    @property
+    def power(self) -> Array:
+        """[N^2]."""
+        return self.found.power_lines[self.mesh].ravel()
+
+    @property
+    def strongest(self) -> list[Strongest]:
+        """Of each ripple."""
+        found = []
+        for k, one in enumerate(self.found.ripple):
+            own = self.force[self.whose == k]
+            harmonic = f", its harmonic {one.harmonics[int(np.argmax(own))]}" if own.size > 1 else ""
+            rms = math.sqrt(0.5 * float(np.sum(own**2)))
+            found.append(Strongest(one.name, f"torque ripple {one.name}{harmonic}", float(own.max()), rms))
+        return found
+
+    def _drawn(self, k: int, name: str, notes: list[str], which: NDArray[np.bool_]) -> DrawnLines:
+        role, kept = f"series:{len(self.train.names) + k}", np.flatnonzero(which)
+        return DrawnLines(
+            name, role, tuple(notes[i] for i in kept), self.frequency[kept], self.force[kept], self.speed[kept]
+        )  # fmt: skip
+
+    @property
+    def stems(self) -> list[DrawnLines]:
+        """Lines at the one speed, each ripple a series of its own after those of the meshes."""
+        notes = [f"harmonic {n}" for n in self.n]
+        return [
+            self._drawn(k, f"from torque ripple {one.name}", notes, (self.whose == k) & (self.force > 0.0))
+            for k, one in enumerate(self.found.ripple)
         ]
-    return tuple(values)
 
-
-def ripple_table(name: str, mesh: int, found: RippleSpectrum) -> Table:
-    """Every line at the one speed."""
-    force = found.forces[mesh, :, 0]
-    columns = (
-        Column("ripple", _names(found), "", "exciting torque ripple"),
-        column_of(found, "harmonics"),
-        column_of(found, "frequencies", found.frequencies[:, 0]),
-        Column("torque", np.abs(found.torques), "N.m", "0-peak"),
-        Column("force", np.abs(force), "N", "0-peak"),
-        Column("phase", np.angle(force), "deg", "phase of the force (cosine) at time zero"),
-        column_of(found, "power_lines", found.power_lines[mesh, :, 0]),
-    )
-    return Table(f"torque_ripple_spectrum_{name}", columns, f"Lines of torque ripple in the force in mesh {name}")
-
-
-def ripple_waterfall_table(name: str, mesh: int, found: RippleSpectrum, data: GearTrain) -> Table:
-    """Every line at every speed."""
-    speeds = found.speeds.size
-    columns = (
-        Column("speed", np.tile(found.speeds * data.speed_ratio, len(found.of)), "rpm", f"speed of {data.speed_of}"),
-        Column("ripple", np.repeat(_names(found), speeds), "", "exciting torque ripple"),
-        column_of(found, "harmonics", np.repeat(found.harmonics, speeds)),
-        column_of(found, "frequencies", found.frequencies.ravel()),
-        Column("force", _sizes(mesh, found).ravel(), "N", "0-peak"),
-    )
-    return Table(
-        f"torque_ripple_waterfall_{name}", columns, f"Lines of torque ripple in the force in mesh {name} over speed"
-    )
-
-
-def ripple_stems(mesh: int, found: RippleSpectrum, first: int) -> list[Stems]:
-    """Lines at the one speed, each ripple a series of its own after those of the meshes."""
-    size, whose = _sizes(mesh, found)[:, 0], np.array(found.of)
-    drawn = []
-    for k, one in enumerate(found.ripple):
-        own = (whose == k) & (size > 0.0)
-        notes = tuple(f"harmonic {n}" for n in found.harmonics[own])
-        x = found.frequencies[own, 0] * 1e-3
-        drawn.append(Stems(x, size[own], f"from torque ripple {one.name}", f"series:{first + k}", notes))
-    return drawn
-
-
-def ripple_points(mesh: int, found: RippleSpectrum, data: GearTrain) -> list[Points]:
-    """Lines over speed."""
-    size, whose = _sizes(mesh, found), np.array(found.of)
-    speed = np.broadcast_to(found.speeds * data.speed_ratio * RPM, size.shape)
-    return [
-        Points(
-            found.frequencies[whose == k].ravel() * 1e-3, speed[whose == k].ravel(), f"torque ripple {one.name}",
-            f"series:{len(data.names) + k}", "x", size=5.0,
-            notes=tuple(f"{force:.4g} N" for force in size[whose == k].ravel()),
-        )
-        for k, one in enumerate(found.ripple)
-    ]  # fmt: skip
+    @property
+    def points(self) -> list[DrawnLines]:
+        """Lines over speed."""
+        notes = [f"{force:.4g} N" for force in self.force]
+        return [
+            self._drawn(k, f"torque ripple {one.name}", notes, self.whose == k)
+            for k, one in enumerate(self.found.ripple)
+        ]
