@@ -208,7 +208,6 @@ _SHEET = Sheet(
                         Line(
                             "speed", "{one.name}", x="frequency", kind="points",
                             each=Family("of_ripple_over_speed.points", role="{one.role}", most=ALL),
-                            when="of_ripple_over_speed",
                             look=lambda seen: {"symbol": "x", "size": 5.0, "notes": seen.one.notes},
                         ),
                     ),
