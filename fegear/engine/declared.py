@@ -46,15 +46,15 @@ def columns_of(found: object, *attributes: str, table: str = "", load: int | Non
 
 def column_of(
     found: object, attribute: str, si: Any = None, *,
-    load: int | None = None, name: str = "", meaning: str = "", further: str = "",
+    load: int | None = None, name: str = "", ending: str = "", meaning: str = "", further: str = "",
 ) -> Column:  # fmt: skip
     """One such column, of other numbers, under another name or with a meaning of its own where these are given.
 
-    `further` is what follows the declared meaning.
+    `ending` follows the declared name, `further` the declared meaning.
     """
     how = declared(_class(found), attribute)
     numbers = _si(found, attribute, load) if si is None else si
-    return Column(name or how.name, np.asarray(numbers), how.unit, f"{meaning or how.meaning}{further}")
+    return Column(f"{name or how.name}{ending}", np.asarray(numbers), how.unit, f"{meaning or how.meaning}{further}")
 
 
 def error_column(column: Column, si: Any, meaning: str = "") -> Column:
@@ -105,16 +105,16 @@ def repeated(columns: Iterable[Column], times: int | Sequence[int]) -> tuple[Col
 
 def value_of(
     found: object, attribute: str, owner: str, error: float | None = None, *,
-    load: int | None = None, name: str = "", meaning: str = "", further: str = "", si: Any = None,
+    load: int | None = None, name: str = "", ending: str = "", meaning: str = "", further: str = "", si: Any = None,
 ) -> Value:  # fmt: skip
     """A single value ``owner.name``: a quantity that is a number, or one for each load, or `si` in its place.
 
-    Without an owner it is one of the whole case; `further` is what follows the declared meaning.
+    Without an owner it is one of the whole case; `ending` follows the declared name, `further` the declared meaning.
     """
     how = declared(_class(found), attribute)
     si = getattr(found, attribute) if si is None else si
     number = float(si if load is None or np.ndim(si) == 0 else si[load])
-    full = ".".join(filter(None, (owner, name or how.name)))
+    full = ".".join(filter(None, (owner, f"{name or how.name}{ending}")))
     return Value(full, number, how.unit, error, f"{meaning or how.meaning}{further}")
 
 

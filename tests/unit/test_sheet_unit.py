@@ -121,9 +121,9 @@ def test_a_table_for_every_load_stands_below_itself() -> None:
 def test_cells_take_other_numbers_names_and_words() -> None:
     cell = Cell("deflection", si=lambda _: np.array([7e-6]), name="sag_{key}", meaning="of part {key}", each="parts")
     (table,) = Rows(
-        "t", "T", (Cell("x", further=" of {name}"), cell), of=lambda _: replace(SWING, x=np.zeros(1))
+        "t", "T", (Cell("x", further=" of {name}", ending="_i"), cell), of=lambda _: replace(SWING, x=np.zeros(1))
     ).tables(SEEN)
-    assert table.keys() == ("x", "sag_a", "sag_b")
+    assert table.keys() == ("x_i", "sag_a", "sag_b")
     assert [one.meaning for one in table.columns] == ["position of I", "of part a", "of part b"]
     (none,) = Rows("t", "T", ("x", Cell("deflection", si="nothing")), of="swing").tables(SEEN)
     assert none.keys() == ("x",)
@@ -156,6 +156,7 @@ def test_values_are_of_the_nominal_load_with_their_errors() -> None:
     endless = Number("largest", si=lambda _: float("inf"), of="swing")
     assert [one.si for one in endless.values(SEEN)] == [float("inf")]
     assert list(replace(endless, finite=True).values(SEEN)) == []
+    assert [one.name for one in Number("largest", ending="_of_{key}", each="parts").values(SEEN)][1] == "I.largest_of_b"
     each = list(Number("largest", each="parts", owner="{key}").values(SEEN))
     assert [one.name for one in each] == ["a.largest", "b.largest"]
 

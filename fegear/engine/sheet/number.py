@@ -31,9 +31,9 @@ class Number:
         What declares it. None there: no value.
     si : where, optional
         A number in its place; None there: no value.
-    owner, name, meaning, further : text
-        The value's name is ``owner.name``; by default that of the subject and of the quantity. `further` follows the
-        declared meaning.
+    owner, name, meaning, ending, further : text
+        The value's name is ``owner.name``; by default that of the subject and of the quantity. `ending` follows the
+        declared name, `further` the declared meaning.
     each, when : where, optional
         Objects for each of which there is such a value; whether there is one.
     finite : bool
@@ -51,6 +51,7 @@ class Number:
     each: Where | None = None
     when: Where | None = None
     finite: bool = False
+    ending: Text = ""
 
     def values(self, seen: Seen) -> Iterator[Value]:
         """Those that there are."""
@@ -66,6 +67,6 @@ class Number:
                 error = float(error if np.ndim(error) == 0 or one.nominal is None else error[one.nominal])
             yield value_of(
                 *reach(found, quantity), one.said(self.owner), error, si=number,
-                load=one.nominal, name=one.said(self.name), meaning=one.said(self.meaning),
-                further=one.said(self.further),
+                load=one.nominal, name=one.said(self.name), ending=one.said(self.ending),
+                meaning=one.said(self.meaning), further=one.said(self.further),
             )  # fmt: skip

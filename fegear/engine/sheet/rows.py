@@ -42,8 +42,8 @@ class Cell:
         Numbers in place of the quantity's own; None there: no column.
     of : where, optional
         What declares the quantity, if it is not what the table is of; a class where `si` has the numbers.
-    name, meaning, further : text
-        In place of the declared ones; `further` follows the declared meaning.
+    name, meaning, ending, further : text
+        In place of the declared ones; `ending` follows the declared name, `further` the declared meaning.
     each : where, optional
         Objects for each of which there is such a column.
     parts : bool
@@ -58,6 +58,7 @@ class Cell:
     further: Text = ""
     each: Where | None = None
     parts: bool = False
+    ending: Text = ""
 
 
 @dataclass(frozen=True)
@@ -215,7 +216,7 @@ def _parts(column: Column) -> tuple[Column, ...]:
 
 def _cell(seen: Seen, owner: Any, spec: Cell, load: int | None) -> list[Column]:
     declares, quantity = owner if spec.of is None else seen.find(spec.of), seen.said(spec.quantity)
-    words: dict[str, Any] = {key: seen.said(getattr(spec, key)) for key in ("name", "meaning", "further")}
+    words: dict[str, Any] = {key: seen.said(getattr(spec, key)) for key in ("name", "ending", "meaning", "further")}
     if spec.si is not None:
         si = _under(seen.find(spec.si), load)
         return [] if si is None else [column_of(*_declares(declares, quantity), si, **words)]

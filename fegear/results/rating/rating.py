@@ -1,18 +1,11 @@
-"""Result ``rating``: safeties against pitting and tooth breakage by ISO 6336, computed ones and AGMA 2101 beside.
-
-Safeties of a pair for its gear data, where a rating was asked for.
-
-Remarks of the result ``rating``: what falls short first, then what is doubtful.
-"""
+"""Result ``rating``: safeties against pitting and tooth breakage by ISO 6336, computed ones and AGMA 2101 beside."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
-from fegear.base.printed import percent
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
@@ -23,18 +16,9 @@ from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.rating.rating_data import RatingData, RatingInputs
-from fegear.results.rating.rating_tables import (
-    agma_table,
-    factor_table,
-    rating_figures,
-    rating_values,
-    remark_of,
-    safety_table,
-    spectrum_table,
-)
+from fegear.results.rating.rating_sheet import RATING_SHEET
 from fegear.results.rating.shared_load import (
     NotRated,
-    bending_said,
     bent_ratio,
     bent_so,
     inputs_with_shares,
@@ -48,7 +32,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.wide.rated import Computed
     from fegear.formulas.agma.agma2101 import AgmaRating
-    from fegear.formulas.iso6336.conditions import Conditions, Factor, PairRating, Replacement
+    from fegear.formulas.iso6336.conditions import Conditions, PairRating, Replacement
     from fegear.formulas.iso6336.rated import Both, Duty
     from fegear.formulas.iso6336.safety import SpectrumRating
 
@@ -236,25 +220,7 @@ def _with_misses(found: Computed, asked: PairToRate) -> Computed:
 
 
 def _present(data: RatingData | NotRated, inputs: RatingInputs) -> Outcome:
-    if isinstance(data, NotRated):
-        return Outcome(data, remarks=(data.remark,))
-    tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
-    if data.agma is not None:
-        tables.append(agma_table(data.agma, inputs.asked))
-    if data.spectrum is not None:
-        tables.append(spectrum_table(data.spectrum, inputs.asked, data.spectrum_computed))
-    return Outcome(
-        data, tuple(tables), rating_values(data, inputs.asked), _settings(data, inputs),
-        (*shortfalls(data, inputs.asked), *inputs.asked.assumed, *inputs.said, *rating_remarks(data, inputs.asked)),
-        rating_figures(data, inputs.asked),
-    )  # fmt: skip
-
-
-def _settings(data: RatingData, inputs: RatingInputs) -> dict[str, object]:
-    settings: dict[str, object] = {"edition": inputs.asked.conditions.edition}
-    if data.computed is not None and inputs.asked.width != "plane":
-        settings["computed_at_load"] = data.computed.load
-    return settings
+    return Outcome(data, remarks=(data.remark,)) if isinstance(data, NotRated) else RATING_SHEET.present(data, inputs)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -289,142 +255,6 @@ def _cites(scene: Scene, name: str) -> tuple[Citation, ...]:
     if "computed" in scene.case.rating.beside:
         found += citing(*RING)(scene, name)
     return tuple(found)
-
-
-#: K_v above which the load is a trifle beside what flank deviations excite: teeth part and meet again.
-_SHAKEN = 10.0
-
-
-#: How near to an axial contact ratio of 1 the jump of AGMA's J is reported, and from which size.
-_NEAR_ONE, _WORTH_SAYING = 0.1, 0.05
-
-
-#: Which S-N line the flanks have under a spectrum.
-_SPECTRUM_LINE = {
-    "part-2": (
-        "Pair {name}: pitting under the load spectrum uses the S-N curve of ISO 6336-2, in which Z_L Z_v Z_R apply "
-        "in full only at the reference life; ISO 6336-6 annex C applies them at all load cycles (lower if they are "
-        'below 1): operation.spectrum_line = "annex-c".'
-    ),
-    "annex-c": "Pair {name}: pitting under the load spectrum uses the S-N curve of the example in annex C of ISO "
-    "6336-6.",
-}
-
-
-def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
-    """What a reader must know before anything else: safeties below the required ones, and a load of no account."""
-    found, told = data.spectrum, []
-    if found is not None:
-        told = [
-            f"Pair {asked.name}: {what} of gear {gear} exceed the static strength at one level of the spectrum."
-            for what, sums in (("flanks", found.contact_damage), ("roots", found.bending_damage))
-            for member, gear in zip(MEMBERS, asked.gears, strict=True)
-            if math.isinf(sums[asked.of(member)])
-        ]
-    contact = data.formula.contact_safety if found is None else found.contact_safety
-    bending = data.formula.bending_safety if found is None else found.bending_safety
-    under = "" if found is None else " under the load spectrum"
-    for member, gear in zip(MEMBERS, asked.gears, strict=True):
-        for symbol, safety, least in zip(("S_H", "S_F"), (contact, bending), asked.conditions.required, strict=True):
-            value = safety[asked.of(member)]
-            if value < least:
-                told.append(
-                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the "
-                    f"minimum {least:g}."
-                )
-    levels = [] if found is None else [one.rating for one in found.levels if one.rating is not None]
-    most = max(one["K_v"].value for one in (levels or [data.formula]))
-    if most > _SHAKEN and "K_v" not in asked.given:
-        told.append(
-            f"Pair {asked.name}: K_v = {most:.4g} of ISO 6336-1 is above {_SHAKEN:g}: dynamic forces from flank "
-            "deviations are many times the load (loss of contact), outside the scope of the formula; check the load "
-            "or set operation.dynamic_factor."
-        )
-    return tuple(told)
-
-
-def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
-    """What lies outside a range, and what the computed safeties count."""
-    told = [f"Pair {asked.name}: {remark_of(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
-    told += [f"Pair {asked.name}: {reason}" for reason in data.why_not]
-    told += _recalled(data, asked)
-    if data.spectrum is not None:
-        told.append(_SPECTRUM_LINE[asked.conditions.spectrum_line].format(name=asked.name))
-    if data.agma is not None:
-        told += _beside_the_jump(asked)
-    if data.computed is None:
-        return tuple(dict.fromkeys(told))
-    if asked.width == "plane":
-        told.append(
-            f"Pair {asked.name}: FE root stress (2D) at the outer point of single pair contact replaces Y_F Y_S Y_B; "
-            'load factors from the formulas. Set width = "solid" for an FE load distribution.'
-        )
-        if data.bent is not None and data.by_computed is not None:
-            told.append(bending_said(asked.name, data.bent, data.by_computed["Y_M"].values))
-    else:
-        load, pressure = data.computed.load, data.computed.pressure * 1e-6
-        told.append(
-            f"Pair {asked.name}: load distribution and root stress computed by FE at {load:.5g} N along the line of "
-            f"action (including K_A, K_gamma, K_v), maximum pressure {pressure:.4g} MPa. The FE root stress replaces "
-            "Y_F Y_S Y_beta Y_B Y_DT K_Fbeta K_Falpha."
-        )
-        told += _aligned(data, asked)
-    return tuple(dict.fromkeys(told))
-
-
-def _recalled(data: RatingData, asked: PairToRate) -> list[str]:
-    """Say which numbers of a rating are those of no printed source, beside those that a factor remarks on itself."""
-    if asked.mean_stress is not None or not any(asked.stress_ratio):
-        return []
-    values = ", ".join(f"{value:.3g}" for value in data.formula["Y_M"].values)
-    told = (
-        f"Pair {asked.name}: Y_M = {values} (pinion, wheel): mean stress ratios M of ISO 6336-3 annex B are not "
-        "verified against a printed source, except 0.7 for idlers (operation.mean_stress_factor)."
-    )
-    return [told]
-
-
-def _beside_the_jump(asked: PairToRate) -> list[str]:
-    """Say where J of AGMA 908 jumps near the pair's axial contact ratio."""
-    from fegear.formulas.agma.agma908 import jump_of_bending_factor
-
-    ratio = asked.pair.overlap_ratio
-    if ratio == 0.0 or abs(ratio - 1.0) > _NEAR_ONE:
-        return []
-    try:
-        jumps = {
-            gear: jump_of_bending_factor(asked.pair, member) - 1.0
-            for member, gear in zip(MEMBERS, asked.gears, strict=True)
-        }
-    except RangeError:  # a face that narrow or wide is none of its pairs
-        return []
-    if max(abs(jump) for jump in jumps.values()) < _WORTH_SAYING:
-        return []
-    sizes = ", ".join(f"{percent(jump, signed=True)} (gear {gear})" for gear, jump in jumps.items())
-    told = (
-        f"Pair {asked.name}: axial contact ratio {ratio:.3f}: at 1, J of AGMA 908 and S_F change abruptly by {sizes} "
-        "with increasing face width (load at the tip with C_h and K_psi above, single tooth contact with C_psi "
-        "below)."
-    )
-    return [told]
-
-
-def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
-    """Say what misalignment the standard counts and the computed flanks do not have."""
-    counted = [one.value for one in data.formula.factors if one.symbol == "F_betay"]
-    if asked.misaligned or not counted:
-        return []
-    gap = f"{counted[0] * 1e6:.3g} um"
-    told = (
-        f"Pair {asked.name}: the FE load distribution has no misalignment, ISO 6336 uses F_betay = {gap}. For the "
-        f'same input set pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and effects.misalignment = true.'
-    )
-    return [told]
-
-
-def _shown(one: Factor, asked: PairToRate) -> bool:
-    """Whether a factor's remark is the reader's: not that the case gave it."""
-    return bool(one.remark) and remark_of(one, asked) == one.remark and "as specified" not in one.remark
 
 
 RATING = Stage(
