@@ -176,8 +176,8 @@ class LoadedTeeth(Protocol):
             Whether errors are estimated, where that is a choice, and plane teeth looked at for peaks between positions.
         """
 
-    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
-        """Power that tooth friction takes under every load, and at the nominal one once more, computed more coarsely.
+    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], float]:
+        """Power that tooth friction takes under every load, and by which share the nominal one may be off.
 
         Parameters
         ----------

@@ -125,3 +125,38 @@ def loss_over_face(found: LoadedFlanks, case: int, speed: float, law: FrictionLa
         np.array([power[p, s].sum() for p, s in where])[order], float(lines.mean(power.sum(axis=1))),
         load * speed * pair.driver.base_radius, computed(pair, mean),
     )  # fmt: skip
+
+
+def change_of_loss(found: ToothLoss, other: ToothLoss) -> float:
+    """Larger share of two by which loss factor and loss change from one solution to another of it."""
+    error = abs(other.loss_factor / found.loss_factor - 1.0)
+    return max(error, abs(other.loss / found.loss - 1.0)) if found.loss else error
+
+
+def moved_at_most(found: LoadedFlanks, case: int, speed: float, law: FrictionLaw) -> float:
+    """By how much the loss changes at most where compliances change by up to a share, over the loss and that share.
+
+    The force of a roll position stays; it moves from stations that get softer to those that get stiffer, and loses
+    more where flanks slide faster. It moves furthest where all change that slide faster than the mean, and no others.
+
+    Parameters
+    ----------
+    found : LoadedFlanks
+    case : int
+        Number of the load.
+    speed : float
+        Of the driver [rad/s].
+    law : callable
+    """
+    lines = found.lines
+    force = np.where(lines.present, found.contact.force[:, :, case], 0.0)
+    at = flank_speeds(found.pair, lines.x, speed)
+    rub = np.asarray(law(at, np.where(lines.present, found.line_load[:, :, case], 0.0))) * np.abs(at.sliding)
+    shares = []
+    for each in (rub, np.abs(lines.x)):  # the loss, and what it is without a coefficient
+        lost = np.where(lines.present, each, 0.0)
+        mean = (force * lost).sum(axis=1, keepdims=True) / force.sum(axis=1, keepdims=True)
+        moved = force * np.maximum(lost - mean, 0.0)
+        whole = float(lines.mean((force * lost).sum(axis=1)))
+        shares.append(float(lines.mean(moved.sum(axis=1))) / whole if whole > 0.0 else 0.0)
+    return max(shares)

@@ -1,11 +1,13 @@
 """Results flank-surface and gear-mesh-power-loss on pairs whose compliances are closed forms: no finite elements."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.contact.tooth_loss import moved_at_most
 from fegear.dynamics.train.friction import buckingham
 from fegear.formulas.flash_temperature import flank_speeds
 from fegear.formulas.friction import ohlendorf
@@ -273,3 +275,52 @@ def test_a_helical_pair_shares_the_load_as_its_overlap_says():
     ratio = path["hertz_pressure_iso"] / path["hertz_pressure_nominal_iso"]
     assert ratio == pytest.approx(1.0)  # no load factors in this case
     assert any("overlap ratio 0.659" in text for text in found.remarks)
+
+
+@pytest.mark.parametrize(("helix", "width", "solid"), [(None, "20 mm", 193.51), ("25 deg", "40 mm", 228.0)])
+@pytest.mark.dear
+def test_the_error_of_a_loss_by_coupled_slices_covers_the_loss_of_solid_gears(helix, width, solid):
+    """Slices miss compliances, which no coarser solution of them shows: the stated error was 1e-6 of the loss."""
+    size = {"module": "3 mm"} if helix is None else {"normal_module": "3 mm", "helix_angle": helix}
+    asked = case(
+        "gear-mesh-power-loss",
+        gear={"module": None, "face_width": width} | size,
+        effects={"hertz": "load-dependent", "neighbour_coupling": True},
+        friction={"coefficient": 0.06},
+        width="slices",
+        compliance=None,
+    )
+    if helix is not None:
+        asked["gear"]["a"]["hand"], asked["gear"]["b"]["hand"] = "left", "right"
+    asked["accuracy"] = {"tolerance": 2e-2}
+    found = run(asked, progress=False)
+    values = {value.name: value for value in found.values}
+    loss, factor = values["I.tooth_loss"], values["I.loss_factor"]
+    assert abs(loss.value - solid) < loss.error < 0.06 * loss.value
+    assert factor.error / factor.value == pytest.approx(loss.error / loss.value)
+
+
+def test_force_that_moves_between_stations_changes_the_loss_by_no_more_than_stated():
+    """Random softening of stations by up to 10 %, force from softer to stiffer: an own computation."""
+    rng = np.random.default_rng(5)
+    _, found = numbers("gear-mesh-power-loss", friction={"coefficient": 0.06})
+    pair = found.scene.pairs["I"]
+    x = rng.uniform(pair.x_start, pair.x_end, (3, 7))
+    force = rng.uniform(0.0, 1.0, x.shape)
+    lines = SimpleNamespace(x=x, present=np.ones(x.shape, dtype=bool), mean=lambda one: one.mean(axis=0))
+    flanks = SimpleNamespace(
+        lines=lines, pair=pair, contact=SimpleNamespace(force=force[:, :, None]), line_load=force[:, :, None]
+    )
+    bound = moved_at_most(flanks, 0, 150.0, lambda at, _load: np.full(at.sliding.shape, 0.06))
+    sliding = np.abs(flank_speeds(pair, x, 150.0).sliding)
+    loss = (force * sliding).sum()
+    worst = 0.0
+    for _ in range(200):
+        softer = np.where(rng.uniform(size=x.shape) < 0.5, 0.1, 0.0)
+        moved = -force * (softer - (force * softer).sum(axis=1, keepdims=True) / force.sum(axis=1, keepdims=True))
+        assert moved.sum(axis=1) == pytest.approx(0.0, abs=1e-12)
+        worst = max(worst, abs((moved * sliding).sum()) / loss)
+    slow = sliding < ((force * sliding).sum(axis=1) / force.sum(axis=1))[:, None]
+    moved = -force * 0.1 * (slow - (force * slow).sum(axis=1, keepdims=True) / force.sum(axis=1, keepdims=True))
+    assert worst < 0.1 * bound
+    assert (moved * sliding).sum() / loss == pytest.approx(0.1 * bound)  # and that much it can be

@@ -195,14 +195,14 @@ class LoadedPair:
         notes = {member: {name: source.remarks for name, source in sources[member].items()} for member in MEMBERS}
         return RootStressInMesh(stress, notes)
 
-    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
+    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], float]:
         """See `LoadedTeeth`."""
-        from fegear.contact.tooth_loss import loss_over_path
+        from fegear.contact.tooth_loss import change_of_loss, loss_over_path
 
         pair, i = self.pair, self._at
         fine, coarse = (pair_history(self.engagement, self.loads, count) for count in (_LOSSES, _LOSSES // 2))
-        found = (loss_over_path(pair, fine, k, speed, law(load)) for k, load in enumerate(self.loads))
-        return tuple(found), loss_over_path(pair, coarse, i, speed, law(self.nominal))
+        found = tuple(loss_over_path(pair, fine, k, speed, law(load)) for k, load in enumerate(self.loads))
+        return found, change_of_loss(found[i], loss_over_path(pair, coarse, i, speed, law(self.nominal)))
 
     def flank_load(self, pair: GearPair) -> FlankLoad:
         """See `LoadedTeeth`."""

@@ -314,12 +314,16 @@ class LoadedWidePair:
         ends = (*largest.values(), *off.values())
         return ToothStress(rooted.x, *(np.stack(one, axis=1) for one in ends)), across
 
-    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
-        """See `LoadedTeeth`."""
-        from fegear.contact.tooth_loss import loss_over_face
+    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], float]:
+        """See `LoadedTeeth`; the error is the change by the coarser solution, and what slices miss."""
+        from fegear.contact.tooth_loss import change_of_loss, loss_over_face, moved_at_most
 
-        found = (loss_over_face(self.found, k, speed, law(load)) for k, load in enumerate(self.loads))
-        return tuple(found), loss_over_face(self.error.coarse, self.at, speed, law(self.nominal))
+        i, nominal = self.at, law(self.nominal)
+        found = tuple(loss_over_face(self.found, k, speed, law(load)) for k, load in enumerate(self.loads))
+        if not self.estimated:
+            return found, math.nan
+        error = change_of_loss(found[i], loss_over_face(self.error.coarse, i, speed, nominal))
+        return found, error + (self.missed * moved_at_most(self.found, i, speed, nominal) if self.missed else 0.0)
 
     def flank_load(self, pair: GearPair) -> FlankLoad:
         """See `LoadedTeeth`."""

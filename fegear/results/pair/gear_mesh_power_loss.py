@@ -151,11 +151,11 @@ def _check(scene: Scene, name: str) -> None:
 
 def _compute(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
     teeth = loaded_teeth(upstream, inputs.name)
-    losses, coarse = teeth.losses(inputs.speed, lambda load: inputs.law(teeth.pair, load))
-    return _data(teeth.pair, losses, inputs, coarse)
+    losses, error = teeth.losses(inputs.speed, lambda load: inputs.law(teeth.pair, load))
+    return _data(teeth.pair, losses, inputs, error)
 
 
-def _data(pair: GearPair, losses: tuple[ToothLoss, ...], inputs: ToothLossInputs, coarse: ToothLoss) -> ToothLossData:
+def _data(pair: GearPair, losses: tuple[ToothLoss, ...], inputs: ToothLossInputs, error: float) -> ToothLossData:
     from fegear.formulas.friction import ohlendorf, wimmer
 
     closed = []
@@ -164,10 +164,6 @@ def _data(pair: GearPair, losses: tuple[ToothLoss, ...], inputs: ToothLossInputs
             closed.append(formula(pair))
         except RangeError:
             closed.append(math.nan)
-    found = losses[inputs.nominal]
-    error = abs(coarse.loss_factor / found.loss_factor - 1.0)
-    if found.loss:
-        error = max(error, abs(coarse.loss / found.loss - 1.0))
     return ToothLossData(pair, losses, inputs.nominal, error, np.array(inputs.loads), closed[0], closed[1])
 
 
