@@ -64,3 +64,16 @@ def test_several_curves_are_followed_each_to_its_own_peak():
 def test_the_largest_sample_at_an_end_stays_within_the_samples():
     (found,), (value,) = refined_peaks(lambda x: -x[None], X)
     assert (found, value) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_of_two_peaks_that_are_alike_the_last_bit_chooses_none(sign):
+    """A symmetric pair: the place of its largest pressure changed its sign with the last bit of either peak."""
+
+    def hills(x):
+        higher = np.where(sign * (x - 0.5) > 0.0, 1.0 + 4e-16, 1.0)
+        return (higher * (2.0 - np.abs(np.abs(x - 0.5) - 0.203)))[None]
+
+    (at,), (largest,) = refined_peaks(hills, X)
+    assert at == pytest.approx(0.297, abs=1e-4)
+    assert largest == pytest.approx(2.0, abs=1e-4)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, first_of_largest
 
 #: Each pass puts so many points on either side of a maximum's largest sample, and narrows its bracket as much and once.
 _POINTS = 4
@@ -55,7 +55,7 @@ def refined_peaks(
     Returns
     -------
     at, largest : ndarray, shape (C,)
-        Where each curve is largest, and its value there.
+        Where each curve is largest, first of several places where it is, and its value there.
     """
     sampled = curves(x)
     peak = sampled.max(axis=1)
@@ -84,6 +84,8 @@ def refined_peaks(
             places[best + 1, every],
             values[best, every],
         )
-    order = np.lexsort((value, curve))
-    last = order[np.append(np.diff(curve[order]) != 0, True)]
-    return at[last], value[last]
+    # Of peaks of one height, as symmetric curves have them, the first: the last bit decides nothing.
+    order = np.lexsort((at, curve))
+    parts = np.split(order, np.flatnonzero(np.diff(curve[order])) + 1)
+    first = [part[first_of_largest(value[part])] for part in parts]
+    return at[first], np.array([value[part].max() for part in parts])
