@@ -1,5 +1,6 @@
 """Where the program starts, as ``fegear`` and as ``python -m fegear``: light, so that Ctrl-C has its answer at once."""
 
+import contextlib
 import gc
 import os
 
@@ -10,18 +11,29 @@ _YOUNG = 100_000
 
 def main() -> None:
     """Load the command line and run it; an interrupt while it is still loading is reported like any other."""
+    _main(is_process=False)
+
+
+def program() -> None:
+    """The same as the program that this process is for, and ends with."""
+    _main(is_process=True)
+
+
+def _main(*, is_process: bool) -> None:
     gc.set_threshold(_YOUNG)
     # pydantic would look through every installed package for plugins, which fegear has no use for.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
+        from fegear.base.ending import leaving_with
         from fegear.base.interrupts import heed_ctrl_c
         from fegear.base.streams import open_streams
 
         heed_ctrl_c()
         open_streams()
-        from fegear.cli import main as run
+        with leaving_with() if is_process else contextlib.nullcontext():
+            from fegear.cli import main as run
 
-        run()
+            run()
     except KeyboardInterrupt:
         from fegear.base.streams import complain
 
@@ -32,4 +44,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    program()
