@@ -132,6 +132,14 @@ def profile_of(config):
     return "long" if is_long_run(config) else "few" if leaves_dear_ones(config) else "ordinary"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_state(tmp_path_factory):
+    """What the window keeps beyond a crash stays among the tests: one of them left a case of its own to the user."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FEGEAR_STATE", str(tmp_path_factory.mktemp("state")))
+        yield
+
+
 def pytest_configure(config):
     settings.load_profile(profile_of(config))
     if (seed := config.getoption("last_bit")) is not None:

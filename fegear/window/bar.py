@@ -13,6 +13,7 @@ from fegear.case.text_file import named_path
 from fegear.output.folder import default_folder
 from fegear.output.formats import formats
 from fegear.window.bench import LEVELS
+from fegear.window.document import OverwriteError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -147,7 +148,7 @@ class Bar:
             return
         try:
             desk.save()
-        except FegearError as error:
+        except OverwriteError as error:
             self._confirm(str(error), "Overwrite", partial(self._save_over, desk))
             return
         self._saved()
@@ -164,9 +165,7 @@ class Bar:
         path = named_path(text, "case", home=True)
         try:
             self._desk.save_as(path, replace=replace)
-        except InputError as error:
-            if not error.rule.startswith("already exists"):
-                raise
+        except OverwriteError as error:
             self._confirm(str(error), "Overwrite", partial(self._save_as, text, replace=True))
             return
         self._saved()

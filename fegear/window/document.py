@@ -69,6 +69,10 @@ def judged(text: str, name: str, folder: Path, within: tuple[str, ...] | None) -
     return Verdict(document, scene, None)
 
 
+class OverwriteError(InputError):
+    """What is asked for would write over a file that is not the case's, as it was read: it may be asked for again."""
+
+
 def check_text(text: str, key: str = "case") -> str:
     """Return a text that a case file can have.
 
@@ -360,7 +364,7 @@ class Desk:
             raise InputError("case", self.name, "has no file yet", "save it first")
         path = self._within_reach(self.path)
         if not over_others and path.exists() and read_file(path, "case").digest != self._file.digest:
-            raise InputError(
+            raise OverwriteError(
                 "case", shown(str(self.path), PATH), "was modified by another program since it was opened",
                 "save under another name, or save again to overwrite it",
             )  # fmt: skip
@@ -385,7 +389,7 @@ class Desk:
         if not os.path.isdir(path.parent):  # noqa: PTH112  (Path's own raises where a name is too long)
             raise InputError("case", told, "is in a folder that does not exist", "choose another, or create it first")
         if os.path.lexists(path) and not replace:
-            raise InputError("case", told, "already exists", "choose another name")
+            raise OverwriteError("case", told, "already exists", "choose another name")
         self._write(path)
         self._journal.forget()
         self._journal = Journal(path)

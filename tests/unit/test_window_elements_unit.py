@@ -370,6 +370,19 @@ def test_saving_asks_for_a_name_and_before_it_writes_over_others(client, bench, 
     assert (tmp_path / "there.toml").read_text() == TEXT
 
 
+def test_only_what_may_be_written_over_is_offered_to_be(client, bench, tmp_path):
+    """A file whose place a folder took was offered to be overwritten: errors were told apart by no kind of theirs."""
+    Bar(bench)
+    path = tmp_path / "mine.toml"
+    bench.desk.save_as(path)
+    bench.desk.change(TEXT.replace("28", "29"))
+    path.unlink()
+    path.mkdir()
+    press(button(client, "Save"))
+    assert "cannot be read (Is a directory)" in client.said[-1]
+    assert not [one for one in client.elements.values() if isinstance(one, ui.button) and one.text == "Overwrite"]
+
+
 def test_accuracy_and_variants_are_chosen_in_the_bar(client, bench):
     bar = Bar(bench)
     assert bar._level.options == list(LEVELS)
