@@ -216,7 +216,7 @@ alpha_theta = 0.4
         ("aspect_ratio = { start = 0.0, stop = 1.0 }", "follow.aspect_ratio = 0.0: must be greater than zero"),
         ("alpha_z = { start = 0.1, stop = 1.0, responses = [-1.0] }", "follow.alpha_z = -1.0: must not be negative"),
         ("mu = { start = 0.1, stop = 0.3 }", "follow.mu = 0.1: must be finite and at least kappa^2"),
-        ("kappa = { start = -0.5, stop = 0.3 }", "follow.kappa = -0.5: must be finite and at least kappa^2"),
+        ("kappa = { start = -0.5, stop = 0.3 }", "follow.kappa = -0.5: contradicts mesh.mu = 0.2, which must be"),
         ('base_helix_angle = { start = "0 deg", stop = "95 deg" }', "base_helix_angle = 95 deg: must be between"),
     ],
 )  # fmt: skip

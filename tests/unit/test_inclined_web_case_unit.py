@@ -76,8 +76,10 @@ def test_what_cannot_be_or_was_not_compared_is_refused_with_its_key(more, key, s
 
 
 def test_an_inclined_web_of_an_idler_is_refused():
-    with pytest.raises(InputError, match="is ambiguous for idler b: end II is at"):
+    with pytest.raises(InputError, match="web_inclination = 1 deg: is ambiguous for idler b: end II is at"):
         check_solid_gear(scene(web_offset="0 mm", web_inclination="1 deg"), "b")
+    with pytest.raises(InputError, match=r"body\.web_offset = 1 mm: is ambiguous for idler b"):
+        check_solid_gear(scene(web_offset="1 mm"), "b")
     check_solid_gear(scene(web_offset="0 mm"), "b")
 
 

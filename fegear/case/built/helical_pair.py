@@ -200,4 +200,8 @@ def model_at(
         return replace(model, bearing_stiffness=value * model.bearing_stiffness)
     except InputError as error:
         found = f"{math.degrees(value):.6g} deg" if parameter == "base_helix_angle" else value
-        raise type(error)(f"{prefix}.follow.{parameter}", found, error.rule, error.remedy) from None
+        key = f"{prefix}.follow.{parameter}"
+        if error.key.rpartition(".")[2] in (parameter, _OF_MESH.get(parameter)):
+            raise type(error)(key, found, error.rule, error.remedy) from None
+        rule = f"contradicts {error.key.removeprefix(prefix + '.')} = {error.value}, which {error.rule}"
+        raise type(error)(key, found, rule, f"reduce the range of {parameter}, or change the other value") from None

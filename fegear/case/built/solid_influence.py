@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from fegear.case.accuracy import AccuracyPart
+    from fegear.case.gear_body import GearBodyPart
     from fegear.case.reading import Scene
     from fegear.fem.solid.influence import SolidInfluence
     from fegear.fem.solid.settings import SolidSettings
@@ -175,8 +176,8 @@ def check_solid_gear(scene: Scene, name: str) -> None:
         )  # fmt: skip
     if sliced and part.body is not None:
         raise InputError(
-            f"gear.{name}.body", "web and hub", 'are not available with width = "slices" (solid disc only)',
-            'set width = "solid"',
+            f"gear.{name}.body", "(a table)", 'is not available with width = "slices" (solid disc only)',
+            'set width = "solid", or remove body',
         )  # fmt: skip
     check_ends(scene, name, _wide_pairs(scene))
     if part.face_width is None:
@@ -204,8 +205,8 @@ def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
     ------
     InputError
     """
-    body = scene.gears[name].body
-    if body is None:
+    body, part = scene.gears[name].body, scene.case.gear[name].body
+    if body is None or part is None:
         return
     tooth = None if body.holes is None else body.holes.tooth
     if body.even and tooth is None:
@@ -221,11 +222,20 @@ def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
             "the teeth are counted in the other direction",
         )  # fmt: skip
     if driven is not None and drives is not None:
+        key, value = _uneven(part)
         raise InputError(
-            f"gear.{name}.body", "web_inclination" if body.lean else "off mid-face",
+            f"gear.{name}.body.{key}", value,
             f"is ambiguous for idler {name}: end II is at opposite ends in pairs {driven} and {drives}",
             "use one case for each pair; in one of them web_offset, web_inclination and hub_offset change sign",
         )  # fmt: skip
+
+
+def _uneven(part: GearBodyPart) -> tuple[str, str]:
+    """The first key of a body by which its two ends differ, and its value."""
+    if part.web_inclination:
+        return "web_inclination", f"{math.degrees(part.web_inclination):.6g} deg"
+    key = "web_offset" if part.web_offset else "hub_offset"
+    return key, f"{getattr(part, key) * 1e3:.6g} mm"
 
 
 def _in_modules(gear: Gear) -> tuple[InvoluteTooth, float, float, float]:
