@@ -229,7 +229,8 @@ def _names(*kinds: str, **have: bool) -> tuple[str, ...]:
 AT_REST = _names("teeth")
 #: Modifications and errors of flanks, by which these leave gaps.
 GAPS = _names("flanks")
-#: All that change a pair with its width, those that change plane teeth, and those that change a motion.
+#: All that change a loaded pair, those of pairs with a width, of plane teeth, and those that change a motion.
+PAIR_EFFECTS = _names("teeth", "flanks")
 WIDE_EFFECTS = _names("teeth", "flanks", wide=True)
 PLANE_EFFECTS = _names("teeth", "flanks", plane=True)
 MOTION_EFFECTS = _names("motion")

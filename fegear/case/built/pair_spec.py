@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fegear.base.effects import EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS
+from fegear.base.effects import EFFECTS, PAIR_EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.base.errors import InputError
 from fegear.case.built.flank_errors import cutter_modification, flank_errors
 from fegear.case.built.flank_modifications import with_face
@@ -43,7 +43,7 @@ def pair_spec(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     driver, driven = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
     had = PLANE_EFFECTS if width == "plane" else WIDE_EFFECTS
     counted: dict[str, Any] = {
-        effect: getattr(effects, effect) if effect in had else EFFECTS[effect].off for effect in WIDE_EFFECTS
+        effect: getattr(effects, effect) if effect in had else EFFECTS[effect].off for effect in PAIR_EFFECTS
     }
     spec = PairSpec(
         pair, part.all_loads(pair), part.normal_load(pair) or math.nan, width, part.compliance.source,
