@@ -18,6 +18,7 @@ from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import read_scene
 from fegear.contact.wide.error import flank_error
+from fegear.contact.wide.flanks import open_gaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import over_pitch
 from fegear.studies.cost.ladder import BODIES
@@ -42,7 +43,7 @@ def main() -> None:
     """Print seconds of every stretch, then a line for every body."""
     scene = read_scene(Path(sys.argv[1]) if len(sys.argv) > 1 else CASE)
     asked = pair_spec(scene, next(iter(scene.pairs)))
-    gaps = asked.gaps()
+    gaps = open_gaps(asked)
     settings, rows = solid_settings_of(scene, asked.gears[0]), []
     for body, name in BODIES.items():
         clock = Clock()

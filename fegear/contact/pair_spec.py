@@ -9,21 +9,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
 
 import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.effects import EFFECTS, MISALIGNMENT, RELIEF, SPACING_ERRORS, FaceEffects, ToothEffects
 from fegear.base.errors import InputError
-from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
 from fegear.geometry.flank_modification import FlankModification, Topography
-from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
 from fegear.geometry.relief import CombinedRelief, Relief
 from fegear.geometry.relief_spec import BiasSpec, ReliefSpec
-from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
+
+if TYPE_CHECKING:
+    from fegear.contact.wide.shaft_gaps import ShaftGaps
+    from fegear.contact.wide_spec import WideSpec
 
 #: How wide the teeth of a loaded pair are: a section, coupled slices of it, or solid gears.
 Width = Literal["plane", "slices", "solid"]
@@ -142,38 +143,6 @@ def _refuse_odd_flank(pair: GearPair, member: Member, parts: tuple[FlankModifica
 
 
 @dataclass(frozen=True)
-class Misalignment:
-    """Errors of a pair of teeth with a width that the effect `misalignment` counts.
-
-    Parameters
-    ----------
-    face_position, line_gap : ndarray, shape (n,)
-        Gap over the face [m]; empty for none.
-    tilt : ShaftTilt
-        Deviation of the axes.
-    cutting : tuple of FlankModification
-        Errors of the pinion's profile and lead angle.
-    apart : float
-        Error of the centre distance [m].
-    shafts : ShaftGaps
-        What shafts open as they are loaded.
-    """
-
-    face_position: Array = field(default_factory=lambda: np.empty(0))
-    line_gap: Array = field(default_factory=lambda: np.empty(0))
-    tilt: ShaftTilt = PARALLEL
-    cutting: tuple[FlankModification, ...] = ()
-    apart: float = 0.0
-    shafts: ShaftGaps = RIGID
-
-    @property
-    def given(self) -> bool:
-        """Whether there are any."""
-        own = bool(self.line_gap.size or self.cutting or self.apart or self.tilt != PARALLEL)
-        return own or self.shafts.given
-
-
-@dataclass(frozen=True)
 class PairSpec(ToothEffects, FaceEffects):
     """Two gears in mesh, what their flanks have, their loads, and which effects count.
 
@@ -194,15 +163,8 @@ class PairSpec(ToothEffects, FaceEffects):
     table : ComplianceTable or None
         Of plane teeth, in place of either.
     driver, driven : FlankSpec
-    errors : Misalignment
-    cutter : tuple of FlankModification
-        What the pinion's cutter leaves, counted with `relief`.
-    positions : int
-        Roll positions over one base pitch of teeth with a width.
-    panels : int
-        Parts of the common face; 0 for one to a quarter of a module.
-    base_pitch : int
-        Which teeth meet where teeth with a width have spacing errors.
+    wide : WideSpec or None
+        What only teeth with a width have: errors over the face, and how it is divided; None for plane teeth.
     name : str
         For messages.
     """
@@ -215,11 +177,7 @@ class PairSpec(ToothEffects, FaceEffects):
     table: ComplianceTable | None = None
     driver: FlankSpec = field(default_factory=FlankSpec)
     driven: FlankSpec = field(default_factory=FlankSpec)
-    errors: Misalignment = field(default_factory=Misalignment)
-    cutter: tuple[FlankModification, ...] = ()
-    positions: int = 16
-    panels: int = 0
-    base_pitch: int = 0
+    wide: WideSpec | None = None
     name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
@@ -232,6 +190,12 @@ class PairSpec(ToothEffects, FaceEffects):
             among = ", ".join(f"{load:.6g}" for load in sorted(self.loads))
             raise InputError("nominal", f"{self.nominal:.6g} N", f"must be one of the loads, {among} N")
         object.__setattr__(self, "loads", tuple(sorted(set(self.loads))))
+        if self.width == "plane":
+            object.__setattr__(self, "wide", None)
+        elif self.wide is None:
+            from fegear.contact.wide_spec import WideSpec
+
+            object.__setattr__(self, "wide", WideSpec())
 
     @property
     def prefix(self) -> str:
@@ -272,10 +236,23 @@ class PairSpec(ToothEffects, FaceEffects):
 
     # ---- teeth with a width ------------------------------------------------------------------------------------------
     @property
+    def face(self) -> WideSpec:
+        """What only teeth with a width have.
+
+        Raises
+        ------
+        InputError
+            If these are plane teeth.
+        """
+        if self.wide is None:
+            raise InputError("width", f'"{self.width}"', "has no face width", 'set width = "slices" or "solid"')
+        return self.wide
+
+    @property
     def panel_count(self) -> int:
         """Parts into which the common face is divided."""
         usual = math.ceil(_PANELS_PER_MODULE * self.pair.face_width / self.pair.driver.module - 1e-9)
-        return self.panels or max(4, usual)
+        return self.face.panels or max(4, usual)
 
     @property
     def panel(self) -> float:
@@ -296,7 +273,7 @@ class PairSpec(ToothEffects, FaceEffects):
         InputError
             If the gears do not mesh there.
         """
-        apart = self.errors.apart
+        apart = self.face.errors.apart
         try:
             return replace(self.pair, centre_distance=self.pair.centre_distance + apart) if apart else self.pair
         except InputError as error:
@@ -304,35 +281,15 @@ class PairSpec(ToothEffects, FaceEffects):
 
     def has_data(self, effect: str) -> bool:
         """Whether there is anything that an effect could count."""
-        modified = any(flank.relief or flank.over_face for flank in self.both) or bool(self.cutter)
-        in_delta = self.width != "plane" and any(flank.wants_delta for flank in self.both)  # of plane teeth only
+        modified = any(flank.relief or flank.over_face for flank in self.both) or bool(self.wide and self.wide.cutter)
+        in_delta = self.wide is not None and any(flank.wants_delta for flank in self.both)  # of plane teeth only
         given = {
             RELIEF.name: modified and not in_delta,
             SPACING_ERRORS.name: any(flank.spacing.size for flank in self.both),
-            MISALIGNMENT.name: self.errors.given,
+            MISALIGNMENT.name: self.wide is not None and self.wide.errors.given,
         }
         return given.get(effect, True)
 
     def on(self, shafts: ShaftGaps) -> PairSpec:
         """The same on shafts that open other gaps."""
-        return replace(self, errors=replace(self.errors, shafts=shafts))
-
-    def gaps(self) -> FlankGaps:
-        """What keeps the flanks of teeth with a width apart, by the effects that are on."""
-        apart, pair = FlankGaps(), self.placed
-        if self.relief:
-            driver, driven = (flank.profile(pair, member) for member, flank in zip(MEMBERS, self.both, strict=True))
-            first, second = (flank.surface(pair, member) for member, flank in zip(MEMBERS, self.both, strict=True))
-            apart = FlankGaps(driver, driven, driver_flank=(*first, *self.cutter), driven_flank=second)
-        if self.misalignment:
-            off = self.errors
-            apart = replace(
-                apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt, shafts=off.shafts,
-                driver_flank=(*apart.driver_flank, *off.cutting),
-            )  # fmt: skip
-        if self.spacing_errors:
-            apart = replace(
-                apart, driver_spacing=self.driver.spacing, driven_spacing=self.driven.spacing,
-                base_pitch=self.base_pitch,
-            )  # fmt: skip
-        return apart
+        return replace(self, wide=replace(self.face, errors=replace(self.face.errors, shafts=shafts)))

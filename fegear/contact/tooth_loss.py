@@ -8,17 +8,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.contact.plane.pair_history import PairHistory
-from fegear.contact.surface import FrictionLaw
-from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.formulas.flash_temperature import flank_speeds
 from fegear.formulas.friction import computed
-from fegear.geometry.pair import GearPair
+
+if TYPE_CHECKING:
+    from fegear.contact.plane.pair_history import PairHistory
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.wide.loaded import LoadedFlanks
+    from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)

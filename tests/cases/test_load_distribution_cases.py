@@ -13,6 +13,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.reading import read_scene
+from fegear.contact.wide.flanks import open_gaps
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
 from fegear.engine.figure.figure import Figure
@@ -113,8 +114,8 @@ def gaps(*overrides):
     asked = pair_spec(read_scene(CASE, [*COARSE, *overrides]), "I")
     pair = asked.placed
     lines = contact_lines(pair, pair.x_start + pair.base_pitch * np.array([0.2, 0.7]), 1e-3)
-    plain = replace(asked, relief=True, misalignment=False).gaps()
-    found = replace(asked, relief=True).gaps()
+    plain = open_gaps(replace(asked, relief=True, misalignment=False))
+    found = open_gaps(replace(asked, relief=True))
     bare = FlankGaps(plain.driver_relief, plain.driven_relief)
     return (found.at(pair, lines) - bare.at(pair, lines))[lines.present], lines, asked
 

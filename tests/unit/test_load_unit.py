@@ -56,8 +56,8 @@ def test_a_spur_pair_whose_load_over_the_face_is_asked_for_has_all_that_is_known
     scene = build_scene(document, "case", None)
     plane, wide = pair_spec(scene, "I"), pair_spec(scene, "I", over_face=True)
     assert (plane.width, wide.width) == ("plane", "solid")
-    assert (wide.positions, wide.panel_count, wide.misalignment) == (5, 6, True)
-    assert wide.errors.line_gap == pytest.approx([0.0, 10e-6])
+    assert (wide.face.positions, wide.panel_count, wide.misalignment) == (5, 6, True)
+    assert wide.face.errors.line_gap == pytest.approx([0.0, 10e-6])
 
 
 def test_three_lines_give_what_a_run_of_the_case_gives():

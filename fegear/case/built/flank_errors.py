@@ -11,8 +11,8 @@ from fegear.base.errors import InputError
 from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.csv_file import read_columns
 from fegear.case.part import at
-from fegear.contact.pair_spec import Misalignment
 from fegear.contact.wide.shaft_gaps import RIGID
+from fegear.contact.wide_spec import Misalignment
 from fegear.geometry.shaft_tilt import ShaftTilt
 
 if TYPE_CHECKING:

@@ -118,6 +118,8 @@ def check_wide_pair(scene: Scene, name: str) -> None:
     ------
     InputError
     """
+    from fegear.contact.wide.flanks import open_gaps
+
     part, effects = scene.case.pair[name], scene.case.effects
     for gear in (part.driver, part.driven):
         check_solid_gear(scene, gear)
@@ -127,7 +129,7 @@ def check_wide_pair(scene: Scene, name: str) -> None:
         _check_misalignment(scene, name)
     spec = pair_spec(scene, name, over_face=True)
     gears = scene.case.gear.values()
-    if effects.relief and not (spec.cutter or any(gear.relieved or gear.over_face for gear in gears)):
+    if effects.relief and not (spec.face.cutter or any(gear.relieved or gear.over_face for gear in gears)):
         raise InputError(
             "effects.relief", "true", "has no effect: no gear of this case has relief, lead, bias or topography",
             f"specify gear.{part.driver}.relief or lead, or switch the effect off",
@@ -143,4 +145,4 @@ def check_wide_pair(scene: Scene, name: str) -> None:
                 f"gear.{flank.gear}.relief", "amount_over_delta", "is defined for the plane (2D) model only",
                 "specify the amount as a length for 3D gears",
             )  # fmt: skip
-    replace(spec, spacing_errors=False).gaps()
+    open_gaps(replace(spec, spacing_errors=False))

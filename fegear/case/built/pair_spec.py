@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.base.effects import EFFECTS, PAIR_EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.base.errors import InputError
-from fegear.case.built.flank_errors import cutter_modification, flank_errors
-from fegear.case.built.flank_modifications import with_face
 from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.built.members import gear_name
 from fegear.case.csv_file import one_column, read_columns
@@ -52,12 +50,21 @@ def pair_spec(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     if width == "plane":
         table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
         return replace(spec, table=table)
-    divided = scene.case.load_distribution
-    return replace(
-        spec, driver=with_face(scene, driver), driven=with_face(scene, driven), errors=flank_errors(scene, name),
-        cutter=cutter_modification(scene, name), positions=divided.positions, panels=divided.panels or 0,
-        base_pitch=divided.base_pitch,
+    return _with_face(scene, spec)
+
+
+def _with_face(scene: Scene, spec: PairSpec) -> PairSpec:
+    """The spec with what teeth with a width have besides, whose modules plane teeth do without."""
+    from fegear.case.built.flank_errors import cutter_modification, flank_errors
+    from fegear.case.built.flank_modifications import with_face
+    from fegear.contact.wide_spec import WideSpec
+
+    name, divided = spec.name, scene.case.load_distribution
+    wide = WideSpec(
+        flank_errors(scene, name), cutter_modification(scene, name), divided.positions, divided.panels or 0,
+        divided.base_pitch,
     )  # fmt: skip
+    return replace(spec, driver=with_face(scene, spec.driver), driven=with_face(scene, spec.driven), wide=wide)
 
 
 def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:

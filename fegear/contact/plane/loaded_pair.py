@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,9 +39,11 @@ from fegear.contact.plane.transmission_error import (
     revolution,
     transmission_error,
 )
-from fegear.contact.surface import FrictionLaw
-from fegear.contact.tooth_loss import ToothLoss
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+if TYPE_CHECKING:
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.tooth_loss import ToothLoss
 
 #: Places along the path at which losses are integrated (half as many for the estimate of their error), and at which the
 #: state of the flanks is looked at.

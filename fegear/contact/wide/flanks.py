@@ -1,9 +1,12 @@
-"""From a spec to a pair of flanks with a width that is ready to be loaded: the effects that are on."""
+"""From a spec to a pair of flanks with a width that is ready to be loaded: the effects that are on, and its gaps."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from fegear.contact.pair_spec import PairSpec
@@ -13,3 +16,24 @@ if TYPE_CHECKING:
 def as_specified(spec: PairSpec, flanks: FlankPair) -> FlankPair:
     """The flanks with the effects of a spec that change more than what keeps them apart."""
     return replace(flanks, pair=spec.placed, coupling=spec.neighbour_coupling, hertz=spec.hertz)
+
+
+def open_gaps(spec: PairSpec) -> FlankGaps:
+    """What keeps the flanks of teeth with a width apart, by the effects that are on."""
+    apart, pair = FlankGaps(), spec.placed
+    if spec.relief:
+        driver, driven = (flank.profile(pair, member) for member, flank in zip(MEMBERS, spec.both, strict=True))
+        first, second = (flank.surface(pair, member) for member, flank in zip(MEMBERS, spec.both, strict=True))
+        apart = FlankGaps(driver, driven, driver_flank=(*first, *spec.face.cutter), driven_flank=second)
+    if spec.misalignment:
+        off = spec.face.errors
+        apart = replace(
+            apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt, shafts=off.shafts,
+            driver_flank=(*apart.driver_flank, *off.cutting),
+        )  # fmt: skip
+    if spec.spacing_errors:
+        apart = replace(
+            apart, driver_spacing=spec.driver.spacing, driven_spacing=spec.driven.spacing,
+            base_pitch=spec.face.base_pitch,
+        )  # fmt: skip
+    return apart

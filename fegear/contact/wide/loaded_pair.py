@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,10 +24,9 @@ from fegear.contact.loaded_teeth import (
 )
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.tooth_stress import ToothStress
-from fegear.contact.surface import FrictionLaw
-from fegear.contact.tooth_loss import ToothLoss
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.error import FlankError
+from fegear.contact.wide.flanks import open_gaps
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 from fegear.contact.wide.neglected_effects import neglected_effects
@@ -43,6 +42,10 @@ from fegear.fem.plane.root_stress import curves_apart
 from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+if TYPE_CHECKING:
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.tooth_loss import ToothLoss
 
 #: Places along the face per module, at which root stress is looked for, and how many at least.
 _PER_MODULE, _FEWEST = 4.0, 17
@@ -114,7 +117,7 @@ class LoadedWidePair:
     @property
     def unrelieved(self) -> FlankGaps:
         """What keeps the flanks apart of the effects that are on, without reliefs and spacing errors."""
-        return replace(self.spec, relief=False, spacing_errors=False).gaps()
+        return open_gaps(replace(self.spec, relief=False, spacing_errors=False))
 
     def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:  # noqa: ARG002
         """See `LoadedTeeth`: of mean transmission error and K_Hbeta, at the nominal load."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.wide.error import flank_error, no_estimate, with_misses
-from fegear.contact.wide.flanks import as_specified
+from fegear.contact.wide.flanks import as_specified, open_gaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.over_pitch import over_pitch
@@ -87,11 +87,11 @@ def load_flanks(
     """
     most_gap = usual_gap(spec.placed, max(spec.loads)) if spec.corner_contact else 0.0
     bare = FlankPair(
-        spec.placed, bodies, panel=spec.panel, positions=spec.positions, most_gap=most_gap, cache=cache,
+        spec.placed, bodies, panel=spec.panel, positions=spec.face.positions, most_gap=most_gap, cache=cache,
         progress=progress,
     )  # fmt: skip
     flanks = as_specified(spec, bare)
-    gaps = spec.gaps()
+    gaps = open_gaps(spec)
     found = flanks.solve(spec.loads, gaps, flanks.compliance(spec.nominal))
     for _ in range(_LONGER_EDGES):
         if not found.reaches_the_last_edges:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from fegear.base.effects import CORNER_CONTACT, GAPS, WIDE_EFFECTS
 from fegear.base.errors import InputError
 from fegear.contact.loaded_teeth import Change, Neglected
-from fegear.contact.wide.flanks import as_specified
+from fegear.contact.wide.flanks import as_specified, open_gaps
 from fegear.contact.wide.tip_edges import usual_gap
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def _with(
     elif changed.hertz != flanks.hertz:
         known = replace(known, fixed_half_width=None)
     if effect in GAPS:
-        gaps = more.gaps()
+        gaps = open_gaps(more)
     found = flanks.solve([spec.nominal], gaps, known)
     return (
         float(found.mean_transmission_error[0] - without.mean_transmission_error[i]),

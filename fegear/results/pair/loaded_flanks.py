@@ -84,10 +84,10 @@ def _remarks(seen: Seen) -> Iterator[str]:
 def _settings(seen: Seen) -> dict[str, object]:
     spec, found = seen.asked.spec, seen.data.found
     return {
-        "width": spec.width, "positions": spec.positions, "panels": spec.panel_count,
+        "width": spec.width, "positions": spec.face.positions, "panels": spec.panel_count,
         "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
         effects.HERTZ.name: spec.hertz, effects.NEIGHBOUR_COUPLING.name: spec.neighbour_coupling,
-        "base_pitch": spec.base_pitch, "nominal_load": spec.nominal, "loads": list(spec.loads),
+        "base_pitch": spec.face.base_pitch, "nominal_load": spec.nominal, "loads": list(spec.loads),
         "positions_of_stated": seen.data.over.found.lines.roll.size,
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
@@ -148,11 +148,11 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     pair, loads = asked.placed, 1 + len(asked.loads)
     width = min(pair.driver.face_width, pair.driven.face_width)
     stations = 1.0 + width / (asked.panel * pair.driver.module)
-    lines = asked.positions * (1.0 + pair.total_contact_ratio)
+    lines = asked.face.positions * (1.0 + pair.total_contact_ratio)
     long = max(1.0, stations / _STATIONS * (1.0 + (stations / _MANY) ** 2))
     problem = _CONTACT + _SQUARE * (stations * math.ceil(pair.total_contact_ratio)) ** 2
     seconds = 2.0 * 2.0 * _LINE * lines * long + problem * loads * (_OVER_PITCH + min(4 * loads, _PEAKS))
-    return Forecast({"positions": asked.positions, "panels": asked.panel_count}, seconds)
+    return Forecast({"positions": asked.face.positions, "panels": asked.panel_count}, seconds)
 
 
 _SHEET = Sheet(remarks=(_remarks,), settings=_settings)

@@ -213,7 +213,10 @@ def forecast_draws(scene: Scene, name: str) -> Forecast:
     if name in scene.wide_pairs:
         asked = pair_spec(scene, name)
         chunks = math.ceil(part.draws / _WIDE_CHUNK)
-        roots, draws = asked.positions * asked.panel_count**2 * _ROOTS, part.draws * asked.positions * _AT_A_POSITION
+        roots, draws = (
+            asked.face.positions * asked.panel_count**2 * _ROOTS,
+            part.draws * asked.face.positions * _AT_A_POSITION,
+        )
         if limits_of(scene, name, _OVER_FACE).centre_distance:  # three centre distances, a draw stands between two
             roots, draws = 3.0 * roots, 2.0 * draws
         return Forecast({"draws": part.draws, "chunks": chunks}, roots + draws)

@@ -324,7 +324,8 @@ def _load(asked: Asked, configuration: Configuration, bodies: dict[Member, Flank
     one, case = _flank(configuration), pair_spec(asked.scene, asked.pair, over_face=True)
     if case.misalignment and on_shafts(asked.scene, asked.pair):
         case = case.on(gaps_of_even_loads(gearbox_of(asked.scene), asked.pair))
-    wanted = replace(case, panels=one.panels, neighbour_coupling=one.neighbours, loads=(case.nominal,))
+    divided = replace(case.face, panels=one.panels)
+    wanted = replace(case, wide=divided, neighbour_coupling=one.neighbours, loads=(case.nominal,))
     return load_flanks(wanted, bodies, SolutionCache())[2]
 
 
