@@ -33,6 +33,7 @@ GRID = {
 #: Cases of ``cases/``, or of the folder ``small`` beside this file, with what makes them cheap; by the name of the run.
 RUNS = {
     "absorbed": ("small/absorbed", {}),
+    "averaging": ("small/averaging", {}),
     "blankenship_singh": ("blankenship_singh", {"transmissibility.I.frequencies": 60}),
     "body_modes": ("thin_rim", {"results": ["body-modes"], "accuracy.tolerance": 0.2}),
     "contact_lines": ("litvin_combined", {"results": ["contact-lines"], "tooth_contact.positions": 40}),
@@ -53,6 +54,16 @@ RUNS = {
     "fracture_options": ("small/fracture_options", {}),
     "gear_details": ("small/gear_details", {}),
     "gearbox_misaligned": ("gearbox_misaligned", ROUGH),
+    "helical_set": (
+        "helical_planetary_set",
+        {
+            **ROUGH,
+            "gear.sun.face_width": "5 mm",
+            "gear.planet.face_width": "5 mm",
+            "gear.ring.face_width": "5 mm",
+            "planetary.P.speeds.count": 3,
+        },
+    ),
     "helical_stage": (
         "helical_stage_train",
         {
@@ -83,6 +94,8 @@ RUNS = {
     "planet_and_ring": ("planet_and_ring", COARSE),
     "planetary_set": ("planetary_set", {}),
     "planets_in_ring_gear": ("planets_in_ring_gear", COARSE),
+    "rated_in_slices": ("small/rated_in_slices", {}),
+    "rated_plane": ("small/rated_plane", {}),
     "rating_factors": ("small/rating_factors", {}),
     "rating_helical": ("rating_helical", {}),
     "rating_options": ("small/rating_options", {}),
@@ -94,6 +107,7 @@ RUNS = {
     "reliefs": ("small/reliefs", {}),
     "ring_check": ("ring_gear", {"results": ["tooth-geometry-check", "geometry"]}),
     "ring_gear": ("ring_gear", COARSE),
+    "robust_in_slices": ("small/robust_in_slices", {}),
     "robust_options": ("small/robust_options", {}),
     "robustness": (
         "robust_pair",

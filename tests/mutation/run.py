@@ -253,13 +253,13 @@ def passed(tree: Path, names: list[str], seconds: dict[str, float], patience: fl
         scratch = Path(folder)
         if not (child := os.fork()):
             _run_tests(tree, names, seconds, scratch, patience)
-        limit, code = time.monotonic() + 300.0 + 10.0 * sum(seconds[name] for name in names), None
+        limit, code = time.monotonic() + 120.0 + 10.0 * sum(seconds[name] for name in names), None
         while code is None:
             done, status = os.waitpid(child, os.WNOHANG)
             code = os.waitstatus_to_exitcode(status) if done else None
             if code is None:
                 time.sleep(0.05)
-            if time.monotonic() > limit:
+            if code is None and time.monotonic() > limit:
                 os.kill(child, signal.SIGKILL)
         with contextlib.suppress(ProcessLookupError):  # programs that its tests left behind
             os.killpg(child, signal.SIGKILL)
