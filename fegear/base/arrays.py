@@ -12,6 +12,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fegear.base.brief import Brief
+
 
 def same(one: object, other: object) -> bool:
     """Whether two things have the same content: arrays entry by entry, and what is no number twice is the same.
@@ -47,7 +49,7 @@ def _same_arrays(one: object, other: object) -> bool:
     return np.array_equal(one, other, equal_nan=one.dtype.kind in "fc" and other.dtype.kind in "fc")
 
 
-class Alike:
+class Alike(Brief):
     """Base of dataclasses that hold arrays: two of them are equal where their content is the `same`.
 
     The comparison that dataclasses have by themselves asks arrays for one truth value, and raises.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from fegear.base.brief import Brief
 from fegear.base.effects import Described
 from fegear.base.errors import PATH, InputError, shown
 from fegear.base.unit_text import plain_number
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(Brief):
     """A checked case with its gears and pairs built.
 
     Attributes

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.brief import Brief
 from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class RotationalHarmonics:
 
 
 @dataclass(frozen=True)
-class ErrorOverPitch:
+class ErrorOverPitch(Brief):
     """Transmission error and mesh stiffness at P roll positions over one base pitch, under L loads, N harmonics.
 
     Parameters

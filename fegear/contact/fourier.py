@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.brief import Brief
 from fegear.base.errors import InputError
 
 #: Ratio of neighbouring distances above which round-off in the nearer value would decide the vertex of a parabola.
@@ -115,7 +116,7 @@ def _gauss(order: int) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, slots=True)
-class FourierSeries:
+class FourierSeries(Brief):
     """Fourier series f(x) = sum_n c_n exp(2 pi i n x / A), f real.
 
     Parameters

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
+from fegear.base.brief import Brief
 from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
@@ -242,8 +243,20 @@ class Largest(NamedTuple):
     place: str
 
 
+def in_a_sentence(teeth: LoadedTeeth) -> str:
+    """What a loaded pair is, and what it is asked: whatever is within it would fill pages."""
+    pair, width = teeth.pair, teeth.pair.driver.face_width
+    others = [load for load in teeth.loads if load != teeth.nominal]
+    under = f"{teeth.nominal:.6g} N" + (f" and {len(others)} more" if others else "")
+    return (
+        f"{type(teeth).__name__}: {pair.driver.teeth} on {pair.driven.teeth} teeth, module "
+        f"{pair.driver.module * 1e3:.6g} mm, face width {width * 1e3:.6g} mm, under {under}. {teeth.about} "
+        "Methods: history(), transmission_error(), root_stress(), losses()."
+    )
+
+
 @dataclass(frozen=True)
-class LoadHistory:
+class LoadHistory(Brief):
     """One tooth pair followed over the path of contact, at P positions under L loads.
 
     Parameters

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from fegear.base.brief import Brief
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.nearest import nearest
 from fegear.case.reading import Scene
@@ -39,7 +40,7 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(Brief):
     """What will be computed, in order, and what not.
 
     Attributes

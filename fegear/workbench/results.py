@@ -89,7 +89,8 @@ class Results(Found):
         return "\n".join([self._headline(), *lines])
 
     def _headline(self) -> str:
-        found = {word: len(getattr(self, word)) for word in ("values", "tables", "figures", "remarks")}
+        found = {word: len(getattr(self, word)) for word in ("values", "tables", "figures")}
+        found["notes"] = len(self.remarks)
         counts = ", ".join(f"{count} {word if count > 1 else word[:-1]}" for word, count in found.items() if count)
         return f"{self.scene.case.title or self.scene.name}: {counts} ({sum(self.seconds.values()):.2g} s)"
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 from written_defaults import Schema, places, without, written
+from written_out import written_out
 
 from fegear.base.errors import FegearError
 from fegear.case.gear import GearPart
@@ -43,7 +44,7 @@ def difference(one, other):
     if plan_content(scene, plan) != plan_content(scene_2, plan_2):
         return "the plan"
     for step, step_2 in zip(plan.steps, plan_2.steps, strict=True):
-        if repr(step.inputs(scene)) != repr(step_2.inputs(scene_2)):
+        if written_out(step.inputs(scene)) != written_out(step_2.inputs(scene_2)):
             return f"what {step.task} reads"
     return ""
 

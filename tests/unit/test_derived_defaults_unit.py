@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from case_laws import columns
 from written_defaults import Schema, without, written
+from written_out import written_out
 
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
@@ -195,7 +196,7 @@ def ran(document):
 
 def numbers(scene, plan):
     """All numbers that stages read, in order; rounded, for a length that is written in text may lose its last digit."""
-    text = " ".join(repr(step.inputs(scene)) for step in plan.steps)
+    text = " ".join(written_out(step.inputs(scene)) for step in plan.steps)
     return [float(one) for one in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[-+]?\d+)?", text)]
 
 

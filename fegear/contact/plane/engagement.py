@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.base.brief import Brief
 from fegear.base.tally import note
 from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.plane.meshing import Contacts, Meshing
@@ -103,7 +104,7 @@ class Loaded:
 
 
 @dataclass(frozen=True)
-class Engagement:
+class Engagement(Brief):
     """A gear pair with its compliances, modifications and spacing errors.
 
     Parameters

@@ -21,6 +21,7 @@ from fegear.contact.loaded_teeth import (
     LoadHistory,
     Neglected,
     RootStressInMesh,
+    in_a_sentence,
     silent,
 )
 from fegear.contact.pair_spec import PairSpec
@@ -76,6 +77,8 @@ class LoadedPair:
     sources: tuple[str, ...]
     neglected: Neglected = field(default_factory=Neglected, compare=False)
     exact: bool = True
+
+    __repr__ = in_a_sentence
 
     @property
     def pair(self) -> GearPair:

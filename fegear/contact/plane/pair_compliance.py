@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.base.brief import Brief
 from fegear.base.errors import InputError
 from fegear.base.tally import tallied
 from fegear.contact.contact_law import LINEAR, ContactLaw
@@ -68,7 +69,7 @@ class PairMatrices:
 
 
 @dataclass(frozen=True)
-class PairCompliance:
+class PairCompliance(Brief):
     """Compliance of a gear pair from the sources of its two gears.
 
     Parameters

@@ -20,6 +20,7 @@ from fegear.contact.loaded_teeth import (
     LoadHistory,
     Neglected,
     RootStressInMesh,
+    in_a_sentence,
     silent,
 )
 from fegear.contact.pair_spec import PairSpec
@@ -98,6 +99,8 @@ class LoadedWidePair:
     beside: float
     missed: float
     neglected: Neglected = field(default_factory=Neglected)
+
+    __repr__ = in_a_sentence
 
     @property
     def pair(self) -> GearPair:
