@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.dynamics.train.increments import dynamic_increments
 
 if TYPE_CHECKING:
@@ -29,8 +30,8 @@ class IncrementPeak:
 
     mesh: int
     source: int
-    frequency: float
-    modulus: float
+    frequency: float = shown("Hz", "frequency of the maximum modulus", name="resonance")
+    modulus: float = shown("", "there")
 
 
 def increment_peaks(train: Train, omega: Array, increments: Complex) -> tuple[IncrementPeak, ...]:

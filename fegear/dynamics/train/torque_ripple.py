@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, Complex
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown
 from fegear.dynamics.train.periodic import Periodic
 
 #: Periods of the fastest gear pair that the common period may take.
@@ -63,7 +64,9 @@ class TorqueRipple:
     phases: tuple[float, ...]
     order: tuple[int, int] | None = None
     frequency: float = 0.0
-    left_out: float = 0.0
+    left_out: float = shown(
+        "N.m", "root mean square torque of the omitted harmonics of the file", name="torque_left_out", default=0.0
+    )
 
     def __post_init__(self) -> None:
         key = f"torque_ripple.{self.name}"

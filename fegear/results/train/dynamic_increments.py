@@ -5,23 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Complex
+from fegear.base.shown import shown, shows
 from fegear.case.reading import Scene
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_train, the_train
 
@@ -44,6 +46,132 @@ class FrequencyInputs:
 
 
 @dataclass(frozen=True)
+class Increment:
+    """Q_ij over frequency with its asymptotes; two meshes that share no body have none at high frequency.
+
+    Parameters
+    ----------
+    first, second : str
+        Mesh whose increment it is, and mesh whose transmission error excites it.
+    role : str
+        Of the second.
+    """
+
+    first: str
+    second: str
+    role: str
+    frequency: Array = shown("Hz", "frequency of the static transmission error")
+    q: Complex = shown()
+    low: Complex | None = shown("", "first power of the frequency (Mark 2.62, 2.65)")
+    high: Complex | None = shown("", "bodies turn as free inertias (2.64, 2.66)")
+
+    @property
+    @shows("", "modulus of the dynamic increment")
+    def modulus(self) -> Array:
+        """|Q|."""
+        return np.abs(self.q)
+
+    @property
+    @shows("", "largest modulus")
+    def largest(self) -> float:
+        """Over the frequencies."""
+        return float(self.modulus.max())
+
+    @property
+    @shows("Hz", "its frequency")
+    def resonance(self) -> float:
+        """[Hz]."""
+        return float(self.frequency[int(np.argmax(self.modulus))])
+
+    @property
+    def top(self) -> float:
+        """Upper end of the ordinate of its parts."""
+        return _ROOM * self.largest or 1.0
+
+    @property
+    def log_limits(self) -> tuple[float, float]:
+        """Ends of the ordinate of its modulus."""
+        least = float(self.modulus[self.modulus > 0.0].min(initial=self.top))
+        return 0.5 * least, 2.0 * self.top
+
+
+@dataclass(frozen=True)
+class OfMesh:
+    """Increments of one mesh."""
+
+    name: str
+    increments: list[Increment]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far one form of an increment is from the elimination."""
+
+    key: str
+    words: str
+    frequency: Array
+    off: Array = shown("", "relative deviation")
+
+    @property
+    @shows("", "maximum over the frequencies")
+    def largest(self) -> float:
+        """Over the frequencies."""
+        return float(self.off.max())
+
+    @property
+    @shows("Hz", "its frequency")
+    def worst(self) -> float:
+        """[Hz]."""
+        return float(self.frequency[int(np.argmax(self.off))])
+
+
+@dataclass(frozen=True)
+class Determinants:
+    """Mark's determinants, the increments that they give, and how far these are from the elimination's.
+
+    Parameters
+    ----------
+    own, cross : str
+        Names of both increments.
+    """
+
+    own: str
+    cross: str
+    differences: tuple[Difference, ...]
+    d: Complex = shown("", "determinant by its polynomial (2.57) [(N m)^3]", name="D")
+    off: Array = shown("", "relative deviation of (2.57) from the elements (2.46c)", name="difference_D")
+    own_numerator: Complex = shown("", "N_1,I + N_2,I (2.55) [N (N m)^2]")
+    cross_numerator: Complex = shown("", "N_1,II + N_2,II (2.56) [N (N m)^2]")
+    own_printed: Complex = shown("", "R N/D - 1 as printed (2.58)")
+    own_ratio: Complex = shown("", "as -D(mesh removed)/D (no cancellation)")
+    cross_printed: Complex = shown("", "R N/D (2.59)")
+    own_eliminated: Complex = shown("", "by elimination")
+    cross_eliminated: Complex = shown("", "by elimination")
+
+    @classmethod
+    def of(cls, rig: FourSquare, own: Increment, cross: Increment) -> Determinants:
+        """Of the rig at the frequencies of its increments."""
+        from fegear.dynamics.train.four_square import relative_difference
+
+        omega = 2.0 * math.pi * own.frequency
+        d, (printed, by_cross), ratio = rig.determinant(omega), rig.as_printed(omega), rig.own_by_ratio(omega)
+        i, j = f"{own.first}_{own.second}", f"{cross.first}_{cross.second}"
+        rows = (
+            (f"printed_{i}", printed, own, "(2.58) as printed"), (i, ratio, own, "the ratio of determinants"),
+            (j, by_cross, cross, "(2.59)"),
+        )  # fmt: skip
+        differences = tuple(
+            Difference(
+                key, f"relative deviation of {what} from the elimination", own.frequency,
+                relative_difference(found, exact.q),
+            )
+            for key, found, exact, what in rows
+        )  # fmt: skip
+        off = relative_difference(d, rig.determinant_of_elements(omega))
+        return cls(i, j, differences, d, off, *rig.numerators(omega), printed, ratio, by_cross, own.q, cross.q)
+
+
+@dataclass(frozen=True)
 class IncrementsData:
     """Q_ij over frequency, shape (meshes, meshes, F), with what each tends to; None for trains of many meshes."""
 
@@ -54,6 +182,36 @@ class IncrementsData:
     high: Complex | None
     peaks: tuple[IncrementPeak, ...] = ()
     rig: FourSquare | None = None
+
+    def _named(self, i: int, j: int) -> Increment:
+        high = None if self.high is None or not np.any(self.high[i, j]) else self.high[i, j]
+        return Increment(
+            self.train.names[i], self.train.names[j], f"series:{j}", self.frequencies, self.increments[i, j],
+            None if self.low is None else self.low[i, j], high,
+        )  # fmt: skip
+
+    @cached_property
+    def meshes(self) -> list[OfMesh]:
+        """Increments of every mesh by the transmission error of every mesh."""
+        names = self.train.names
+        return [OfMesh(name, [self._named(i, j) for j in range(len(names))]) for i, name in enumerate(names)]
+
+    @property
+    def pairs(self) -> list[Increment]:
+        """Of every pair of meshes."""
+        return [one for mesh in self.meshes for one in mesh.increments]
+
+    @property
+    @shows("", "which", name="increment")
+    def peak_names(self) -> NDArray[np.str_]:
+        """Of every peak: with damping they lie off the undamped modes."""
+        names = self.train.names
+        return np.array([f"Q_{names[p.mesh]}_{names[p.source]}" for p in self.peaks])
+
+    @cached_property
+    def determinants(self) -> Determinants | None:
+        """Of Mark's rig."""
+        return None if self.rig is None else Determinants.of(self.rig, self.pairs[0], self.pairs[1])
 
 
 def _compute(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> IncrementsData:
@@ -75,157 +233,130 @@ def _compute(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> Increme
     return IncrementsData(data, asked.frequencies, found, low, high, peaks, rig)
 
 
-def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
-    names, frequencies, found = known.train.names, known.frequencies, known.increments
-    frequency = Column("frequency", frequencies, "Hz", "frequency of the static transmission error")
-    columns, values = [frequency], []
-    for i, first in enumerate(names):
-        for j, second in enumerate(names):
-            q, name = found[i, j], f"Q_{first}_{second}"
-            meaning = f"dynamic increment of mesh {first} per static transmission error of mesh {second}"
-            columns += _parts(name, q, meaning)
-            at = int(np.argmax(np.abs(q)))
-            where = f"modulus, at {frequencies[at]:.6g} Hz"
-            values.append(Value(f"{name}_largest", float(abs(q[at])), "", None, where))
-    tables = [Table("dynamic_increments", tuple(columns), "Dynamic increment functions")]
-    figures = [_overview(known)]
-    if known.low is not None and known.high is not None:
-        tables.append(_asymptotes(frequency, names, found, known.low, known.high))
-        figures += [
-            _figure(known, i, j, known.low[i, j], known.high[i, j])
-            for i in range(len(names))
-            for j in range(len(names))
-        ]
-    if known.peaks:
-        tables.append(_peaks(names, known.peaks))
-    if known.rig is not None:
-        table, more = _determinants(frequency, names, known, known.rig)
-        tables.append(table)
-        values += more
-    return Outcome(known, tuple(tables), tuple(values), figures=tuple(figures))
+#: What is drawn of an increment: its attribute, label, role and dash.
+_DRAWN = (
+    ("q", "increment", "blue", ""), ("low", "low-frequency asymptote", "orange", "dash"),
+    ("high", "high-frequency asymptote", "green", "dashdot"),
+)  # fmt: skip
 
 
-def _peaks(names: tuple[str, ...], peaks: tuple[IncrementPeak, ...]) -> Table:
-    """Resonances as the increments show them: with damping these lie off the undamped modes."""
-    return Table(
-        "dynamic_increments_peaks",
-        (
-            Column("increment", np.array([f"Q_{names[p.mesh]}_{names[p.source]}" for p in peaks]), "", "which"),
-            Column("resonance", np.array([p.frequency for p in peaks]), "Hz", "frequency of the maximum modulus"),
-            Column("modulus", np.array([p.modulus for p in peaks]), "", "there"),
-        ),
-        "Peaks of the dynamic increments",
+def _part(of: Callable[[Complex], Array], y: Callable[[Seen], Axis]) -> Over:
+    """Modulus, real or imaginary part of an increment with its asymptotes."""
+
+    def part(attribute: str) -> Callable[[Seen], Array | None]:
+        def found(seen: Seen) -> Array | None:
+            z = getattr(seen.one, attribute)
+            return None if z is None else of(z)
+
+        return found
+
+    lines = tuple(
+        Line(
+            "q", label, role, x="frequency", si=part(attribute),
+            look={"dash": dash, "markers": False, "width": 1.3 if dash else 2.0},
+        )
+        for attribute, label, role, dash in _DRAWN
+    )  # fmt: skip
+    return Over(Axis("frequency", "Hz", log=True), lines, y)
+
+
+def _whose(seen: Seen) -> str:
+    one: Increment = seen.one
+    whose = "of the same mesh" if one.first == one.second else f"that of mesh {one.second}"
+    return (
+        f"Mesh {one.first}: complex amplitude that the motion of the train adds to its transmission error, per unit "
+        f"static transmission error, {whose}; exp(+i w t). Asymptotes: rigid-body motion at low frequency, free "
+        "inertias at high frequency."
     )
 
 
-def _determinants(
-    frequency: Column, names: tuple[str, ...], known: IncrementsData, rig: FourSquare
-) -> tuple[Table, list[Value]]:
-    """Mark's determinants, the increments that they give, and how far these are from the elimination's."""
-    from fegear.dynamics.train.four_square import relative_difference
-
-    omega, found = 2.0 * math.pi * known.frequencies, known.increments
-    d, (own, cross) = rig.determinant(omega), rig.numerators(omega)
-    (printed, by_cross), ratio = rig.as_printed(omega), rig.own_by_ratio(omega)
-    i, j = f"{names[0]}_{names[0]}", f"{names[0]}_{names[1]}"
-    off = {
-        "D": relative_difference(d, rig.determinant_of_elements(omega)),
-        f"printed_{i}": relative_difference(printed, found[0, 0]),
-        i: relative_difference(ratio, found[0, 0]),
-        j: relative_difference(by_cross, found[0, 1]),
-    }
-    said = {
-        f"printed_{i}": "relative deviation of (2.58) as printed from the elimination",
-        i: "relative deviation of the ratio of determinants from the elimination", j:
-            "relative deviation of (2.59) from the elimination",
-    }  # fmt: skip
-    columns = [
-        frequency,
-        *_parts("D", d, "determinant by its polynomial (2.57) [(N m)^3]"),
-        Column("difference_D", off["D"], "", "relative deviation of (2.57) from the elements (2.46c)"),
-        *_parts(f"N_{i}", own, "N_1,I + N_2,I (2.55) [N (N m)^2]"),
-        *_parts(f"N_{j}", cross, "N_1,II + N_2,II (2.56) [N (N m)^2]"),
-        *_parts(f"Q_{i}_printed", printed, "R N/D - 1 as printed (2.58)"),
-        *_parts(f"Q_{i}_ratio", ratio, "as -D(mesh removed)/D (no cancellation)"),
-        *_parts(f"Q_{j}_printed", by_cross, "R N/D (2.59)"),
-        *_parts(f"Q_{i}", found[0, 0], "by elimination"),
-        *_parts(f"Q_{j}", found[0, 1], "by elimination"),
-        *(Column(f"difference_{key}", off[key], "", words) for key, words in said.items()),
-    ]
-    values = [
-        Value(f"determinants_difference_{key}", float(off[key].max()), "", None,
-              f"maximum over the frequencies, {words}, at {known.frequencies[int(np.argmax(off[key]))]:.6g} Hz")
-        for key, words in said.items()
-    ]  # fmt: skip
-    return Table("dynamic_increments_determinants", tuple(columns), "Determinants of the four-square rig"), values
+def _complex(quantity: str, name: str = "") -> Cell:
+    return Cell(quantity, name=name, parts=True)
 
 
-def _parts(name: str, q: Complex, meaning: str) -> list[Column]:
-    return [Column(f"{name}_re", q.real, "", meaning), Column(f"{name}_im", q.imag, "", meaning)]
-
-
-def _asymptotes(frequency: Column, names: tuple[str, ...], found: Complex, low: Complex, high: Complex) -> Table:
-    """Modulus and both asymptotes for every pair of meshes; two that share no body have none at high frequency."""
-    columns = [frequency]
-    for i, first in enumerate(names):
-        for j, second in enumerate(names):
-            columns.append(
-                Column(f"modulus_{first}_{second}", np.abs(found[i, j]), "", "modulus of the dynamic increment")
-            )
-            columns += _parts(f"low_{first}_{second}", low[i, j], "first power of the frequency (Mark 2.62, 2.65)")
-            if np.any(high[i, j]):
-                columns += _parts(f"high_{first}_{second}", high[i, j], "bodies turn as free inertias (2.64, 2.66)")
-    return Table("dynamic_increments_asymptotes", tuple(columns), "Moduli of the dynamic increments and asymptotes")
-
-
-def _overview(data: IncrementsData) -> Figure:
-    names = data.train.names
-    panels = tuple(
-        Panel(
-            Axis("frequency", "Hz", log=True), Axis(f"|Q| of mesh {first}", log=True),
-            tuple(
-                Curve(data.frequencies, np.abs(data.increments[i, j]), f"error of mesh {second}", f"series:{j}")
-                for j, second in enumerate(names)
+_FREQUENCY = Cell("frequency", of=lambda seen: seen.data.pairs[0])
+_PAIR = "{one.first}_{one.second}"
+_OWN, _CROSS = "{d.determinants.own}", "{d.determinants.cross}"
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    tables=(
+        Rows(
+            "dynamic_increments", "Dynamic increment functions",
+            (
+                _FREQUENCY,
+                Cell(
+                    "q", name=f"Q_{_PAIR}", parts=True, each="pairs",
+                    meaning="dynamic increment of mesh {one.first} per static transmission error of mesh {one.second}",
+                ),
             ),
-        )
-        for i, first in enumerate(names)
-    )  # fmt: skip
-    return Figure(
-        "dynamic_increments", "Dynamic increment functions",
-        "Dynamic increment functions: difference between the force of one mesh (divided by its stiffness) and its "
-        "quasi-static value, for a static transmission error of the same or another mesh.",
-        panels,
-    )  # fmt: skip
-
-
-def _figure(data: IncrementsData, i: int, j: int, low: Complex, high: Complex) -> Figure:
-    """Modulus, real and imaginary part of one increment with its asymptotes."""
-    f, q = data.frequencies, data.increments[i, j]
-    first, second = data.train.names[i], data.train.names[j]
-    drawn = [("increment", q, "blue", ""), ("low-frequency asymptote", low, "orange", "dash")]
-    if np.any(high):
-        drawn.append(("high-frequency asymptote", high, "green", "dashdot"))
-
-    def curves(part: str) -> tuple[Curve, ...]:
-        shown: dict[str, Callable[[Complex], Array]] = {"|Q|": np.abs, "Re Q": np.real, "Im Q": np.imag}
-        rows = [(word, shown[part](z), role, dash) for word, z, role, dash in drawn]
-        return tuple(
-            Curve(f, y, word, role, dash=dash, markers=False, width=2.0 if word == "increment" else 1.3)
-            for word, y, role, dash in rows
-        )  # fmt: skip
-
-    top = _ROOM * float(np.abs(q).max()) or 1.0
-    x, least = Axis("frequency", "Hz", log=True), float(np.abs(q[np.abs(q) > 0.0]).min(initial=top))
-    panels = [Panel(x, Axis("|Q|", log=True, limits=(0.5 * least, 2.0 * top)), curves("|Q|"))]
-    panels += [Panel(x, Axis(part, limits=(-top, top)), curves(part)) for part in ("Re Q", "Im Q")]
-    whose = "of the same mesh" if i == j else f"that of mesh {second}"
-    return Figure(
-        f"dynamic_increment_{first}_{second}", f"Dynamic increment of mesh {first} by the error of mesh {second}",
-        f"Mesh {first}: complex amplitude that the motion of the train adds to its transmission error, per unit "
-        f"static transmission error, {whose}; exp(+i w t). Asymptotes: rigid-body motion at low frequency, free "
-        "inertias at high frequency.",
-        tuple(panels),
-    )  # fmt: skip
+        ),
+        Rows(
+            "dynamic_increments_asymptotes", "Moduli of the dynamic increments and asymptotes",
+            (
+                _FREQUENCY,
+                Each(
+                    "pairs", Cell("modulus", name=f"modulus_{_PAIR}"), _complex("low", f"low_{_PAIR}"),
+                    _complex("high", f"high_{_PAIR}"),
+                ),
+            ),
+            when="low",
+        ),
+        Rows(
+            "dynamic_increments_peaks", "Peaks of the dynamic increments",
+            (Cell("peak_names", of=lambda seen: seen.data), "frequency", "modulus"), of="peaks", when="peaks",
+        ),
+        Rows(
+            "dynamic_increments_determinants", "Determinants of the four-square rig",
+            (
+                _FREQUENCY, _complex("d"), "off",
+                _complex("own_numerator", f"N_{_OWN}"), _complex("cross_numerator", f"N_{_CROSS}"),
+                _complex("own_printed", f"Q_{_OWN}_printed"), _complex("own_ratio", f"Q_{_OWN}_ratio"),
+                _complex("cross_printed", f"Q_{_CROSS}_printed"), _complex("own_eliminated", f"Q_{_OWN}"),
+                _complex("cross_eliminated", f"Q_{_CROSS}"),
+                Cell("off", name="difference_{one.key}", meaning="{one.words}", each="determinants.differences"),
+            ),
+            of="determinants",
+        ),
+    ),
+    values=(
+        Number(
+            "largest", name=f"Q_{_PAIR}_largest", meaning="modulus, at {one.resonance:.6g!} Hz", each="pairs"
+        ),
+        Number(
+            "largest", name="determinants_difference_{one.key}", each="determinants.differences",
+            further=", {one.words}, at {one.worst:.6g!} Hz",
+        ),
+    ),
+    figures=(
+        Chart(
+            "dynamic_increments", "Dynamic increment functions",
+            "Dynamic increment functions: difference between the force of one mesh (divided by its stiffness) and its "
+            "quasi-static value, for a static transmission error of the same or another mesh.",
+            (
+                Over(
+                    Axis("frequency", "Hz", log=True),
+                    (
+                        Line(
+                            "modulus", "error of mesh {one.second}", x="frequency",
+                            each=Family("increments", role="{one.role}", most=ALL),
+                        ),
+                    ),
+                    lambda seen: Axis(f"|Q| of mesh {seen.one.name}", log=True), each="meshes",
+                ),
+            ),
+        ),
+        Chart(
+            f"dynamic_increment_{_PAIR}", "Dynamic increment of mesh {one.first} by the error of mesh {one.second}",
+            _whose,
+            (
+                _part(np.abs, lambda seen: Axis("|Q|", log=True, limits=seen.one.log_limits)),
+                _part(np.real, lambda seen: Axis("Re Q", limits=(-seen.one.top, seen.one.top))),
+                _part(np.imag, lambda seen: Axis("Im Q", limits=(-seen.one.top, seen.one.top))),
+            ),
+            each="pairs", when="low",
+        ),
+    ),
+)  # fmt: skip
 
 
 def _inputs(scene: Scene, _subject: str) -> FrequencyInputs:
@@ -254,7 +385,7 @@ DYNAMIC_INCREMENTS = Stage(
     inputs=_inputs,
     check=_check,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     cites=citing(Citation("mark", "transmission-error dynamic increment functions", "Eqs. 2.57 to 2.66")),
     forecast=_forecast,
 )

@@ -68,6 +68,12 @@ class RippleLines:
         return np.array([self.found.ripple[k].name for k in self.whose], dtype=str)
 
     @property
+    @shows("", "body on which it acts")
+    def body(self) -> NDArray[np.str_]:
+        """Names."""
+        return np.array([self.found.ripple[k].body for k in self.whose], dtype=str)
+
+    @property
     @shows("rpm", "speed")
     def speed(self) -> Array:
         """Of the body that speeds refer to [rad/s]."""
@@ -83,6 +89,12 @@ class RippleLines:
     def torque(self) -> Array:
         """[N m]."""
         return np.repeat(np.abs(self.found.torques), self.found.speeds.size)
+
+    @property
+    @shows("deg", "phase of the torque (cosine) at time zero", name="phase")
+    def torque_phase(self) -> Array:
+        """[rad]."""
+        return np.repeat(np.angle(self.found.torques), self.found.speeds.size)
 
     @property
     def _carried(self) -> Complex:

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, columns_of, drawn
+from fegear.engine.declared import drawn
 from fegear.engine.figure.axis import Axis, Scale
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark, Zone
+from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
-from fegear.engine.table import Table
-from fegear.engine.value import Value
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.train.gear_train import (
     RPM,
@@ -35,6 +36,28 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.single_tooth import MeshForce
     from fegear.dynamics.train.tooth_force import Pull, ToothForce
+    from fegear.engine.sheet.seen import Seen
+
+
+@dataclass(frozen=True)
+class LargestForce:
+    """Largest force on a tooth pair, and where."""
+
+    end: str
+    about: str
+    force: float = shown("N", "maximum force", name="largest_tooth_force")
+    x: float = shown("mm", "position of the tooth pair on the line of action")
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one exciter of the train adds to the force on a tooth pair."""
+
+    name: str
+    label: str
+    role: str
+    increment: Array
+    peak: float | None = shown("N", "over the engagement and all relative phases", name="largest_increment")
 
 
 @dataclass(frozen=True)
@@ -65,6 +88,64 @@ class ToothForceData:
     pull: Pull | None
     together: MeshForce
 
+    @property
+    def alone(self) -> bool:
+        """Whether nothing but this mesh excites the train."""
+        return len(self.train.exciters) == 1
+
+    @property
+    @shows("N", "quasi-static", name="largest_static_tooth_force")
+    def static(self) -> float:
+        """[N]."""
+        return float(self.force.static.max())
+
+    @property
+    def largest(self) -> list[LargestForce]:
+        """With, at any phase of, and without what else excites the train."""
+        force, others = self.force, others_of(self.train)
+        together = "" if self.alone else f"all meshes{rippled(self.train)}, at the phases of the case, "
+        parts = [("", force.with_others, together)]
+        if not self.alone:
+            parts += [
+                ("_any_phase", force.at_worst_phases, f"upper bound over all phases of {others}, "),
+                ("_own_mesh", force.total, f"without {others}, "),
+            ]
+        return [
+            LargestForce(end, about, float(of.max()), float(force.x[int(np.argmax(of))])) for end, of, about in parts
+        ]
+
+    @property
+    def parts(self) -> list[Part]:
+        """Increments by everything that excites the train."""
+        return [
+            Part(
+                name, from_exciter(self.train, j), f"series:{j}",
+                self.force.own if j == self.mesh else self.force.cross[j],
+                None if j == self.mesh else float(self.force.cross_peak[j]),
+            )
+            for j, name in enumerate(self.train.exciters)
+        ]  # fmt: skip
+
+    @property
+    def cross(self) -> list[Part]:
+        """Increments by everything but this mesh."""
+        return [one for one in self.parts if one.peak is not None]
+
+    @property
+    def uneven(self) -> int:
+        """How many tooth pairs differ; 1 if none does."""
+        return self.train.meshes[self.mesh].error.pitches
+
+    @property
+    def letters(self) -> list[Mark | Zone]:
+        """Points of the path of contact."""
+        return list(path_marks(self.train.meshes[self.mesh].pair))
+
+    @property
+    def mean(self) -> Mark:
+        """Mean mesh force."""
+        return Mark("y", float(self.train.forces[self.mesh]))
+
 
 def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> ToothForceData:
     from fegear.dynamics.train.single_tooth import force_history, heaviest_pair, mesh_force, summed_harmonics
@@ -79,56 +160,6 @@ def _compute(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> Too
     return ToothForceData(data, i, force, number, harmonics, pull, together)
 
 
-def _present(made: ToothForceData, asked: Reads[DynamicsPart]) -> Outcome:
-    name, data, i, force = asked.name, made.train, made.mesh, made.force
-    table = Table(
-        f"tooth_force_{name}",
-        (
-            *columns_of(force, "time", "x", "total", "with_others", "static", "own"),
-            *(
-                column_of(force, "cross", force.cross[j], name=f"increment_from_{other}")
-                for j, other in enumerate(data.exciters)
-                if j != i
-            ),
-        ),
-        f"Force on one tooth pair of mesh {name}",
-    )
-    alone = len(data.exciters) == 1
-    others = others_of(data)
-    largest = [("", force.with_others, "" if alone else f"all meshes{rippled(data)}, at the phases of the case, ")]
-    if not alone:
-        largest += [
-            ("_any_phase", force.at_worst_phases, f"upper bound over all phases of {others}, "),
-            ("_own_mesh", force.total, f"without {others}, "),
-        ]
-    values = [
-        *(
-            Value(f"{name}.largest_tooth_force{end}", float(of.max()), "N", None,
-                  f"{meaning}at x = {force.x[int(np.argmax(of))] * 1e3:.5g} mm")
-            for end, of, meaning in largest
-        ),
-        Value(f"{name}.largest_static_tooth_force", float(force.static.max()), "N", None, "quasi-static"),
-        *(
-            Value(f"{name}.largest_increment_from_{other}", float(force.cross_peak[j]), "N", None,
-                  "over the engagement and all relative phases")
-            for j, other in enumerate(data.exciters) if j != i
-        ),
-        *_mesh_force_values(name, made.together, data),
-    ]  # fmt: skip
-    remarks = pull_remarks(made.pull)
-    uneven = data.meshes[i].error.pitches
-    if uneven > 1:
-        sentence = (
-            f"Mesh {name}: with pitch deviations; of {uneven} tooth pairs, number {made.number} with the largest "
-            "static load is shown (number 0 is at the pitch point at phase zero)."
-        )
-        remarks = (*remarks, sentence)
-    settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.part.one_speed}
-    figures = _tooth_force_figure(made, asked.part.one_speed), _mesh_force_figure(made, asked.part.one_speed)
-    tables = table, _mesh_force_table(name, made.together)
-    return Outcome(made, tables, tuple(values), settings, remarks, figures)
-
-
 def others_of(data: GearTrain) -> str:
     """What excites a mesh besides itself, in words."""
     ripple = "torque ripple" if data.ripple else ""
@@ -138,24 +169,6 @@ def others_of(data: GearTrain) -> str:
 def rippled(data: GearTrain) -> str:
     """What follows "all meshes" where torques fluctuate, too."""
     return " and torque ripple" if data.ripple else ""
-
-
-def _mesh_force_values(name: str, found: MeshForce, data: GearTrain) -> tuple[Value, ...]:
-    about = f"sum of the forces on the tooth pairs in contact, all meshes{rippled(data)}, at the phases of the case"
-    return (
-        Value(f"{name}.largest_mesh_force_of_teeth", float(found.of_teeth.max()), "N", None, about),
-        Value(f"{name}.least_mesh_force_of_teeth", float(found.of_teeth.min()), "N", None, about),
-        Value(f"{name}.largest_mesh_force_by_mean_stiffness", float(found.by_mean_stiffness.max()), "N", None,
-              "of the linearised train (spectral lines of the mesh force)"),
-    )  # fmt: skip
-
-
-def _mesh_force_table(name: str, found: MeshForce) -> Table:
-    return Table(
-        f"mesh_force_of_teeth_{name}",
-        columns_of(found, "time", "phase", "of_teeth", "by_mean_stiffness", "pairs"),
-        f"Force in mesh {name} over one base pitch, by its teeth and by its mean stiffness",
-    )
 
 
 def over_time(force: ToothForce) -> Axis:
@@ -172,44 +185,117 @@ def _while(data: ToothForceData) -> str:
     return "while its contact line crosses the plane of action (position of the middle of the line)"
 
 
-def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
-    force, names = data.force, data.train.exciters
-    name, x, marks = names[data.mesh], drawn(force, "x"), path_marks(data.train.meshes[data.mesh].pair)
-    top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
-    if len(names) > 1:
-        top.append(Curve(x, force.with_others, f"with {others_of(data.train)}", "with other meshes"))
-    parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
-    below = [Curve(x, part, from_exciter(data.train, j), f"series:{j}") for j, part in parts.items()]
-    mean = Mark("y", float(data.train.forces[data.mesh]))
-    return Figure(
-        f"tooth_force_{name}",
-        f"Force on one tooth pair of mesh {name}",
-        f"Mesh {name}: force on one tooth pair {_while(data)}; horizontal line: mean mesh force. Below: dynamic "
-        f"increment by {what_excites(data.train)}.",
-        (
-            Panel(over_time(force), axis_of(force, "total", zero=True), tuple(top), (*marks, mean), height=1.2),
-            Panel(LINE_OF_ACTION, axis_of(force, "own"), tuple(below), marks, height=0.8),
+def _whole_mesh(seen: Seen) -> str:
+    return (
+        f"sum of the forces on the tooth pairs in contact, all meshes{rippled(seen.data.train)}, at the phases of the "
+        "case"
+    )
+
+
+def _under(seen: Seen) -> str:
+    return f"{seen.asked.part.one_speed * RPM:.6g} rpm"
+
+
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "tooth_force_{name}", "Force on one tooth pair of mesh {name}",
+            (
+                "time", "x", "total", "with_others", "static", "own",
+                Cell(
+                    "cross", "increment", lambda seen: seen.data.force, "increment_from_{one.name}",
+                    each=lambda seen: seen.data.cross,
+                ),
+            ),
+            of="force",
         ),
-        under=f"{speed * RPM:.6g} rpm",
-    )
-
-
-def _mesh_force_figure(data: ToothForceData, speed: float) -> Figure:
-    found, name = data.together, data.train.names[data.mesh]
-    curves = (
-        Curve(found.phase, found.by_mean_stiffness, "by the mean stiffness", "static", dash="dash", markers=False),
-        Curve(found.phase, found.of_teeth, "sum of the teeth", "own force", markers=False),
-    )
-    mean = Mark("y", float(data.train.forces[data.mesh]))
-    return Figure(
-        f"mesh_force_of_teeth_{name}",
-        f"Force in mesh {name} over one base pitch",
-        f"Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
-        "Both use the same dynamic transmission error; the tooth forces use the instantaneous stiffness, the mesh "
-        "force the mean stiffness. Horizontal line: mean force.",
-        (Panel(Axis("phase", "base pitches"), axis_of(found, "of_teeth", zero=True), curves, (mean,)),),
-        under=f"{speed * RPM:.6g} rpm",
-    )
+        Rows(
+            "mesh_force_of_teeth_{name}",
+            "Force in mesh {name} over one base pitch, by its teeth and by its mean stiffness",
+            ("time", "phase", "of_teeth", "by_mean_stiffness", "pairs"), of="together",
+        ),
+    ),
+    values=(
+        Number(
+            "force", name="largest_tooth_force{one.end}", meaning="{one.about}at x = {one.x:.5g}", each="largest"
+        ),
+        "static",
+        Number("peak", name="largest_increment_from_{one.name}", each="cross"),
+        Number(
+            "of_teeth", of="together", si=lambda seen: seen.data.together.of_teeth.max(),
+            name="largest_mesh_force_of_teeth", meaning=_whole_mesh,
+        ),
+        Number(
+            "of_teeth", of="together", si=lambda seen: seen.data.together.of_teeth.min(),
+            name="least_mesh_force_of_teeth", meaning=_whole_mesh,
+        ),
+        Number(
+            "by_mean_stiffness", of="together", si=lambda seen: seen.data.together.by_mean_stiffness.max(),
+            name="largest_mesh_force_by_mean_stiffness",
+            meaning="of the linearised train (spectral lines of the mesh force)",
+        ),
+    ),
+    figures=(
+        Chart(
+            "tooth_force_{name}", "Force on one tooth pair of mesh {name}",
+            lambda seen: f"Mesh {seen.name}: force on one tooth pair {_while(seen.data)}; horizontal line: mean mesh "
+            f"force. Below: dynamic increment by {what_excites(seen.data.train)}.",
+            (
+                Over(
+                    lambda seen: over_time(seen.data.force),
+                    (
+                        Line("static", "static", "static"), Line("total", "static and own increment", "own force"),
+                        Line(
+                            "with_others", lambda seen: f"with {others_of(seen.data.train)}", "with other meshes",
+                            when=lambda seen: not seen.data.alone,
+                        ),
+                    ),
+                    "total", lambda seen: (*seen.data.letters, seen.data.mean), {"zero": True}, panel={"height": 1.2},
+                ),
+                Over(
+                    LINE_OF_ACTION,
+                    (
+                        Line(
+                            "own", si="increment", of=lambda seen: seen.data.force,
+                            each=Family("parts", "{one.label}", "{one.role}", most=ALL),
+                        ),
+                    ),
+                    "own", "letters", panel={"height": 0.8},
+                ),
+            ),
+            of="force", under=_under,
+        ),
+        Chart(
+            "mesh_force_of_teeth_{name}", "Force in mesh {name} over one base pitch",
+            "Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
+            "Both use the same dynamic transmission error; the tooth forces use the instantaneous stiffness, the mesh "
+            "force the mean stiffness. Horizontal line: mean force.",
+            (
+                Over(
+                    Axis("phase", "base pitches"),
+                    (
+                        Line(
+                            "by_mean_stiffness", "by the mean stiffness", "static", x="phase",
+                            look={"dash": "dash", "markers": False},
+                        ),
+                        Line("of_teeth", "sum of the teeth", "own force", x="phase", look={"markers": False}),
+                    ),
+                    "of_teeth", lambda seen: [seen.data.mean], {"zero": True},
+                ),
+            ),
+            of="together", under=_under,
+        ),
+    ),
+    remarks=(
+        lambda seen: pull_remarks(seen.data.pull),
+        Remark(
+            "Mesh {name}: with pitch deviations; of {d.uneven} tooth pairs, number {d.number} with the largest static "
+            "load is shown (number 0 is at the pitch point at phase zero).",
+            when=lambda seen: seen.data.uneven > 1,
+        ),
+    ),
+    settings={"harmonics": "harmonics", "speed": lambda seen: seen.asked.part.one_speed},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
@@ -224,7 +310,7 @@ TOOTH_FORCE = Stage(
     needs=needs_train,
     inputs=Reads.of(lambda scene: scene.case.dynamics),
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=needs_one_speed,
     cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.36")),
     forecast=_forecast,

@@ -7,29 +7,37 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base import effects
+from fegear.base.arrays import Array, Complex
+from fegear.base.shown import shown, shows
 from fegear.case.built.train import TrainInputs, train_inputs
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Mark, Points
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import itself
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, the_train
+from fegear.results.train.ripple_spectrum import RippleLines
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Complex
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
     from fegear.case.reading import Scene
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.torque_response import RippleSpectrum, TorqueResponse
+    from fegear.engine.sheet.seen import Seen
 
 #: Share of a ripple beyond which what a file's harmonics leave out is noted.
 _LEFT_OUT = 0.01
@@ -56,6 +64,133 @@ class TorqueRippleInputs:
 
 
 @dataclass(frozen=True)
+class MeshSwing:
+    """What torque ripple adds to the force in a mesh, ripples at their worst phases."""
+
+    name: str
+    mean: float
+    low: float
+    worst: str
+    high: float = shown("N", "maximum dynamic increment", name="force_by_torque_ripple")
+
+    @property
+    @shows("", "this maximum / mean force", name="share_of_mean_force")
+    def share(self) -> float | None:
+        """None without a mean force."""
+        return self.high / self.mean if self.mean > 0.0 else None
+
+    @property
+    @shows("N", "by which the mean force is reduced")
+    def reduction(self) -> float:
+        """[N]."""
+        return -self.low
+
+    @property
+    def lost(self) -> bool:
+        """Whether teeth lose contact."""
+        return 0.0 < self.mean < -self.low
+
+
+@dataclass(frozen=True)
+class ShaftSwing:
+    """What torque ripple adds to the torque in a shaft."""
+
+    name: str
+    torque: float = shown("N.m", "maximum dynamic increment", name="torque_by_torque_ripple")
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What a mesh (force) or a shaft (torque) carries per torque at a body, complex amplitudes over frequency."""
+
+    name: str
+    role: str
+    meaning: str
+    frequency: Array = shown("Hz", "frequency")
+    force: Complex | None = shown("N/(N.m)", "force per torque")
+    torque: Complex | None = shown("", "torque per torque")
+
+
+@dataclass(frozen=True)
+class DrawnPoints:
+    """Lines of one torque ripple in the response of a mesh."""
+
+    role: str
+    notes: tuple[str, ...]
+    frequency: Array = shown("Hz", "frequency")
+    force: Array = shown("N/(N.m)", "force per torque")
+
+
+@dataclass(frozen=True)
+class BodyResponse:
+    """Response over frequency to torque at one body, with the lines that act there."""
+
+    made: TorqueRippleData
+    body: str
+    found: TorqueResponse
+
+    @property
+    @shows("Hz", "frequency of the torque")
+    def frequency(self) -> Array:
+        """[Hz]."""
+        return self.made.frequencies
+
+    @property
+    def meshes(self) -> list[Carried]:
+        """Forces in the meshes."""
+        return [
+            Carried(name, f"series:{m}", f"force in mesh {name} per torque at {self.body}", self.frequency, force, None)
+            for m, (name, force) in enumerate(zip(self.made.train.names, self.found.forces, strict=True))
+        ]
+
+    @property
+    def shafts(self) -> list[Carried]:
+        """Torques in the shafts."""
+        return [
+            Carried(
+                one.name, f"series:{s}", f"torque in shaft {one.name}, from {one.a} to {one.b}, per torque at "
+                f"{self.body}", self.frequency, None, torque,
+            )
+            for s, (one, torque) in enumerate(zip(self.made.train.train.elastic_shafts, self.found.shafts, strict=True))
+        ]  # fmt: skip
+
+    @property
+    def _inside(self) -> dict[int, NDArray[np.intp]]:
+        """Lines within the frequencies, by the number of the ripple that acts on the body; only where there are any."""
+        lines, low, high = self.made.lines, self.frequency[0], self.frequency[-1]
+        if lines is None:
+            return {}
+        at, found = lines.frequencies[:, 0], {}
+        for k, one in enumerate(lines.ripple):
+            inside = np.flatnonzero((np.array(lines.of) == k) & (at >= low) & (at <= high))
+            if one.body == self.body and inside.size:
+                found[k] = inside
+        return found
+
+    @property
+    def marks(self) -> list[Mark]:
+        """The first line of each ripple."""
+        lines = self.made.lines
+        return [] if lines is None else [
+            Mark("x", float(lines.frequencies[inside[0], 0]), f"torque ripple {lines.ripple[k].name}")
+            for k, inside in self._inside.items()
+        ]  # fmt: skip
+
+    @property
+    def points(self) -> list[DrawnPoints]:
+        """Lines in every mesh, ripple by ripple."""
+        lines, drawn = self.made.lines, []
+        if lines is None:
+            return []
+        for inside in self._inside.values():
+            at = lines.frequencies[inside, 0]
+            for m, force in enumerate(lines.forces[:, inside, 0]):
+                notes = tuple(f"{f:.5g} Hz: {w:.4g} N" for f, w in zip(at, np.abs(force), strict=True))
+                drawn.append(DrawnPoints(f"series:{m}", notes, at, np.abs(force / lines.torques[inside])))
+        return drawn
+
+
+@dataclass(frozen=True)
 class TorqueRippleData:
     """Response per unit of torque over frequency, by the body that it acts on, and the lines at the speed, if any."""
 
@@ -64,6 +199,46 @@ class TorqueRippleData:
     responses: dict[str, TorqueResponse]
     lines: RippleSpectrum | None
     swings: tuple[tuple[float, float], ...]
+
+    @cached_property
+    def of_lines(self) -> RippleLines | None:
+        """Its lines in rows."""
+        return None if self.lines is None else RippleLines(self.lines, self.train, 0)
+
+    @property
+    def forces(self) -> dict[str, Array]:
+        """Force amplitudes in the meshes [N]."""
+        sizes = () if self.lines is None else np.abs(self.lines.forces[:, :, 0])
+        return dict(zip(self.train.names, sizes, strict=False))
+
+    @property
+    def torques(self) -> dict[str, Array]:
+        """Torque amplitudes in the shafts [N m]."""
+        sizes = () if self.lines is None else np.abs(self.lines.shafts[:, :, 0])
+        return {shaft.name: size for shaft, size in zip(self.train.train.elastic_shafts, sizes, strict=False)}
+
+    @property
+    def mesh_swings(self) -> list[MeshSwing]:
+        """Of every mesh."""
+        worst = " with ripples at their worst phases" if len(self.train.ripple) > 1 else ""
+        return [
+            MeshSwing(name, float(mean), low, worst, high)
+            for name, mean, (low, high) in zip(self.train.names, self.train.forces, self.swings, strict=False)
+        ]
+
+    @property
+    def shaft_swings(self) -> list[ShaftSwing]:
+        """Of every elastic shaft."""
+        swings = self.swings[len(self.train.names) :]
+        return [
+            ShaftSwing(shaft.name, max(high, -low))
+            for shaft, (low, high) in zip(self.train.train.elastic_shafts, swings, strict=False)
+        ]
+
+    @property
+    def bodies(self) -> dict[str, BodyResponse]:
+        """Responses to torque at every body."""
+        return {body: BodyResponse(self, body, found) for body, found in self.responses.items()}
 
 
 def _inputs(scene: Scene, _subject: str) -> TorqueRippleInputs:
@@ -92,36 +267,6 @@ def _swing(lines: RippleSpectrum, carried: Complex) -> tuple[float, float]:
     return sum(low for low, _ in found), sum(high for _, high in found)
 
 
-def _present(made: TorqueRippleData, asked: TorqueRippleInputs) -> Outcome:
-    data, lines = made.train, made.lines
-    remarks = _file_remarks(asked.train)
-    if lines is None:
-        return Outcome(made, remarks=(*remarks, "Torque ripple: all amplitudes are zero."))
-    values = []
-    for name, mean, (low, high) in zip(data.names, data.forces, made.swings, strict=False):
-        worst = " with ripples at their worst phases" if len(data.ripple) > 1 else ""
-        values.append(Value(f"{name}.force_by_torque_ripple", high, "N", None, f"maximum dynamic increment{worst}"))
-        if mean > 0.0:
-            values.append(
-                Value(f"{name}.share_of_mean_force", high / float(mean), "", None, "this maximum / mean force")
-            )
-        if 0.0 < mean < -low:
-            remarks.append(
-                f"Mesh {name}: torque ripple reduces the mean force of {mean:.4g} N by {-low:.4g} N: loss of contact "
-                "(not modelled here). Request dynamic-factor with effects.contact_loss = true."
-            )
-    shafts = data.train.elastic_shafts
-    for shaft, (low, high) in zip(shafts, made.swings[len(data.names) :], strict=True):
-        largest = max(high, -low)
-        values.append(Value(f"{shaft.name}.torque_by_torque_ripple", largest, "N.m", None, "maximum dynamic increment"))
-    for one in data.ripple:
-        if one.left_out > 0.0:
-            meaning = "root mean square torque of the omitted harmonics of the file"
-            values.append(Value(f"{one.name}.torque_left_out", one.left_out, "N.m", None, meaning))
-    tables = _lines_table(lines, data), *_response_tables(made)
-    return Outcome(made, tables, tuple(values), {"speed": asked.speed}, tuple(remarks), _figures(made, asked.speed))
-
-
 def _file_remarks(asked: TrainInputs) -> list[str]:
     """Mean torques of files that were left out, and harmonics that were where they are more than a little."""
     said = []
@@ -142,87 +287,98 @@ def _file_remarks(asked: TrainInputs) -> list[str]:
     return said
 
 
-def _lines_table(lines: RippleSpectrum, data: GearTrain) -> Table:
-    names = [lines.ripple[k].name for k in lines.of]
-    bodies = [lines.ripple[k].body for k in lines.of]
-    columns = [
-        Column("ripple", np.array(names, dtype=str), "", "name"),
-        Column("body", np.array(bodies, dtype=str), "", "body on which it acts"),
-        column_of(lines, "harmonics"),
-        column_of(lines, "frequencies", lines.frequencies[:, 0]),
-        Column("torque", np.abs(lines.torques), "N.m", "0-peak"),
-        Column("phase", np.angle(lines.torques), "deg", "phase of the torque (cosine) at time zero"),
-    ]
-    for m, name in enumerate(data.names):
-        columns.append(Column(f"force_{name}", np.abs(lines.forces[m, :, 0]), "N", f"force amplitude in mesh {name}"))
-    for s, shaft in enumerate(data.train.elastic_shafts):
-        size = np.abs(lines.shafts[s, :, 0])
-        columns.append(Column(f"torque_{shaft.name}", size, "N.m", f"torque amplitude in shaft {shaft.name}"))
-    return Table("torque_ripple", tuple(columns), "Torque ripple lines and resulting mesh forces and shaft torques")
+def _size(attribute: str) -> Callable[[Seen], Array]:
+    """Modulus of a complex amplitude."""
+    return lambda seen: np.abs(getattr(seen.one, attribute))
 
 
-def _response_tables(made: TorqueRippleData) -> list[Table]:
-    tables = []
-    for body, found in made.responses.items():
-        columns = [Column("frequency", made.frequencies, "Hz", "frequency of the torque")]
-        for name, force in zip(made.train.names, found.forces, strict=True):
-            columns += _parts(f"force_{name}", force, "N/(N.m)", f"force in mesh {name} per torque at {body}")
-        for shaft, torque in zip(made.train.train.elastic_shafts, found.shafts, strict=True):
-            meaning = f"torque in shaft {shaft.name}, from {shaft.a} to {shaft.b}, per torque at {body}"
-            columns += _parts(f"torque_{shaft.name}", torque, "", meaning)
-        title = f"Response of meshes and shafts to torque at body {body}"
-        tables.append(Table(f"torque_response_{body}", tuple(columns), title))
-    return tables
-
-
-def _parts(name: str, z: Complex, unit: str, meaning: str) -> list[Column]:
-    return [Column(f"{name}_re", z.real, unit, meaning), Column(f"{name}_im", z.imag, unit, meaning)]
-
-
-def _figures(made: TorqueRippleData, speed: float) -> tuple[Figure, ...]:
-    return tuple(_figure(made, body, speed) for body in made.responses)
-
-
-def _figure(made: TorqueRippleData, body: str, speed: float) -> Figure:
-    """Response over frequency to torque at one body, with the lines that act there."""
-    data, found, lines = made.train, made.responses[body], made.lines
-    frequency = Axis("frequency", "Hz", log=True)
-    on_body = [k for k, one in enumerate(data.ripple) if one.body == body]
-    marks: list[Mark] = []
-    points: list[Points] = []
-    if lines is not None:
-        low, high = float(made.frequencies[0]), float(made.frequencies[-1])
-        for k in on_body:
-            own = np.array(lines.of) == k
-            at = lines.frequencies[own, 0]
-            inside = (at >= low) & (at <= high)
-            label = f"torque ripple {data.ripple[k].name}"
-            if inside.any():
-                marks.append(Mark("x", float(at[inside][0]), label))
-            for m in range(len(data.names)):
-                per_torque = np.abs(lines.forces[m, own, 0] / lines.torques[own])
-                size = np.abs(lines.forces[m, own, 0])[inside]
-                notes = tuple(f"{f:.5g} Hz: {w:.4g} N" for f, w in zip(at[inside], size, strict=True))
-                if inside.any():
-                    points.append(Points(at[inside], per_torque[inside], "", f"series:{m}", notes=notes, size=7))
-    curves = [
-        Curve(made.frequencies, np.abs(force), f"mesh {name}", f"series:{m}", markers=False)
-        for m, (name, force) in enumerate(zip(data.names, found.forces, strict=True))
-    ]
-    panels = [Panel(frequency, Axis("force per torque", "N/(N.m)", log=True), (*curves, *points), tuple(marks))]
-    shafts = data.train.elastic_shafts
-    if shafts:
-        drawn = tuple(
-            Curve(made.frequencies, np.abs(torque), f"shaft {shaft.name}", f"series:{s}", markers=False)
-            for s, (shaft, torque) in enumerate(zip(shafts, found.shafts, strict=True))
-        )
-        panels.append(Panel(frequency, Axis("torque per torque", log=True), drawn, tuple(marks)))
-    return Figure(
-        f"torque_response_{body}", f"Response to torque at body {body}",
-        f"Amplitudes of mesh forces and shaft torques per amplitude of a torque at body {body}, mean mesh stiffness. "
-        f"Points: lines of its torque ripple at {speed * RPM:.6g} rpm of {data.speed_of}.",
-        tuple(panels), under=f"{speed * RPM:.6g} rpm",
-    )  # fmt: skip
+_CURVE = {"markers": False}
+_FREQUENCY = Axis("frequency", "Hz", log=True)
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    tables=(
+        Rows(
+            "torque_ripple", "Torque ripple lines and resulting mesh forces and shaft torques",
+            (
+                Cell("ripple", meaning="name"), "body", "found.harmonics",
+                Cell("found.frequencies", "of_lines.frequency"),
+                "torque", "torque_phase",
+                Cell(
+                    "forces", itself, lambda seen: seen.data.lines, "force_{key}", "force amplitude in mesh {key}",
+                    each=lambda seen: seen.data.forces,
+                ),
+                Cell(
+                    "shafts", itself, lambda seen: seen.data.lines, "torque_{key}", "torque amplitude in shaft {key}",
+                    each=lambda seen: seen.data.torques,
+                ),
+            ),
+            of="of_lines",
+        ),
+        Rows(
+            "torque_response_{key}", "Response of meshes and shafts to torque at body {key}",
+            (
+                "frequency",
+                Cell("force", name="force_{one.name}", meaning="{one.meaning}", each="meshes", parts=True),
+                Cell("torque", name="torque_{one.name}", meaning="{one.meaning}", each="shafts", parts=True),
+            ),
+            each="bodies",
+        ),
+    ),
+    values=(
+        Each(
+            "mesh_swings", Number("high", owner="{one.name}", further="{one.worst}"),
+            Number("share", owner="{one.name}"),
+        ),
+        Number("torque", owner="{one.name}", each="shaft_swings"),
+        Number("left_out", owner="{one.name}", each="train.ripple", when="left_out"),
+    ),
+    figures=(
+        Chart(
+            "torque_response_{key}", "Response to torque at body {key}",
+            lambda seen: f"Amplitudes of mesh forces and shaft torques per amplitude of a torque at body {seen.key}, "
+            f"mean mesh stiffness. Points: lines of its torque ripple at {seen.asked.speed * RPM:.6g} rpm of "
+            f"{seen.data.train.speed_of}.",
+            (
+                Over(
+                    _FREQUENCY,
+                    (
+                        Line(
+                            "force", "mesh {one.name}", x="frequency", si=_size("force"), look=_CURVE,
+                            each=Family("meshes", role="{one.role}", most=ALL),
+                        ),
+                        Line(
+                            "force", x="frequency", kind="points",
+                            each=Family("points", "", "{one.role}", most=ALL),
+                            look=lambda seen: {"notes": seen.one.notes, "size": 7},
+                        ),
+                    ),
+                    Axis("force per torque", "N/(N.m)", log=True), "marks",
+                ),
+                Over(
+                    _FREQUENCY,
+                    (
+                        Line(
+                            "torque", "shaft {one.name}", x="frequency", si=_size("torque"), look=_CURVE,
+                            each=Family("shafts", role="{one.role}", most=ALL),
+                        ),
+                    ),
+                    Axis("torque per torque", log=True), "marks", when="shafts",
+                ),
+            ),
+            each="bodies", under=lambda seen: f"{seen.asked.speed * RPM:.6g} rpm",
+        ),
+    ),
+    remarks=(
+        lambda seen: _file_remarks(seen.asked.train),
+        Remark("Torque ripple: all amplitudes are zero.", when=lambda seen: seen.data.lines is None),
+        Remark(
+            "Mesh {one.name}: torque ripple reduces the mean force of {one.mean:.4g} N by {one.reduction:.4g}: loss of "
+            "contact (not modelled here). Request dynamic-factor with effects.contact_loss = true.",
+            each="mesh_swings", when="lost",
+        ),
+    ),
+    settings={"speed": lambda seen: None if seen.data.lines is None else seen.asked.speed},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
@@ -237,7 +393,7 @@ TORQUE_RIPPLE = Stage(
     needs=needs_train,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=needs_one_speed,
     requires=(Need(effects.TORQUE_RIPPLE.name, "the torques of train.torque_ripple are its load"),),
     cites=citing(Citation("mark", "gear train of rotors, shafts and meshes, excited by a torque", "section 2")),
