@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
 from fegear.case.built.members import gear_name
 from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.case.built.train import train_part
@@ -14,17 +17,15 @@ from fegear.case.reading import Scene
 from fegear.dynamics.train.single_tooth import ToothRootStress
 from fegear.dynamics.train.tooth_force import ToothForce
 from fegear.engine.citation import Citation
-from fegear.engine.declared import axis_of, column_of, columns_of, drawn
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.declared import axis_of
+from fegear.engine.sheet.chart import ALL, Bundle, Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.engine.table import Table
-from fegear.engine.value import Value
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
-from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import solution_of
 from fegear.results.pair.root_stress_data import ending, told
 from fegear.results.pair.root_stress_history import (
@@ -116,75 +117,188 @@ def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> Dynami
     return DynamicRootStress(data, stress, notes)
 
 
-def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
-    name, force, tables, values = asked.mesh, made.force.force, [], []
-    for member, found in made.stress.items():
-        gear = asked.gears[member]
-        columns = list(columns_of(force, "time", "x"))
-        for k, (source, s) in enumerate(found.items()):
-            end, by = ending(asked.sources, k), told(source)
-            known = not np.isnan(s.error).any()
-            columns += [
-                column_of(
-                    s,
-                    "total",
-                    name=f"stress{end}",
-                    meaning=f"maximum root stress (tension side) by {by}, excited by all meshes",
-                ),
-                column_of(s, "own", name=f"stress_own_mesh{end}"),
-                column_of(s, "static", name=f"static_stress{end}"),
-            ]
-            if known:
-                left = f"estimated error of {by} in stress_own_mesh{end}"
-                columns.append(column_of(s, "error", name=f"stress_error{end}", meaning=left))
-            alone = len(made.force.train.exciters) == 1
-            others, more = others_of(made.force.train), rippled(made.force.train)
-            largest = [("", s.total, "" if alone else f"all meshes{more}, at the phases of the case, ")]
-            if not alone:
-                largest += [
-                    ("_any_phase", s.any_phase, f"upper bound over all phases of {others}, "),
-                    ("_own_mesh", s.own, f"without {others}, "),
+@dataclass(frozen=True)
+class LargestTension:
+    """Largest root tension of a gear by one source, and where the contact is."""
+
+    member: Member
+    end: str
+    meaning: str
+    error: float | None
+    x: float = shown("mm", "position of the contact on the line of action")
+    tension: float = shown("MPa", "maximum root stress (tension side)", name="largest_dynamic_root_tension")
+
+
+@dataclass(frozen=True)
+class SourceStress:
+    """Root stress of one gear by one source.
+
+    Parameters
+    ----------
+    end, by : str
+        Of names, and in words.
+    about : str
+        What follows a label where there are several sources.
+    with_others : bool
+        Whether the increments of other exciters are drawn.
+    """
+
+    found: ToothRootStress
+    force: ToothForce
+    end: str
+    by: str
+    about: str
+    role: str
+    first: bool
+    with_others: bool
+
+    @property
+    @shows("mm", "position of the tooth pair on the line of action")
+    def x(self) -> Array:
+        """[m]."""
+        return self.force.x
+
+    @property
+    def error(self) -> Array | None:
+        """Where the source knows it [Pa]."""
+        return None if np.isnan(self.found.error).any() else self.found.error
+
+    def tension(self, member: Member, gear: str, end: str, about: str, of: Array) -> LargestTension:
+        """Largest of one sum of its parts."""
+        at = int(np.argmax(np.where(np.isnan(of), -np.inf, of)))
+        error = None if self.error is None else float(self.error[at] * of[at] / self.found.own[at])
+        meaning = f"gear {gear}, {self.by}, {about}contact"
+        return LargestTension(member, f"{end}{self.end}", meaning, error, float(self.x[at]), float(np.fmax.reduce(of)))
+
+
+@dataclass(frozen=True)
+class MemberStress:
+    """Root stress of one gear."""
+
+    member: Member
+    gear: str
+    label: str
+    sources: list[SourceStress]
+
+
+@dataclass(frozen=True)
+class ShownRootStress:
+    """Root stress of both gears as it is tabulated and drawn."""
+
+    made: DynamicRootStress
+    asked: DynamicRootInputs
+
+    @property
+    def force(self) -> ToothForce:
+        """On the tooth pair."""
+        return self.made.force.force
+
+    @cached_property
+    def members(self) -> list[MemberStress]:
+        """Both gears."""
+        return [
+            MemberStress(member, self.asked.gears[member], self.asked.labels[member], self._sources(found))
+            for member, found in self.made.stress.items()
+        ]
+
+    def _sources(self, found: Mapping[str, ToothRootStress]) -> list[SourceStress]:
+        return [
+            SourceStress(
+                stress, self.force, ending(self.asked.sources, k), told(source),
+                f", {told(source)}" if len(found) > 1 else "", f"series:{k}", k == 0,
+                k == 0 and not self.made.force.alone,
+            )
+            for k, (source, stress) in enumerate(found.items())
+        ]  # fmt: skip
+
+    @property
+    def largest(self) -> list[LargestTension]:
+        """Of both gears by every source: with, at any phase of, and without what else excites the train."""
+        train, found = self.made.force.train, []
+        others = others_of(train)
+        for member in self.members:
+            for source in member.sources:
+                s, words = source.found, (member.member, member.gear)
+                if self.made.force.alone:
+                    found.append(source.tension(*words, "", "", s.total))
+                    continue
+                found += [
+                    source.tension(*words, "", f"all meshes{rippled(train)}, at the phases of the case, ", s.total),
+                    source.tension(*words, "_any_phase", f"upper bound over all phases of {others}, ", s.any_phase),
+                    source.tension(*words, "_own_mesh", f"without {others}, ", s.own),
                 ]
-            values += [
-                Value(f"{name}.{member}.largest_dynamic_root_tension{which}{end}", float(np.fmax.reduce(of)), "MPa",
-                      float(s.error[at] * of[at] / s.own[at]) if known else None,
-                      f"gear {gear}, {by}, {meaning}contact at x = {force.x[at] * 1e3:.5g} mm")
-                for which, of, meaning in largest for at in (int(np.argmax(np.where(np.isnan(of), -np.inf, of))),)
-            ]  # fmt: skip
-        title = f"Dynamic root stress of gear {gear} as {member}, mesh {name}"
-        tables.append(Table(f"root_stress_history_{name}_{asked.labels[member]}", tuple(columns), title))
-    notes = {asked.gears[member]: found for member, found in made.notes.items()}
-    remarks = formula_remarks(asked.pair, notes, coupled=asked.coupled)
-    settings: dict[str, object] = {"root_stress": list(asked.sources)}
-    return Outcome(made, tuple(tables), tuple(values), settings, remarks, (_figure(made, asked),))
+        return found
 
 
-def _figure(data: DynamicRootStress, asked: DynamicRootInputs) -> Figure:
-    force, train = data.force.force, data.force.train
-    name, x, panels = asked.mesh, drawn(force, "x"), []
-    others = len(train.exciters) > 1
-    for member, found in data.stress.items():
-        curves = []
-        for k, (source, s) in enumerate(found.items()):
-            by = f", {told(source)}" if len(found) > 1 else ""
-            curves.append(Curve(x, drawn(s, "own"), f"static and own increment{by}", f"series:{k}"))
-            if k == 0:
-                if others:
-                    total = Curve(x, drawn(s, "total"), f"with {others_of(train)}{by}", "with other meshes", width=1.2)
-                    curves.append(total)
-                curves.append(Curve(x, drawn(s, "static"), f"quasi-static{by}", "static"))
-        marks = path_marks(train.meshes[data.force.mesh].pair)
-        stress = axis_of(ToothRootStress, "total", zero=True)
-        title = f"Gear {asked.gears[member]} as {member}"
-        panels.append(Panel(over_time(force), stress, tuple(curves), marks, title))
-    return Figure(
-        f"dynamic_root_stress_{name}",
-        f"Dynamic root stress of mesh {name}",
-        f"Mesh {name}: root stress of one tooth of each gear over the engagement, with and without vibration. A to "
-        "E: points of the path of contact.",
-        tuple(panels),
-        under=f"{asked.speed * RPM:.6g} rpm",
-    )
+_SHEET = Sheet(
+    name=lambda asked: str(asked.mesh),
+    of=ShownRootStress,
+    tables=(
+        Rows(
+            "root_stress_history_{name}_{one.label}",
+            "Dynamic root stress of gear {one.gear} as {one.member}, mesh {name}",
+            (
+                Cell("time", of=lambda seen: seen.data.force), Cell("x", of=lambda seen: seen.data.force),
+                Each(
+                    "sources",
+                    Cell(
+                        "found.total", name="stress{one.end}",
+                        meaning="maximum root stress (tension side) by {one.by}, excited by all meshes",
+                    ),
+                    Cell("found.own", name="stress_own_mesh{one.end}"),
+                    Cell("found.static", name="static_stress{one.end}"),
+                    Cell(
+                        "found.error", "error", name="stress_error{one.end}",
+                        meaning="estimated error of {one.by} in stress_own_mesh{one.end}",
+                    ),
+                ),
+            ),
+            each="members",
+        ),
+    ),
+    values=(
+        Number(
+            "tension", "error", owner="{name}.{one.member}", name="largest_dynamic_root_tension{one.end}",
+            meaning="{one.meaning} at x = {one.x:.5g}", each="largest",
+        ),
+    ),
+    figures=(
+        Chart(
+            "dynamic_root_stress_{name}", "Dynamic root stress of mesh {name}",
+            "Mesh {name}: root stress of one tooth of each gear over the engagement, with and without vibration. A to "
+            "E: points of the path of contact.",
+            (
+                Over(
+                    lambda seen: over_time(seen.data.force),
+                    (
+                        Bundle(
+                            Family("sources", role="{one.role}", most=ALL),
+                            (
+                                Line("found.own", "static and own increment{one.about}"),
+                                Line(
+                                    "found.total",
+                                    lambda seen: f"with {others_of(seen.data.made.force.train)}{seen.one.about}",
+                                    "with other meshes", look={"width": 1.2}, when="with_others",
+                                ),
+                                Line("found.static", "quasi-static{one.about}", "static", when="first"),
+                            ),
+                        ),
+                    ),
+                    lambda _seen: axis_of(ToothRootStress, "total", zero=True),
+                    lambda seen: seen.data.made.force.letters, title="Gear {one.gear} as {one.member}", each="members",
+                ),
+            ),
+            under=lambda seen: f"{seen.asked.speed * RPM:.6g} rpm",
+        ),
+    ),
+    remarks=(
+        lambda seen: formula_remarks(
+            seen.asked.pair, {seen.asked.gears[member]: found for member, found in seen.data.made.notes.items()},
+            coupled=seen.asked.coupled,
+        ),
+    ),
+    settings={"root_stress": lambda seen: list(seen.asked.sources)},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -204,7 +318,7 @@ DYNAMIC_ROOT_STRESS = Stage(
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=_cites,
     forecast=_forecast,
