@@ -77,6 +77,14 @@ def test_sentences_are_filled_in(text: str, said: str) -> None:
     assert SEEN.said(text) == said
 
 
+def test_quantities_of_a_declared_object_are_written_in_their_units() -> None:
+    @dataclass(frozen=True)
+    class Whole:
+        swing: Swing = shown("", "its swing")
+
+    assert replace(SEEN, data=Whole(SWING)).said("{d.swing.largest:.3g} of {d.swing.word}") == "6 µm of stiff"
+
+
 def test_a_sentence_with_an_unknown_field_is_no_sentence() -> None:
     with pytest.raises((AttributeError, KeyError)):
         SEEN.said("{d.swing.missspelt:.3g}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, is_dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -129,6 +129,8 @@ class _Read:
             return found if isinstance(found, (str, int, float)) or found is None else _Read(found, self._load)
         if isinstance(found, str):
             return found
+        if is_dataclass(found):  # several quantities under one name
+            return _Read(found, self._load)
         return _Number(found[self._load] if np.ndim(found) and self._load is not None else found, unit)
 
     def __format__(self, spec: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import cast
 
 import numpy as np
@@ -29,20 +28,12 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import Shape
 from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import loaded_pair
-from fegear.results.train.design_chart_tables import (
-    DesignChartData,
-    UnequalRelief,
-    chart_tables,
-    chart_values,
-    design_chart_figures,
-    line_remark,
-)
+from fegear.results.train.design_chart_sheet import CHART_SHEET, DesignChartData, UnequalRelief
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_speeds, own_meshes, the_train
 from fegear.results.train.motion import check_motion
 
@@ -240,26 +231,6 @@ def _unequal(
     )  # fmt: skip
 
 
-def _present(chart: DesignChartData, asked: ChartInputs) -> Outcome:
-    failures = tuple(
-        f"amount {a:.4g} Delta, length {n:.4g}: {reason}"
-        for (a, n), reason in zip(product(chart.amounts, chart.lengths), chart.reasons, strict=True)
-        if reason
-    )
-    failures += tuple(
-        f"amounts {one.driver:.4g} and {one.driven:.4g} Delta, length {one.length:.4g}: {one.reason}"
-        for one in chart.unequal
-        if one.reason
-    )
-    settings: dict[str, object] = {
-        "points": 1 + chart.dynamic_factor.size + 3 * len(chart.unequal), "speeds": int(asked.motion.speeds.size)
-    }  # fmt: skip
-    return Outcome(
-        chart, chart_tables(chart, asked.mesh), chart_values(chart), settings, (*failures, *line_remark(chart)),
-        design_chart_figures(chart),
-    )  # fmt: skip
-
-
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     return (Task("gear-train"), Task("loaded-pair", train_part(scene).loaded_pair_of(_mesh(scene))))
 
@@ -279,7 +250,7 @@ DESIGN_CHART = Stage(
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=CHART_SHEET.present,
     check=_check,
     requires=(
         Need(CONTACT_LOSS.name, "required for reliefs with loss of contact"),

@@ -16,7 +16,7 @@ from fegear.case.part import at
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.train.torque_ripple import LONGEST, common_period
 from fegear.engine.citation import Citation
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_train, the_train
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.engine.sheet.seen import Seen
 
 _RPM = 30.0 / math.pi
 #: Shift of a ripple's frequency that is said.
@@ -127,20 +128,6 @@ def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
         still, states = (), steady_motions(asked.motion, data, work.progress)
     neglected = neglected_in_motion(asked.motion, data, states) if asked.neglected else NeglectedInMotion({}, {})
     return SweepData(data, states, neglected, still)
-
-
-def _present(found: SweepData, asked: SweepInputs) -> Outcome:
-    data, states, motion = found.train, found.states, asked.motion
-    remarks = [*motion_remarks(found.neglected, data, asked.effects, asked.tolerance)]
-    remarks += _without_backlash(data) if motion.contact_loss else []
-    if asked.idle_friction:
-        remarks.append("dynamics.friction ignored because effects.friction is off.")
-    remarks += _common_period(data, states)
-    averaged = motion.method == "averaging"
-    remarks += averaging_remarks(data, states) if averaged else _unsteady(data, states)
-    settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
-    settings |= {"method": motion.method} if averaged else {}
-    return Outcome(found, settings=settings, remarks=tuple(remarks))
 
 
 def _without_backlash(data: GearTrain) -> list[str]:
@@ -300,6 +287,35 @@ def _factors(data: GearTrain, state: SteadyState) -> list[float]:
     ]
 
 
+def _how_it_settled(seen: Seen) -> list[str]:
+    found: SweepData = seen.data
+    averaged = seen.asked.motion.method == "averaging"
+    return averaging_remarks(found.train, found.states) if averaged else _unsteady(found.train, found.states)
+
+
+def _method(seen: Seen) -> str | None:
+    method: str = seen.asked.motion.method
+    return method if method == "averaging" else None
+
+
+_SHEET = Sheet(
+    name=lambda _asked: "",
+    remarks=(
+        lambda seen: motion_remarks(seen.data.neglected, seen.data.train, seen.asked.effects, seen.asked.tolerance),
+        lambda seen: _without_backlash(seen.data.train) if seen.asked.motion.contact_loss else [],
+        Remark(
+            "dynamics.friction ignored because effects.friction is off.", when=lambda seen: seen.asked.idle_friction
+        ),
+        lambda seen: _common_period(seen.data.train, seen.data.states),
+        _how_it_settled,
+    ),
+    settings={
+        "direction": lambda seen: seen.asked.motion.direction, "tolerance": lambda seen: seen.asked.motion.tolerance,
+        "method": _method,
+    },
+)  # fmt: skip
+
+
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     """One steady motion for each speed; one that does not repeat takes longer, which only damping foretells."""
     speeds = int(scene.case.dynamics.speed_values.size)
@@ -320,7 +336,7 @@ MOTION = Stage(
     needs=needs_train,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=check_motion,
     cites=_sources,
     forecast=_forecast,
