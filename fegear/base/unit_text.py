@@ -23,6 +23,7 @@ _DECIMAL_COMMA = re.compile(r"([-+]?[0-9]*),([0-9]+(?:[eE][-+]?[0-9]+)?)\s*([^0-
 _FRACTION = re.compile(r"(?:([0-9]{1,6})\s+)?([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*([A-Za-z].*)")
 _SIGNS = str.maketrans({
     "\u00b5": "u", "\u03bc": "u",  # the micro sign and the Greek letter, which look alike
+    "\u03b5": "strain",  # as in \u00b5\u03b5
     "\u00b7": "*", "\u22c5": "*", "\u00d7": "*",
     "\u00b0": " deg ", "\u2032": "'", "\u2033": '"',
     "\u2212": "-", "\u207b": "-", "\u00b9": "1", "\u00b2": "2", "\u00b3": "3", "\u2074": "4",

@@ -62,6 +62,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "temperature": Dimension("degC", "60 degC"),
     "time": Dimension("s", "20000 h"),
     "hardness": Dimension("HV", "700 HV"),
+    "strain": Dimension("m/m", "400 um/m"),
 }
 
 #: Units of temperature with their size and the reading of their zero, both in degrees Celsius: the one quantity with
@@ -102,6 +103,7 @@ EVERYDAY: dict[str, dict[str, float]] = {
     "temperature": {"degC": 1.0},
     "time": {"h": 3600.0, "min": 60.0, "s": 1.0},
     "hardness": {"HV": 1.0, "HBW": 1.0 / 0.95, "HB": 1.0 / 0.95},
+    "strain": {"um/m": 1e-6, "ustrain": 1e-6, "mm/m": 1e-3, "m/m": 1.0, "ppm": 1e-6},
 }
 
 #: Every unit that is known, in words of pint; there are no prefixes but these. The radian is a dimension of its own
@@ -120,6 +122,7 @@ UNITS: dict[str, str] = {
     "psi": "lbf/inch^2", "ksi": "1e3*psi", "Mpsi": "1e6*psi",
     "Nm": "N*m", "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s",
     "HV": "[hardness]", "HBW": "HV/0.95", "HB": "HBW",  # steel, ISO 18265: HBW = 0.95 HV
+    "ustrain": "um/m", "microstrain": "um/m", "ppm": "um/m",
     "Pas": "Pa*s", "mPas": "1e-3*Pa*s", "cP": "1e-3*Pa*s", "St": "1e-4*m^2/s", "cSt": "1e-6*m^2/s",
 }  # fmt: skip
 
@@ -278,6 +281,7 @@ PER_SI: dict[str, float] = {
     "K": 1.0,
     "mPa.s": 1e3,
     "%": 100.0,
+    "um/m": 1e6,
 }
 
 

@@ -23,7 +23,9 @@ _MOST_LINES = 400_000
 _HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
 
 
-def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[str, NDArray[np.float64]]:
+def read_columns(
+    path: Path, key: str, dimensions: Mapping[str, str], units: Mapping[str, str] | None = None
+) -> dict[str, NDArray[np.float64]]:
     """Read the columns that are known by name into SI; others are passed over.
 
     Parameters
@@ -35,6 +37,8 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
         Where the case names the file, for messages.
     dimensions : mapping
         Dimension of each column that may be there; empty for plain numbers.
+    units : mapping, optional
+        Units of columns whose heads have none.
 
     Raises
     ------
@@ -64,7 +68,13 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
                 key, f'"{path.name}"', f"has a unit in the head of column {name}, which is dimensionless", "remove it"
             )
         dimension = dimensions[name]
-        scale = unit_size(match["unit"] or "", dimension, f"{key}, column {name}") if dimension else 1.0
+        given = (units or {}).get(name, "")
+        scale = unit_size(match["unit"] or given, dimension, f"{key}, column {name}") if dimension else 1.0
+        if given and unit_size(given, dimension, key) != scale:
+            raise InputError(
+                key, f'"{path.name}"', f"has [{match['unit']}] in the head of column {name}, the case says {given}",
+                "remove one of them",
+            )  # fmt: skip
         entries = np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
         beyond = np.flatnonzero(np.abs(entries) > LARGEST / scale)
         if beyond.size:

@@ -11,6 +11,7 @@ from fegear.case.design import DesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
 from fegear.case.flank_design import FlankDesignPart
+from fegear.case.gauge import GaugePart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
 from fegear.case.loading import LoadDistributionPart, LoadingPart, TransmissionErrorPart
@@ -42,6 +43,9 @@ class Case(Part):
     )
     gear: dict[str, Table[GearPart]] = Field(default_factory=dict, description="Gears, by name.")
     pair: dict[str, Table[PairPart]] = Field(default_factory=dict, description="Gear pairs in mesh, by name.")
+    gauge: dict[str, Table[GaugePart]] = Field(
+        default_factory=dict, description="Strain gauges in root fillets, by name."
+    )
     stiffness: Table[StiffnessPart] = Field(
         default_factory=StiffnessPart, description="Load positions of the compliance and root stress tables."
     )

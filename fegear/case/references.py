@@ -41,6 +41,9 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     yield "stiffness.pair", case.stiffness.pair, "pair"
     yield "cost.gear", case.cost.gear, "spur gear"
     yield "cost.pair", case.cost.pair, "pair"
+    for name, gauge in case.gauge.items():
+        yield f"gauge.{name}.gear", gauge.gear, "gear"
+        yield f"gauge.{name}.pair", gauge.pair, "pair"
     if case.study is not None:
         yield "study.gear", case.study.gear, "spur gear"
     if case.design is not None:

@@ -125,7 +125,9 @@ class LoadedStates(NamedTuple):
     apart: list[Array]
 
 
-def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[float], x: ArrayLike) -> LoadedStates:
+def loaded_states(
+    e: Engagement, shifted: Sequence[Engagement], loads: Sequence[float], x: ArrayLike, tooth: int = 0
+) -> LoadedStates:
     """Share loads for a base pitch before and after a tooth's contact, once for both gears.
 
     Parameters
@@ -137,6 +139,8 @@ def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[
         Along the line of action [N].
     x : array_like, shape (P,)
         Roll positions over one base pitch [m].
+    tooth : int
+        Which tooth of either gear is followed, in the order of meshing, where teeth differ.
     """
     grid = e.grid(x)
     teeth = grid.contacts.number.size + 2
@@ -150,7 +154,7 @@ def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[
         again = [solve_again(other, state) for other in shifted]
         return LoadedStates([state] * teeth, [again] * teeth, [apart(state)] * teeth)
     # The tooth of interest carries pair number j in base pitch number j.
-    first = int(grid.contacts.number[0]) - 1
+    first = int(grid.contacts.number[0]) - 1 + tooth
     rows = [e.solve(grid, loads, first + row) for row in range(teeth)]
     each = [[solve_again(other, state) for other in shifted] for state in rows]
     return LoadedStates(rows, each, [apart(state) for state in rows])

@@ -130,6 +130,18 @@ class Estimate:
         usual = _root_mean_square(self._self_at_samples[1][:_SAMPLES])
         return self._self_share * np.maximum(difference, _USUAL * usual)
 
+    def place_error(self, value: Array, other: Array) -> Array:
+        """Error of the stress at places of a fillet under loads at several positions, shape (places, P).
+
+        Parameters
+        ----------
+        value, other : ndarray, shape (places, P)
+            Of both solutions; where they agree by chance, what they differ by over all positions counts.
+        """
+        off = np.abs(value - other)
+        usual = np.sqrt(np.mean(off**2, axis=1, keepdims=True))
+        return np.asarray(self._stress_share * np.maximum(off, _USUAL * usual))
+
     @property
     def _self_share(self) -> float:
         share = _SHARE[self.fine.flank.order]

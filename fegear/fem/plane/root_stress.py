@@ -227,7 +227,7 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
     ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
     if clearance < math.inf:
         values = _without_contact(values, arc, ends, clearance)
-    smoothing, slopes = _smoothing(np.ascontiguousarray(arc).tobytes())
+    smoothing, slopes = smooth_curve(arc)
     height, rise, step = smoothing @ values, slopes @ values, np.diff(arc)
     if sign < 0.0:
         np.negative(height, out=height)
@@ -286,6 +286,14 @@ def curves_apart(values: Array, others: Array) -> Array:
     """
     counts = values >= 0.5 * values.max(axis=-1, keepdims=True)
     return np.asarray(np.where(counts, np.abs(others - values), 0.0).max(axis=-1))
+
+
+def smooth_curve(arc: Array) -> tuple[csr_array, csr_array]:
+    """Matrices from values at a fillet's points to the heights and slopes of the smooth curve through them.
+
+    The curve is a cubic between two points, shape (points, points) each.
+    """
+    return _smoothing(np.ascontiguousarray(arc).tobytes())
 
 
 @functools.lru_cache(maxsize=16)

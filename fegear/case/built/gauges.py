@@ -1,0 +1,199 @@
+"""Strain gauges of a case: which pair loads them, where their grids lie, what they measured."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.errors import InputError
+from fegear.case.csv_file import read_columns
+from fegear.case.gauge import PLACES
+from fegear.case.nearest import nearest
+from fegear.contact.fitted_curve import FEWEST
+from fegear.fem.plane.gauge import ISO_TANGENT, ISO_TANGENT_INTERNAL, FilletProfile, Grid, PlaceKey
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from fegear.case.gauge import GaugePart, MeasuredStrainPart
+    from fegear.case.reading import Scene
+    from fegear.contact.fitted_curve import Fitted
+    from fegear.fem.plane.influence import Side
+    from fegear.geometry.pair import Member
+
+#: Largest strain that a gauge in steel survives.
+_LARGEST_STRAIN = 0.05
+#: Part of the strain along the profile below which a direction measures nothing.
+_NOTHING = 1e-3
+
+
+@dataclass(frozen=True)
+class MeasuredStrain:
+    """A trace of a gauge.
+
+    Parameters
+    ----------
+    angle, strain : ndarray, shape (N,)
+        In the sense of the gear's rotation [rad], and as measured.
+    fit : tuple of str
+        What is fitted.
+    file : str
+    """
+
+    angle: Array
+    strain: Array
+    fit: tuple[Fitted, ...]
+    file: str = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A gauge on a gear of a pair.
+
+    Parameters
+    ----------
+    pair, gear : str
+    member : {"driver", "driven"}
+    tooth : int
+        In meshing order, the first is 0.
+    side : {"tension", "compression"}
+    key, value : str, float
+        Where the middle of its grid lies.
+    grid : Grid
+    placement, load_tolerance : float
+        Uncertainties: [m], and relative.
+    measured : MeasuredStrain or None
+    name : str
+    """
+
+    pair: str
+    gear: str
+    member: Member
+    tooth: int
+    side: Side
+    key: PlaceKey
+    value: float
+    grid: Grid
+    placement: float
+    load_tolerance: float
+    measured: MeasuredStrain | None
+    name: str = field(compare=False)
+
+
+def gauge_of(scene: Scene, name: str) -> Gauge:
+    """A gauge of a case with its trace.
+
+    Raises
+    ------
+    InputError
+        If the case does not say where it is, or its file is no trace.
+    """
+    part = scene.case.gauge[name]
+    pair, member = _place_in_mesh(scene, name, part)
+    gear = scene.gears[part.gear]
+    key, value = _place_on_fillet(part, internal=gear.tooth.internal)
+    teeth = gear.tooth.teeth
+    if part.tooth > teeth:
+        raise InputError(f"gauge.{name}.tooth", part.tooth, f"must be at most {teeth}, the teeth of gear {part.gear}")
+    if abs(part.direction) > 0.5 * math.pi * (1.0 + 1e-12):
+        raise InputError(
+            f"gauge.{name}.direction", f"{math.degrees(part.direction):.6g} deg", "must be between -90 and 90 deg"
+        )
+    grid = Grid(part.grid_length, part.grid_width, part.direction)
+    measured = None if part.measured is None else _measured(scene, name, part.measured)
+    return Gauge(
+        pair, part.gear, member, part.tooth - 1, part.fillet, key, value, grid, part.placement_tolerance,
+        part.load_tolerance, measured, name,
+    )  # fmt: skip
+
+
+def check_gauge(scene: Scene, name: str) -> None:
+    """Refuse gauges that cannot be computed, before anything is."""
+    found = gauge_of(scene, name)
+    if found.pair in scene.wide_pairs:
+        helical = scene.pairs[found.pair].driver.helix_angle != 0.0
+        raise InputError(
+            f"gauge.{name}.pair", f'"{found.pair}"', "must be a plane (2D) pair; its teeth are 3D",
+            "remove the gauge" if helical else f'set pair.{found.pair}.width = "plane"',
+        )  # fmt: skip
+    gear, part = scene.gears[found.gear], scene.case.gear[found.gear]
+    along = Grid(0.0, 0.0, 0.0).strain_per_stress(gear.material, gear.plane_assumption)
+    if abs(found.grid.strain_per_stress(gear.material, gear.plane_assumption)) < _NOTHING * along:
+        raise InputError(
+            f"gauge.{name}.direction", f"{math.degrees(found.grid.direction):.6g} deg",
+            "measures no strain: in this direction it is zero", "choose a direction nearer to the profile, 0 deg",
+        )  # fmt: skip
+    if part.tooth_mesh is None or part.tooth_mesh_fillet == "rack":
+        place_gauge(found, FilletProfile.of_tooth(gear.tooth, gear.module))
+
+
+def place_gauge(gauge: Gauge, profile: FilletProfile) -> float:
+    """Arc length of the middle of a gauge on a fillet [m]."""
+    try:
+        return profile.place(gauge.key, gauge.value, gauge.grid)
+    except InputError as error:
+        raise error.under(f"gauge.{gauge.name}") from None
+
+
+def _place_in_mesh(scene: Scene, name: str, part: GaugePart) -> tuple[str, Member]:
+    """Pair and member of the gear of a gauge."""
+    pairs = {
+        key: [member for member in MEMBERS if getattr(one, member) == part.gear]
+        for key, one in scene.case.pair.items() if part.gear in (one.driver, one.driven)
+    }  # fmt: skip
+    if not pairs:
+        raise InputError(f"gauge.{name}.gear", f'"{part.gear}"', "is in no pair of this case", "specify its pair")
+    if part.pair is None and len(pairs) > 1:
+        raise InputError(
+            f"gauge.{name}.pair", "(not given)", f"is required: gear {part.gear} is in {len(pairs)} pairs",
+            f"specify one of {', '.join(pairs)}",
+        )  # fmt: skip
+    pair = part.pair or next(iter(pairs))
+    if pair not in pairs:
+        raise InputError(f"gauge.{name}.pair", f'"{pair}"', f"does not contain gear {part.gear}", nearest(pair, pairs))
+    members = pairs[pair]
+    member: Member = part.member or members[0]
+    if member not in members:
+        raise InputError(
+            f"gauge.{name}.member", f'"{member}"', f"is another gear: {part.gear} is the {members[0]} of pair {pair}",
+            "remove it",
+        )  # fmt: skip
+    return pair, member
+
+
+def _place_on_fillet(part: GaugePart, *, internal: bool) -> tuple[PlaceKey, float]:
+    for key in PLACES:
+        if (value := getattr(part, key)) is not None:
+            return cast("PlaceKey", key), float(value)
+    return "tangent_angle", ISO_TANGENT_INTERNAL if internal else ISO_TANGENT
+
+
+def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStrain:
+    key = f"gauge.{name}.measured.file"
+    columns = {part.angle_column: "angle", part.strain_column: "strain"}
+    given = {part.angle_column: part.angle, part.strain_column: part.strain}
+    found = read_columns(
+        scene.file(part.file, key), key, columns, {column: unit for column, unit in given.items() if unit}
+    )
+    for column, word in ((part.angle_column, "angle_column"), (part.strain_column, "strain_column")):
+        if column not in found:
+            raise InputError(key, f'"{part.file}"', f"requires a column {column}", f"add it or set {word}")
+    angle, strain = found[part.angle_column], found[part.strain_column]
+    if angle.size < FEWEST + len(part.fit):
+        raise InputError(
+            key, f'"{part.file}"', f"has {angle.size} samples, fewer than {FEWEST + len(part.fit)}",
+            "specify a whole engagement",
+        )  # fmt: skip
+    largest = float(np.abs(strain - np.median(strain)).max())
+    if largest > _LARGEST_STRAIN:
+        raise InputError(
+            key, f"strain of {largest * 1e2:.3g} %", f"is above {_LARGEST_STRAIN * 1e2:g} %",
+            "check the unit in the head of the column",
+        )  # fmt: skip
+    for what, values in (("angle", angle), ("strain", strain)):
+        if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
+            raise InputError(key, f'"{part.file}"', f"has only one {what}", "check the columns")
+    return MeasuredStrain(-angle if part.reverse else angle, strain, tuple(part.fit), part.file)

@@ -1,0 +1,97 @@
+"""``[gauge.NAME]``: a strain gauge in a root fillet, and what it measured."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.part import Angle, LengthOrZero, Number, Part, PositiveLength, Table, refuse
+
+#: Keys that say where the middle of the grid lies.
+PLACES = ("tangent_angle", "centre_angle", "arc", "diameter", "height")
+
+
+class MeasuredStrainPart(Part):
+    """``measured = { file, angle, strain, fit }``: a trace of the gauge over the rotation of its gear."""
+
+    file: str = Field(
+        description="CSV file with the columns `angle [deg]` (rotation of the gear of the gauge) and `strain [um/m]`."
+    )
+    angle: str | None = Field(default=None, description="Unit of the angle column, if its head has none.")
+    strain: str | None = Field(
+        default=None, description="Unit of the strain column, if its head has none: `um/m`, `ustrain`, `m/m`."
+    )
+    angle_column: str = Field(default="angle", description="Name of the angle column.")
+    strain_column: str = Field(default="strain", description="Name of the strain column.")
+    fit: list[Literal["offset", "scale", "shift"]] = Field(
+        default_factory=list,
+        description="What is fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load) and "
+        "`shift` (zero of the angle). Default: nothing.",
+    )
+    reverse: bool = Field(default=False, description="The measured angle counts against the rotation of the gear.")
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if len(set(self.fit)) < len(self.fit):
+            raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
+        if self.angle_column == self.strain_column:
+            raise refuse("is the column of the angle", "specify another column", key="strain_column")
+        return self
+
+
+class GaugePart(Part):
+    """A strain gauge on one tooth of a gear."""
+
+    gear: str = Field(description="Gear that has the gauge.")
+    pair: str | None = Field(
+        default=None, description="Pair in which the gear is loaded. Default: the only pair of the gear."
+    )
+    member: Literal["driver", "driven"] | None = Field(
+        default=None,
+        description="Whether the gear is the driver or the driven gear, if it meshes with an identical one. Default: "
+        "driver.",
+    )
+    tooth: Annotated[int, Field(ge=1)] = Field(
+        default=1,
+        description="Number of the tooth in meshing order, as in `spacing_errors`; of influence with pitch deviations "
+        "only.",
+    )
+    fillet: Literal["tension", "compression"] = Field(
+        default="tension",
+        description="Fillet of the loaded flank (tension) or the opposite one (compression).",
+    )
+    tangent_angle: Angle | None = Field(
+        default=None,
+        description="Place by the angle between tangent and tooth centre line. Default: 30 deg (internal gears: 60 "
+        "deg), ISO 6336-3.",
+    )
+    centre_angle: Angle | None = Field(
+        default=None, description="Place by the angle about the gear axis from the tooth centre line."
+    )
+    arc: LengthOrZero | None = Field(
+        default=None, description="Place by the arc length along the fillet, from the root land towards the tip."
+    )
+    diameter: PositiveLength | None = Field(default=None, description="Place by the diameter.")
+    height: LengthOrZero | None = Field(default=None, description="Place by the radial distance from the root circle.")
+    grid_length: LengthOrZero = Field(
+        default=0.0, description="Length of the measuring grid in its direction; the strain is its mean over the grid."
+    )
+    grid_width: LengthOrZero = Field(default=0.0, description="Width of the measuring grid.")
+    direction: Angle = Field(
+        default=0.0, description="Angle between the direction of measurement and the profile, -90 to 90 deg."
+    )
+    placement_tolerance: LengthOrZero = Field(
+        default=1e-4, description="Uncertainty (±) of the place along the fillet. Default: 0.1 mm."
+    )
+    load_tolerance: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.01, description="Relative uncertainty (±) of load and gauge factor together."
+    )
+    measured: Table[MeasuredStrainPart] | None = Field(default=None, description="Measured strain to compare with.")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        given = [key for key in PLACES if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise refuse(f"contradicts {given[0]}", f"specify one of {', '.join(PLACES)}", key=given[1])
+        return self

@@ -1,0 +1,265 @@
+"""Strain under a gauge in a root fillet while its tooth passes through the mesh, its own load's and its neighbours'."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.shown import shown, shows
+from fegear.contact.plane.base_pitch import roll_positions
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.peaks import refined_peaks
+from fegear.contact.plane.root_stress_history import superposed_stress
+from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import RootStressInfluence, Side
+    from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.fem.plane.gauge import GaugesOnFillet
+    from fegear.geometry.pair import GearPair, Member
+
+#: Even roll positions over the base pitch; both sides of every jump and the peaks come in addition.
+_POSITIONS = 200
+#: Radii at which errors of unit loads are looked at.
+_FEW = 9
+#: Teeth before the first and after the last pair that can touch: a base pitch on either side.
+_BEYOND = 1
+
+
+@dataclass(frozen=True)
+class GaugeHistory:
+    """What a gauge sees; strains in its direction, arrays over P positions of its tooth and L loads.
+
+    Parameters
+    ----------
+    pair : GearPair
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+    x : ndarray, shape (P,)
+        Position of the tooth's contact [m].
+    stress, stress_error : ndarray, shape (P, L)
+        Mean tangential stress under the grid, and its estimated error; NaN if unknown [Pa].
+    displacement : ndarray, shape (G,)
+        Of grids that are glued elsewhere along the fillet, towards the tip [m]; zero is among them.
+    displaced : ndarray, shape (P, L, G)
+        Their mean stress [Pa].
+    opposite_stress : ndarray, shape (P, L)
+        Of a like gauge in the other fillet of the tooth [Pa].
+    strain_per_stress : float
+        [1/Pa].
+    """
+
+    pair: GearPair
+    member: Member
+    side: Side
+    stress_error: Array
+    displaced: Array
+    opposite_stress: Array
+    strain_per_stress: float
+    x: Array = shown("mm", "position of the tooth's contact on the line of action", table="gauge")
+    stress: Array = shown("MPa", "mean tangential stress under the grid")
+    displacement: Array = shown("mm", "displacement of the grid along the fillet towards the tip")
+
+    @property
+    @shows(
+        "deg", "rotation of the gear, zero with its tooth in contact at the pitch point", label="rotation of the gear",
+        table="gauge",
+    )  # fmt: skip
+    def angle(self) -> Array:
+        """Of the gear of the gauge, in the sense of its rotation [rad], shape (P,)."""
+        return self.x / self.pair.gear(self.member).base_radius
+
+    @property
+    @shows("deg", "roll angle of the contact point on the gear of the gauge", table="gauge")
+    def roll_angle(self) -> Array:
+        """[rad], shape (P,)."""
+        return self.pair.roll_angle(self.x, self.member)
+
+    @property
+    @shows("um/m", "mean strain under the grid", label="strain", table="gauge")
+    def strain(self) -> Array:
+        """In the direction of the grid, shape (P, L)."""
+        return self.strain_per_stress * self.stress
+
+    @property
+    def strain_error(self) -> Array | None:
+        """Estimated, shape (P, L); None where it is not known."""
+        if np.isnan(self.stress_error).any():
+            return None
+        return abs(self.strain_per_stress) * self.stress_error
+
+    @property
+    @shows("um/m", "strain of an equal gauge in the opposite fillet of the tooth", table="gauge")
+    def strain_opposite(self) -> Array:
+        """Shape (P, L)."""
+        return self.strain_per_stress * self.opposite_stress
+
+    @property
+    @shows("um/m", "strain with the grid displaced towards the root by placement_tolerance", table="gauge")
+    def strain_towards_root(self) -> Array | None:
+        """Shape (P, L); None without a tolerance."""
+        return self._of_end(0)
+
+    @property
+    @shows("um/m", "strain with the grid displaced towards the tip by placement_tolerance", table="gauge")
+    def strain_towards_tip(self) -> Array | None:
+        """Shape (P, L); None without a tolerance."""
+        return self._of_end(-1)
+
+    def _of_end(self, end: int) -> Array | None:
+        return None if self.displacement.size == 1 else self.strain_per_stress * self.displaced[:, :, end]
+
+    @property
+    def _sign(self) -> float:
+        return 1.0 if self.side == "tension" else -1.0
+
+    def peak_position(self, i: int) -> int:
+        """Position of the largest tension, or compression, under load number i."""
+        return int(np.argmax(self._sign * self.stress[:, i]))
+
+    def peak_of_places(self, i: int) -> Array:
+        """Largest strain at every displacement under load number i, shape (G,)."""
+        stress = (self._sign * self.displaced[:, i]).max(axis=0)
+        return np.asarray(self._sign * self.strain_per_stress * stress)
+
+
+def gauge_history(
+    e: Engagement,
+    shifted: Sequence[Engagement],
+    loads: Sequence[float],
+    nominal: float,
+    member: Member,
+    gauges: GaugesOnFillet,
+    opposite: GaugesOnFillet,
+    displacement: Array,
+    tooth: int = 0,
+    *,
+    estimates: bool = True,
+) -> GaugeHistory:
+    """Follow a gauge from a base pitch before its tooth's contact to one after it.
+
+    Parameters
+    ----------
+    e : Engagement
+    shifted : sequence of Engagement
+        The same with one compliance each off by its error.
+    loads : sequence of float, shape (L,)
+        Along the line of action [N].
+    nominal : float
+        Load of which the peak is looked for between positions [N].
+    member : {"driver", "driven"}
+        Gear that has the gauge.
+    gauges : GaugesOnFillet
+        At every displacement.
+    opposite : GaugesOnFillet
+        One like it in the other fillet.
+    displacement : ndarray, shape (G,)
+        Zero is among them [m].
+    tooth : int
+        That has the gauge, in the order of meshing.
+    estimates : bool
+        Whether errors are estimated, and peaks looked for between positions.
+    """
+    source: RootStressInfluence = e.compliance.source(member)
+    if getattr(source, "influence", None) is not gauges.influence:  # the pair's compliance comes from elsewhere
+        source = finite_element_compliance(gauges.influence)
+    at = int(np.argmin(np.abs(displacement)))
+    centre = gauges.only(at)
+    x = roll_positions(e, _POSITIONS)
+    if estimates:
+        x = _with_peaks(e, nominal, x, member, source, (centre, opposite), tooth)
+    states = loaded_states(e, shifted if estimates else (), loads, x, tooth)
+    displaced = _teeth(e, states.rows, member, source, gauges)
+    error = np.full(displaced.shape[:3], np.nan)
+    if estimates:
+        error = _error(e, states, member, source, centre, displaced[..., at])
+    beside = _teeth(e, states.rows, member, source, opposite)[..., 0]
+    contacts, first = states.rows[0].grid.contacts.x, np.arange(-_BEYOND, displaced.shape[0] - _BEYOND)
+    places = (contacts[0] + first[:, None] * e.pair.base_pitch).ravel()
+    low, high = e.pair.x_start - e.pair.base_pitch, e.pair.x_end + e.pair.base_pitch
+    order = np.argsort(places, kind="stable")
+    order = order[(places[order] > low) & (places[order] < high)]
+    displaced, error, beside = (one.reshape(-1, *one.shape[2:])[order] for one in (displaced, error, beside))
+    return GaugeHistory(
+        e.pair, member, gauges.side, error, displaced, beside, gauges.strain_per_stress,
+        places[order], displaced[:, :, at], displacement,
+    )  # fmt: skip
+
+
+def _with_peaks(
+    e: Engagement,
+    load: float,
+    x: Array,
+    member: Member,
+    source: RootStressInfluence,
+    gauges: Sequence[GaugesOnFillet],
+    tooth: int,
+) -> Array:
+    """Roll positions and, in addition, those where gauges see most, ascending [m]."""
+
+    def curves(at: Array) -> Array:
+        states = loaded_states(e, (), [load], at, tooth).rows
+        found = []
+        for gauge in gauges:
+            sign = 1.0 if gauge.side == "tension" else -1.0
+            found.append((sign * _teeth(e, states, member, source, gauge)[:, :, 0, 0]).max(axis=0))
+        return np.array(found)
+
+    return np.sort(np.concatenate([x, refined_peaks(curves, x)[0]]))
+
+
+def _teeth(
+    e: Engagement, states: Sequence[Loaded], member: Member, source: RootStressInfluence, gauges: GaugesOnFillet
+) -> Array:
+    """Mean stress under grids on each tooth that passes, each in its own state, shape (n + 2, P, L, G) [Pa]."""
+    weights, rows = gauges.weights().T, []
+    known: dict[int, Array] = {}
+    for row, state in enumerate(states):
+        if id(state) not in known:
+            along = superposed_stress(e, state, member, gauges.side, _BEYOND, source)
+            known[id(state)] = np.stack([tooth @ weights for tooth in along])
+        rows.append(known[id(state)][row])
+    return np.stack(rows)
+
+
+def _error(
+    e: Engagement,
+    states: LoadedStates,
+    member: Member,
+    source: RootStressInfluence,
+    gauge: GaugesOnFillet,
+    stress: Array,
+) -> Array:
+    """Estimated error of the stress under one gauge, shape (n + 2, P, L) [Pa].
+
+    What errors of the compliances change, by the loads together or by each load, and what finite elements leave in the
+    stress of each. A tooth that carries nothing is strained by its neighbours' loads; their sum may pass through zero,
+    its error does not.
+    """
+    by_shift = np.zeros_like(stress)
+    for number in range(len(states.shifted[0])):
+        again = [shifted[number] for shifted in states.shifted]
+        by_shift += np.abs(_teeth(e, again, member, source, gauge)[..., 0] - stress)
+    contacts, face = states.rows[0].grid.contacts, e.compliance.face_width
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    few, n = np.linspace(radius.min(), radius.max(), _FEW), radius.shape[0]
+    reach = min(source.reach, n + _BEYOND) if e.compliance.coupling else 0
+    ahead = 1 if member == "driver" else -1
+    unit = {
+        k: (np.abs(gauge.stress(k, few)[0]) / face, gauge.stress_error(k, few)[0] / face)
+        for k in range(-reach, reach + 1)
+    }
+    by_load, by_source = np.zeros_like(stress), np.zeros_like(stress)
+    for row, (state, apart) in enumerate(zip(states.rows, states.apart, strict=True)):
+        for other in range(n):
+            k = ahead * (row - _BEYOND - other)
+            if k in unit:
+                size, left = (np.interp(radius[other], few, one)[:, None] for one in unit[k])
+                by_load[row] += (apart[other] * size) ** 2
+                by_source[row] += (state.loads[other] * left) ** 2
+    return np.asarray(np.hypot(np.maximum(by_shift, np.sqrt(by_load)), np.sqrt(by_source)))

@@ -1,0 +1,230 @@
+"""A strain gauge as it is shown: its place, its strain over the rotation, and the measured strain beside it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.printed import percent
+from fegear.base.shown import shown, shows
+from fegear.contact.fitted_curve import FittedCurve
+from fegear.contact.plane.gauge_history import GaugeHistory
+
+#: Standard errors that count as scatter.
+_CERTAIN = 2.0
+#: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
+_NEAR_CONTACT = 0.15
+#: Most samples of a figure.
+_DRAWN = 2000
+#: Correlation below which shapes differ.
+_ALIKE = 0.98
+
+
+@dataclass(frozen=True)
+class GaugePlace:
+    """Where the middle of a grid is."""
+
+    arc: float = shown("mm", "arc length of the grid centre along the fillet, from the root land", name="place_arc")
+    diameter: float = shown("mm", "diameter of the grid centre", name="place_diameter")
+    tangent_angle: float = shown("deg", "angle of the fillet tangent to the tooth centre line at the grid centre",
+                                 name="place_tangent_angle")  # fmt: skip
+    centre_angle: float = shown("deg", "angle of the grid centre from the tooth centre line, about the gear axis",
+                                name="place_centre_angle")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PeakOfPlaces:
+    """Largest strain at the nominal load of grids glued elsewhere."""
+
+    displacement: Array = shown("mm", "displacement of the grid along the fillet towards the tip")
+    peak: Array = shown("um/m", "peak strain at this place", name="peak_strain")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How far measured and computed strain may differ, as parts of the peak.
+
+    Parameters
+    ----------
+    placement, load, model, scatter : float
+        By the place, by load and gauge factor, by the computation, by the scatter of the measurement.
+    """
+
+    placement: float
+    load: float
+    model: float
+    scatter: float
+
+    @property
+    def together(self) -> float:
+        """Root of the sum of squares."""
+        return math.sqrt(self.placement**2 + self.load**2 + self.model**2 + self.scatter**2)
+
+
+@dataclass(frozen=True)
+class GaugeData:
+    """What a gauge sees under every load, and what it measured.
+
+    Parameters
+    ----------
+    loads : tuple of float
+        [N].
+    at : int
+        Number of the nominal one.
+    history : GaugeHistory
+    place : GaugePlace
+    clearance : float
+        From the grid's end to the lowest contact on its own flank, along the profile [modules]; infinite on the other.
+    clipped : bool
+        Whether the placement tolerance reaches beyond the fillet.
+    load_tolerance : float
+    speed : float or None
+        Of the gear [rad/s].
+    compared : FittedCurve or None
+        Measured and computed strain at the nominal load.
+    """
+
+    loads: Sequence[float]
+    at: int
+    history: GaugeHistory
+    place: GaugePlace
+    clearance: float
+    clipped: bool
+    load_tolerance: float
+    speed: float | None
+    compared: FittedCurve | None
+
+    @property
+    @shows("s", "time from the first position")
+    def t(self) -> Array | None:
+        """Where a speed is given, shape (P,) [s]."""
+        return None if self.speed is None else (self.history.angle - self.history.angle[0]) / self.speed
+
+    def _peak(self, i: int) -> int:
+        return self.history.peak_position(i)
+
+    @property
+    @shows("um/m", "peak of the mean strain under the grid")
+    def peak_strain(self) -> Array:
+        """Under each load, shape (L,)."""
+        return np.array([self.history.strain[self._peak(i), i] for i in range(len(self.loads))])
+
+    @property
+    def peak_error(self) -> Array | None:
+        """Estimated, shape (L,)."""
+        error = self.history.strain_error
+        return None if error is None else np.array([error[self._peak(i), i] for i in range(len(self.loads))])
+
+    @property
+    @shows("MPa", "mean tangential stress under the grid at the peak")
+    def peak_stress(self) -> Array:
+        """Under each load, shape (L,)."""
+        return self.peak_strain / self.history.strain_per_stress
+
+    @property
+    def peak_stress_error(self) -> Array | None:
+        """Estimated, shape (L,)."""
+        return None if self.peak_error is None else self.peak_error / abs(self.history.strain_per_stress)
+
+    @property
+    @shows("um/m", "largest less smallest strain over the mesh cycle")
+    def strain_range(self) -> Array:
+        """Under each load, shape (L,)."""
+        return np.asarray(np.ptp(self.history.strain, axis=0))
+
+    @property
+    @shows("deg", "rotation of the gear at the peak, zero with its tooth in contact at the pitch point")
+    def peak_angle(self) -> Array:
+        """Under each load, shape (L,) [rad]."""
+        return np.array([self.history.angle[self._peak(i)] for i in range(len(self.loads))])
+
+    @property
+    @shows("mm", "position of the contact on the line of action at the peak")
+    def peak_x(self) -> Array:
+        """Under each load, shape (L,) [m]."""
+        return np.array([self.history.x[self._peak(i)] for i in range(len(self.loads))])
+
+    @property
+    def _peak_opposite(self) -> Array:
+        strain = self.history.strain_opposite
+        sign = -1.0 if self.history.side == "tension" else 1.0
+        at = (sign * self.history.opposite_stress).argmax(axis=0)
+        return np.asarray(strain[at, np.arange(strain.shape[1])])
+
+    @property
+    @shows("um/m", "peak strain of an equal gauge in the opposite fillet of the tooth")
+    def peak_strain_opposite(self) -> Array:
+        """Under each load, shape (L,)."""
+        return self._peak_opposite
+
+    @property
+    @shows("", "peak strain of the compression fillet / peak strain of the tension fillet")
+    def fillet_ratio(self) -> Array:
+        """Under each load, shape (L,)."""
+        pair = self._peak_opposite, self.peak_strain
+        compressed, pulled = pair if self.history.side == "tension" else pair[::-1]
+        return np.asarray(compressed / pulled)
+
+    @property
+    def places(self) -> PeakOfPlaces | None:
+        """Peak over the place of the grid at the nominal load; None without a tolerance."""
+        history = self.history
+        if history.displacement.size == 1:
+            return None
+        return PeakOfPlaces(history.displacement, history.peak_of_places(self.at))
+
+    @property
+    @shows("um/m", "maximum change of the peak strain within placement_tolerance")
+    def peak_change_by_placement(self) -> float:
+        """At the nominal load."""
+        peaks = self.history.peak_of_places(self.at)
+        return float(np.abs(peaks - self.peak_strain[self.at]).max())
+
+    @property
+    def drawn(self) -> FittedCurve | None:
+        """The comparison by as many samples as a figure can show."""
+        if self.compared is None:
+            return None
+        some = slice(None, None, -(-self.compared.samples // _DRAWN))
+        found = self.compared
+        return replace(found, angle=found.angle[some], measured=found.measured[some], computed=found.computed[some])
+
+    @property
+    def near_contact(self) -> bool:
+        """Whether contacts come so near to the grid that the stress under it is that of the contact."""
+        return self.clearance < _NEAR_CONTACT
+
+    @property
+    def limits(self) -> Limits:
+        """Of the comparison at the nominal load."""
+        peak = abs(float(self.peak_strain[self.at]))
+        model = 0.0 if self.peak_error is None else float(self.peak_error[self.at]) / peak
+        scatter = 0.0 if self.compared is None else _CERTAIN * self.compared.gain_error
+        return Limits(self.peak_change_by_placement / peak, self.load_tolerance, model, scatter)
+
+    @property
+    def verdict(self) -> str:
+        """Measured against computed strain, in one or two sentences without a subject."""
+        if self.compared is None:
+            return ""
+        found, limits = self.compared, self.limits
+        off = found.gain - 1.0
+        share = found.rms / abs(float(self.peak_strain[self.at]))
+        parts = (
+            f"placement {percent(limits.placement)}, load and gauge factor {percent(limits.load)}, computation "
+            f"{percent(limits.model)}, scatter {percent(limits.scatter)}"
+        )
+        if found.gain <= 0.0:
+            return "measured and computed strain have opposite signs; check fillet, sign and shift of the trace"
+        how = f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one"
+        within = abs(off) <= limits.together
+        judged = f"{how}, {'within' if within else 'beyond'} ±{percent(limits.together)} ({parts})"
+        if found.correlation < _ALIKE:
+            judged += f"; the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g})"
+        elif not within:
+            judged += "; check load, gauge factor and place of the grid"
+        return f"{judged}; RMS of the residual {percent(share)} of the peak"
