@@ -1,0 +1,278 @@
+"""Gauges of a case: where they are, what loads them, what they measured; every wrong key or file is one sentence."""
+
+import copy
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.gauges import check_gauge, gauge_of
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.results.catalogue import STAGES
+
+CASE = {
+    "results": ["gauge"],
+    "gear": {
+        "a": {"teeth": 20, "module": "2 mm", "face_width": "10 mm", "profile_shift": 0.1},
+        "b": {"teeth": 31, "module": "2 mm", "face_width": "10 mm"},
+    },
+    "pair": {"p": {"driver": "a", "driven": "b", "load": "800 N"}},
+    "gauge": {"g": {"gear": "a", "grid_length": "0.3 mm"}},
+    "effects": {"neighbour_coupling": True, "hertz": "load-dependent"},
+    "accuracy": {"tolerance": 1e-2},
+}
+TRACE = "angle [deg],strain [um/m]\n" + "".join(f"{a},{500 - a * a}\n" for a in range(-20, 21))
+
+
+def changed(gauge=None, **more):
+    document = copy.deepcopy(CASE)
+    for key, value in (gauge or {}).items():
+        if value is None:
+            document["gauge"]["g"].pop(key)
+        else:
+            document["gauge"]["g"][key] = value
+    for path, value in more.items():
+        *tables, key = path.split("__")
+        node = document
+        for one in tables:
+            node = node.setdefault(one, {})
+        node[key] = value
+    return document
+
+
+def read(document, folder=Path()):
+    scene = build_scene(document, "case", folder)
+    check_gauge(scene, "g")
+    return gauge_of(scene, "g")
+
+
+_CACHE = SolutionCache()
+
+
+def ran(document, folder=Path(), name="g"):
+    scene = build_scene(document, "case", folder)
+    results = run_plan(scene, make_plan(scene, STAGES), cache=_CACHE)
+    return next(one for task, one in results.outcomes.items() if str(task) == f"gauge of {name}")
+
+
+@pytest.mark.parametrize(
+    ("gauge", "rule"),
+    [
+        ({"gear": "c"}, "gear"), ({"gear": None}, "is required"), ({"geer": "a"}, "unknown key"),
+        ({"pair": "q"}, "is not a pair"), ({"member": "driven"}, "is another gear"), ({"member": "both"}, "must be"),
+        ({"tooth": 0}, "greater than or equal to 1"), ({"tooth": 21}, "at most 20"), ({"tooth": 1.5}, "whole number"),
+        ({"fillet": "left"}, "must be"), ({"tangent_angle": "95 deg"}, "outside the fillet"),
+        ({"tangent_angle": "-30 deg"}, "outside the fillet"), ({"tangent_angle": "30 mm"}, "is not an angle"),
+        ({"tangent_angle": 30}, "has no unit"),
+        ({"tangent_angle": "30 deg", "arc": "1 mm"}, "contradicts tangent_angle"),
+        ({"centre_angle": "40 deg"}, "outside the fillet"), ({"arc": "-1 mm"}, "must not be negative"),
+        ({"arc": "9 mm"}, "outside the fillet"), ({"arc": "0 mm"}, "reaches beyond the fillet"),
+        ({"diameter": "50 mm"}, "outside the fillet"), ({"diameter": "20 mm"}, "outside the fillet"),
+        ({"height": "3 mm"}, "outside the fillet"), ({"grid_length": "4 mm"}, "reaches beyond the fillet"),
+        ({"grid_length": "-1 mm"}, "must not be negative"), ({"grid_length": "1 deg"}, "is not a length"),
+        ({"grid_width": "5 mm", "direction": "60 deg"}, "reaches beyond the fillet"),
+        ({"direction": "91 deg"}, "between -90 and 90"), ({"direction": "90 deg"}, "measures no strain"),
+        ({"placement_tolerance": "-0.1 mm"}, "must not be negative"),
+        ({"load_tolerance": 2.0}, "less than or equal to 1"),
+        ({"load_tolerance": "1 %"}, "must be a number"), ({"measured": "gauge.csv"}, "must be a table"),
+        ({"measured": {}}, "is required"), ({"measured": {"file": "none.csv"}}, "file not found"),
+    ],
+)  # fmt: skip
+def test_a_wrong_key_is_one_sentence(gauge, rule):
+    with pytest.raises(InputError) as refused:
+        read(changed(gauge))
+    assert rule in str(refused.value)
+    assert str(refused.value).startswith("gauge.g")
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("measured", "text", "rule"),
+    [
+        ({}, "", "column heads"), ({}, "angle [deg],strain [um/m]\n", "column heads"),
+        ({}, TRACE.replace("angle", "phi"), "requires a column angle"),
+        ({}, TRACE.replace("strain", "eps"), "requires a column strain"),
+        ({}, TRACE.replace("um/m", "MPa"), "is not a strain"), ({}, TRACE.replace("deg", "mm"), "is not an angle"),
+        ({}, TRACE.replace(" [deg]", ""), "has no unit"), ({}, TRACE.replace(" [um/m]", ""), "has no unit"),
+        ({}, TRACE.replace("um/m", "um/x"), "unknown unit"), ({}, TRACE.replace("500", "x"), "not a number"),
+        ({}, TRACE.replace("-3,491", "nan,491"), "not finite"), ({}, TRACE.replace("-3,491", "-3"), "entries in line"),
+        ({}, TRACE.replace("491", "4,91"), "entries in line"), ({}, TRACE[:60], "fewer than 8"),
+        ({"fit": ["offset", "scale", "shift"]}, TRACE[:110], "fewer than 11"),
+        ({}, TRACE.replace("um/m", "mm/m"), "above 5 %"),
+        ({}, TRACE.replace("strain [um/m]", "strain [m/m]"), "above 5 %"),
+        ({}, "angle [deg],strain [um/m]\n" + "1,2\n" * 20, "has only one angle"),
+        ({}, "angle [deg],strain [um/m]\n" + "".join(f"{a},7\n" for a in range(20)), "has only one strain"),
+        ({"angle": "rad"}, TRACE, "the case says rad"), ({"strain": "mm/m"}, TRACE, "the case says mm/m"),
+        ({"angle": "furlong"}, TRACE.replace(" [deg]", ""), "unknown unit"),
+        ({"fit": ["scale", "scale"]}, TRACE, "contains a quantity twice"), ({"fit": ["gain"]}, TRACE, "must be"),
+        ({"fit": "scale"}, TRACE, "must be a list"), ({"strain_column": "angle"}, TRACE, "is the column of the angle"),
+        ({"reverse": 1}, TRACE, "true or false"), ({"strain_column": "SG1"}, TRACE, "requires a column SG1"),
+        ({}, TRACE.replace("angle [deg],", "angle [deg],angle [deg],").replace("-", "1,-"), "two columns"),
+    ],
+)  # fmt: skip
+def test_a_wrong_trace_is_one_sentence(measured, text, rule, tmp_path):
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(InputError) as refused:
+        read(changed({"measured": {"file": "t.csv", **measured}}), tmp_path)
+    assert rule in str(refused.value)
+    assert str(refused.value).startswith("gauge.g.measured")
+    assert "\n" not in str(refused.value)
+
+
+def test_units_come_from_the_heads_or_from_the_case(tmp_path):
+    (tmp_path / "t.csv").write_text(TRACE)
+    (tmp_path / "bare.csv").write_text(TRACE.replace(" [deg]", "").replace(" [um/m]", ""))
+    (tmp_path / "logger.csv").write_text(
+        TRACE.replace("angle [deg],strain [um/m]", "phi [°];SG1 [µε]").replace(",", ";")
+    )
+    ways = (
+        {"file": "t.csv"}, {"file": "bare.csv", "angle": "deg", "strain": "ustrain"},
+        {"file": "logger.csv", "angle_column": "phi", "strain_column": "SG1"},
+    )  # fmt: skip
+    traces = [read(changed({"measured": one}), tmp_path).measured for one in ways]
+    for one in traces:
+        assert np.array_equal(one.angle, traces[0].angle)
+        assert np.array_equal(one.strain, traces[0].strain)
+    assert traces[0].angle[0] == pytest.approx(-math.radians(20.0))
+    assert traces[0].strain[0] == pytest.approx(100e-6)
+    against = read(changed({"measured": {"file": "t.csv", "reverse": True}}), tmp_path).measured
+    assert np.array_equal(against.angle, -traces[0].angle)
+
+
+def test_the_pair_of_a_gear_is_found_where_it_is_the_only_one():
+    assert (read(changed()).pair, read(changed()).member) == ("p", "driver")
+    assert read(changed({"gear": "b"})).member == "driven"
+    two = changed(pair__q={"driver": "a", "driven": "b", "load": "10 N"})
+    with pytest.raises(InputError, match=r"gear a is in 2 pairs; specify one of p, q"):
+        read(two)
+    two["gauge"]["g"]["pair"] = "q"
+    assert read(two).pair == "q"
+    twins = changed(pair__p={"driver": "a", "driven": "a", "load": "800 N"})
+    assert read(twins).member == "driver"
+    twins["gauge"]["g"]["member"] = "driven"
+    assert read(twins).member == "driven"
+    with pytest.raises(InputError, match="is in no pair"):
+        read(changed({"gear": "c"}, gear__c=CASE["gear"]["a"]))
+
+
+def test_wide_teeth_are_refused_with_the_remedy():
+    with pytest.raises(InputError, match=r'set pair\.p\.width = "plane"'):
+        read(changed(pair__p={**CASE["pair"]["p"], "width": "slices"}))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return ran(changed()).data
+
+
+def test_strain_is_mean_stress_by_the_plane_modulus(plain):
+    history = plain.history
+    assert history.strain == pytest.approx(history.stress * (1.0 - 0.3**2) / 206.8e9, rel=1e-12)
+    assert plain.peak_strain[0] == history.strain.max()
+    assert plain.fillet_ratio[0] == pytest.approx(history.strain_opposite.min() / history.strain.max())
+    assert plain.peak_error[0] < 3e-3 * plain.peak_strain[0]
+
+
+def test_a_displaced_grid_sees_what_one_glued_there_does(plain):
+    other = ran(changed({"arc": f"{(plain.place.arc + 1e-4) * 1e3!r} mm"})).data
+    x = np.linspace(-2e-3, 2e-3, 50)
+    one, two = (np.interp(x, h.x, s[:, 0]) for h, s in (
+        (plain.history, plain.history.strain_towards_tip), (other.history, other.history.strain),
+    ))  # fmt: skip
+    assert one == pytest.approx(two, rel=1e-6)
+    assert plain.history.peak_of_places(0)[-1] == pytest.approx(other.peak_strain[0], rel=1e-6)
+
+
+def test_scaled_gears_under_scaled_loads_have_one_strain(plain):
+    twice = changed({"grid_length": "0.6 mm", "placement_tolerance": "0.2 mm"}, pair__p__load="3200 N")
+    for gear in twice["gear"].values():
+        gear |= {"module": "4 mm", "face_width": "20 mm"}
+    found = ran(twice).data
+    assert found.history.strain == pytest.approx(plain.history.strain, rel=1e-6, abs=1e-9)
+    assert found.history.angle == pytest.approx(plain.history.angle, rel=1e-9, abs=1e-12)
+
+
+def test_without_neighbours_a_tooth_out_of_mesh_is_unstrained():
+    found = ran(changed(effects__neighbour_coupling=False)).data.history
+    pair = found.pair
+    out = (found.x < pair.x_start - 1e-6) | (found.x > pair.x_end + 1e-6)
+    assert out.any()
+    assert np.abs(found.strain[out]).max() == 0.0
+    assert np.abs(found.strain[~out]).min() > 1e-5
+
+
+def test_plane_stress_has_contraction_along_the_face():
+    stress = changed()
+    for gear in stress["gear"].values():
+        gear["plane"] = "stress"
+    along = ran(stress).data
+    stress["gauge"]["g"]["direction"], stress["gauge"]["g"]["grid_length"] = "90 deg", "0.3 mm"
+    stress["gauge"]["g"]["grid_width"] = "0.3 mm"
+    across = ran(stress).data
+    assert across.history.strain_per_stress == pytest.approx(-0.3 * along.history.strain_per_stress)
+    # a square grid covers the same arc in both directions
+    assert across.history.strain == pytest.approx(-0.3 * along.history.strain, rel=1e-9, abs=1e-15)
+
+
+def test_the_place_of_a_ring_gear_is_its_60_degree_tangent():
+    ring = {
+        "internal": True, "teeth": 60, "module": "2 mm", "face_width": "10 mm", "rim_thickness": "8 mm",
+        "profile_shift": -0.2, "tip_diameter": "118 mm",
+        "cutter": {"teeth": 25, "profile_shift": 0.1, "addendum": 1.25, "tip_radius": 0.2},
+    }  # fmt: skip
+    document = changed({"gear": "r", "grid_length": "0.2 mm"}, gear__r=ring)
+    document["pair"]["p"]["driven"] = "r"
+    outcome = ran(document)
+    data, values = outcome.data, {one.name: one for one in outcome.values}
+    assert values["g.place_tangent_angle"].value == pytest.approx(60.0, abs=1e-3)
+    assert data.place.diameter > 2.0 * 60e-3  # outside the reference circle
+    assert data.peak_strain[0] > 0.0 > data.peak_strain_opposite[0]
+
+
+def test_pitch_deviations_count_by_the_tooth():
+    even = ran(changed()).data
+    uneven = changed(effects__spacing_errors=True)
+    uneven["gear"]["a"]["spacing_errors"] = [f"{d} um" for d in [0, 0, 0, 6] + [0] * 16]
+    first, late = (ran(uneven | {"gauge": {"g": uneven["gauge"]["g"] | {"tooth": tooth}}}).data for tooth in (12, 4))
+    assert first.history.strain == pytest.approx(even.history.strain, rel=1e-9, abs=1e-12)
+    x = np.linspace(even.history.pair.x_start, even.history.pair.x_end, 200)
+    one, other = (np.interp(x, h.x, h.strain[:, 0]) for h in (even.history, late.history))
+    assert other.mean() < 0.97 * one.mean()  # a tooth with material missing carries less
+
+
+def test_a_trace_of_the_computed_curve_is_found_again(plain, tmp_path):
+    angle, strain = plain.history.angle, plain.history.strain[:, 0]
+    at = np.arange(0.0, 360.0, 0.3)
+    place = np.mod(np.radians(at - 77.7) + math.pi, 2.0 * math.pi) - math.pi
+    made = -12.0 + 1.02e6 * np.interp(place, angle, strain, left=0.0, right=0.0)
+    made += np.random.default_rng(5).normal(0.0, 3.0, at.size)
+    lines = [f"{a:.2f},{s:.4f}\n" for a, s in zip(at, made, strict=True)]
+    (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + "".join(lines))
+    fit = ["offset", "scale", "shift"]
+    outcome = ran(changed({"measured": {"file": "t.csv", "fit": fit}}), tmp_path)
+    values = {one.name.removeprefix("g."): one.value for one in outcome.values}
+    for name, wanted in (("offset", -12.0), ("scale", 1.02), ("shift", 77.7)):
+        error = values[f"measured_{name}_standard_error"]
+        assert abs(values[f"measured_{name}"] - wanted) < 3.5 * error
+    assert values["correlation"] > 0.9995
+    assert values["residual_rms"] == pytest.approx(3.0 / 1.02, rel=0.25)
+    (verdict,) = (one for one in outcome.remarks if "measured strain" in one)
+    assert "% above the computed one, within" in verdict
+    # not fitted, the zero of the angle is elsewhere: the few samples there are not of this engagement
+    (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + "".join(lines[300:600]))
+    with pytest.raises(InputError, match=r"too few samples"):
+        ran(changed({"measured": {"file": "t.csv"}}), tmp_path)
+
+
+@pytest.mark.parametrize(("gain", "words"), [(1.3, "30 % above the computed one, beyond"), (-1.0, "opposite signs")])
+def test_the_verdict_says_beyond(gain, words, plain, tmp_path):
+    angle, strain = np.degrees(plain.history.angle), 1e6 * plain.history.strain[:, 0]
+    rows = "".join(f"{a:.6f},{gain * s:.6f}\n" for a, s in zip(angle, strain, strict=True))
+    (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + rows)
+    outcome = ran(changed({"measured": {"file": "t.csv"}}), tmp_path)
+    assert any(words in one for one in outcome.remarks)
