@@ -81,6 +81,7 @@ RELIEF = {"tip": {"amount": "10 um", "length": "1 mm"}, "root": {"amount": "5 um
           "crowning": {"amount": "4 um"}}  # fmt: skip
 RELIEVED = joined(LOADED, {"gear.a.relief": RELIEF, "effects": {"relief": True}})
 DESIGN = joined(PAIR, {"results": ["relief"], "effects": {}, "design": {"grind": []}})
+GAUGE = joined(LOADED, {"results": ["gauge"], "gauge": {"g": {"gear": "a"}}, "accuracy": {"tolerance": 0.03}})
 LOADING = {"results": ["loading-spectrum"], "loading": {"contact_ratio": 1.6}}
 OF_PAIR = joined(PAIR, {"results": ["loading-spectrum"], "effects": {}, "loading": {"pair": "I"}})
 RATING = shipped("rating_spur", "rating")
@@ -119,6 +120,9 @@ ROWS = {
     "PairPart.centre_distance": (LOADED, "pair.I.centre_distance", lambda s: metres(without_backlash(21, 34, 0.2))),
     "PairPart.width": (LOADED, "pair.I.width", "plane"),
     "PairPart.load": (joined(LOADED, {"pair.I.load": None, "pair.I.loads": ["1 kN", "2 kN"]}), "pair.I.load", "2 kN"),
+    "GaugePart.pair": (GAUGE, "gauge.g.pair", "I"),
+    "GaugePart.member": (GAUGE, "gauge.g.member", "driver"),
+    "GaugePart.tangent_angle": (GAUGE, "gauge.g.tangent_angle", "30 deg"),
     "DesignPart.pair": (DESIGN, "design.pair", "I"),
     "DesignPart.load": (DESIGN, "design.load", "2 kN"),
     "DesignPart.length": (DESIGN, "design.length", lambda s: metres(s.pairs["I"].x_end - s.pairs["I"].x_start)),

@@ -101,8 +101,8 @@ def test_a_wrong_key_is_one_sentence(gauge, rule):
         ({}, TRACE.replace(" [deg]", ""), "has no unit"), ({}, TRACE.replace(" [um/m]", ""), "has no unit"),
         ({}, TRACE.replace("um/m", "um/x"), "unknown unit"), ({}, TRACE.replace("500", "x"), "not a number"),
         ({}, TRACE.replace("-3,491", "nan,491"), "not finite"), ({}, TRACE.replace("-3,491", "-3"), "entries in line"),
-        ({}, TRACE.replace("491", "4,91"), "entries in line"), ({}, TRACE[:60], "fewer than 8"),
-        ({"fit": ["offset", "scale", "shift"]}, TRACE[:110], "fewer than 11"),
+        ({}, TRACE.replace("491", "4,91"), "entries in line"), ({}, "".join(TRACE.splitlines(True)[:7]), "fewer than 8"),
+        ({"fit": ["offset", "scale", "shift"]}, "".join(TRACE.splitlines(True)[:11]), "fewer than 11"),
         ({}, TRACE.replace("um/m", "mm/m"), "above 5 %"),
         ({}, TRACE.replace("strain [um/m]", "strain [m/m]"), "above 5 %"),
         ({}, "angle [deg],strain [um/m]\n" + "1,2\n" * 20, "has only one angle"),
@@ -112,7 +112,7 @@ def test_a_wrong_key_is_one_sentence(gauge, rule):
         ({"fit": ["scale", "scale"]}, TRACE, "contains a quantity twice"), ({"fit": ["gain"]}, TRACE, "must be"),
         ({"fit": "scale"}, TRACE, "must be a list"), ({"strain_column": "angle"}, TRACE, "is the column of the angle"),
         ({"reverse": 1}, TRACE, "true or false"), ({"strain_column": "SG1"}, TRACE, "requires a column SG1"),
-        ({}, TRACE.replace("angle [deg],", "angle [deg],angle [deg],").replace("-", "1,-"), "two columns"),
+        ({}, TRACE.replace("strain [um/m]\n", "angle [deg]\n"), "two columns"),
     ],
 )  # fmt: skip
 def test_a_wrong_trace_is_one_sentence(measured, text, rule, tmp_path):
@@ -203,7 +203,8 @@ def test_without_neighbours_a_tooth_out_of_mesh_is_unstrained():
     out = (found.x < pair.x_start - 1e-6) | (found.x > pair.x_end + 1e-6)
     assert out.any()
     assert np.abs(found.strain[out]).max() == 0.0
-    assert np.abs(found.strain[~out]).min() > 1e-5
+    inside = (found.x > pair.x_start + 1e-6) & (found.x < pair.x_end - 1e-6)
+    assert np.abs(found.strain[inside]).min() > 1e-5
 
 
 def test_plane_stress_has_contraction_along_the_face():
