@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.effects import PLANE_EFFECTS
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, place_gauge
 from fegear.case.built.pair_checks import check_relief
-from fegear.contact.effects import PLANE_EFFECTS
 from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
