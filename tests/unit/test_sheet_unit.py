@@ -204,6 +204,13 @@ class Gear:
     sag: float | None = shown_as(declared(Swing, "deflection"), name="gear_sag")
 
 
+def test_all_members_of_a_family_are_drawn_where_there_is_no_most() -> None:
+    gears = {str(k): [Gear(float(k), 1e-6)] for k in range(9)}
+    lines = [Line("sag", each=Family(lambda _: gears, most=most)) for most in (None, 4)]
+    (figure,) = Chart("c", "C", "", (Over("place", tuple(lines)),), of=lambda _: gears["0"]).figures(SEEN)
+    assert [item.name for item in figure.panels[0].items] == [*"012345678", *"0358"]  # type: ignore[union-attr]
+
+
 def test_a_line_over_objects_has_a_point_of_each_and_what_a_member_lacks_is_not_drawn() -> None:
     pair = [Gear(0.0, 1e-6), Gear(1.0, 3e-6)]
     family = Family(lambda _: {"a": pair, "b": [Gear(0.0, None)]}, role=lambda seen: f"as {seen.key}")

@@ -173,7 +173,7 @@ class Passing:
     frequency : ndarray
     """
 
-    what: tuple[str, ...]
+    what: tuple[str, ...] = shown("", "event")
     frequency: Array = shown("Hz", "frequency of the event")
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.shown import shown
+from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,6 +49,12 @@ class Phases:
     ring_behind_sun: float = shown(
         "", "phase lag of the ring mesh of a planet relative to its sun mesh, in base pitches", name="gamma_rs"
     )
+
+    @property
+    @shows("", "counter-clockwise")
+    def planet(self) -> NDArray[np.intp]:
+        """Numbers of the planets."""
+        return np.arange(1, self.angle.size + 1)
 
     @property
     def delays(self) -> Array:

@@ -42,8 +42,8 @@ class Family:
         Of a member: ``{key}`` is its name, ``{one.…}`` what it declares.
     role : text
         ``series`` for members without order, ``ramp`` for ordered ones; else the role of all, or a text that gives it.
-    most : int
-        More are not drawn: evenly chosen, the first and the last among them.
+    most : int or None
+        More are not drawn: evenly chosen, the first and the last among them. None: all are.
     keep : where, optional
         Numbers of the members that are drawn whatever is chosen, in place of the first and the last.
     """
@@ -51,7 +51,7 @@ class Family:
     of: Where
     label: Text = "{key}"
     role: Text = "series"
-    most: int = MOST_CURVES
+    most: int | None = MOST_CURVES
     keep: Where | None = None
 
 
@@ -333,7 +333,7 @@ def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
     """Lines of every member that is drawn."""
     family, members = bundle.family, list(seen.each(bundle.family.of))
     keep = (0, len(members) - 1) if family.keep is None else seen.find(family.keep)
-    chosen = few(len(members), keep, family.most)
+    chosen = few(len(members), keep, len(members) if family.most is None else family.most)
     for k, role in zip(chosen, _roles(family.role, chosen), strict=True):
         member = members[k]
         for line in bundle.lines:

@@ -13,6 +13,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.printed import percent
+from fegear.base.shown import shown
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, PHASED_HARMONICS, set_pair
 from fegear.dynamics.planetary.kinematics import axial_forces
@@ -22,21 +23,20 @@ from fegear.dynamics.planetary.planet_loads import force_on, planet_loads
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.dynamics.planetary.set_cycle import MeshedSet, mean_force, set_cycle
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Bars, Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import effects_of_teeth, kind_of, loaded_pair
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.case.built.planetary import SetInputs
@@ -47,12 +47,14 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.planet_set import Central
     from fegear.dynamics.planetary.set_cycle import MeshTeeth, SetCycle
     from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
 
 #: Springs of the sun's mesh [s], the laws of both meshes, and the equilibrium over the cycle.
 _TEETH, _LAWS, _LOADS = 0.6, 0.05, 0.05
 #: A force or an error of a smaller share of the mean force, or of the largest error, is none.
 _ROUND_OFF = 1e-10
+_CYCLE = Axis("mesh cycle, in base pitches")
 
 
 def needs_meshed(_scene: Scene, name: str) -> tuple[Task, ...]:
@@ -112,13 +114,14 @@ def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
     return set_cycle(asked.model, (teeth("sun"), teeth("ring")), asked.phases, asked.sun_torque, asked.run.input)
 
 
-def _present_cycle(data: SetCycle, asked: SetInputs) -> Outcome:
-    said = []
-    if asked.given["ring"] is not None:
-        said.append(f"Set {asked.name}: specified planet-ring mesh stiffness used.")
-    if asked.run.mesh_efficiency < 1.0:
-        said.append(f"Set {asked.name}: planet load sharing without friction.")
-    return Outcome(data, remarks=tuple(said))
+_CYCLE_SHEET = Sheet(
+    remarks=(
+        Remark("Set {name}: specified planet-ring mesh stiffness used.", when=lambda seen: seen.asked.given["ring"]),
+        Remark(
+            "Set {name}: planet load sharing without friction.", when=lambda seen: seen.asked.run.mesh_efficiency < 1.0
+        ),
+    ),
+)  # fmt: skip
 
 
 #: Stage of what the loaded teeth of a set's meshes are to its planets.
@@ -129,7 +132,7 @@ _teeth_stage = partial(
 
 SET_CYCLE = _teeth_stage(
     compute=_cycle,
-    present=_present_cycle,
+    present=_CYCLE_SHEET.present,
     cites=citing(Citation("mark", "load sharing of coupled tooth pairs", "App. A")),
     forecast=lambda _scene, _name: forecasts.constant(_LAWS),
 )
@@ -153,15 +156,25 @@ def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
     return MeshedSet(asked.model, teeth("sun"), teeth("ring"), asked.phases, asked.sun_torque, asked.run.input)
 
 
-def _present_meshed(data: MeshedSet, asked: SetInputs) -> Outcome:
-    solved = [one for mesh, one in zip(MESHES, data.teeth, strict=True) if asked.given[mesh] is None]
-    said = f"Set {asked.name}: for vibration, coupled teeth and corner contact are linearised at equal load sharing."
-    return Outcome(data, remarks=(said,) if any(not one.slotted for one in solved) else ())
+def _slotted(seen: Seen) -> bool:
+    """Whether all solved meshes are linear at any share."""
+    meshes = zip(MESHES, seen.data.teeth, strict=True)
+    return all(one.slotted for mesh, one in meshes if seen.asked.given[mesh] is None)
+
+
+_MESHED_SHEET = Sheet(
+    remarks=(
+        Remark(
+            "Set {name}: for vibration, coupled teeth and corner contact are linearised at equal load sharing.",
+            when=lambda seen: not _slotted(seen),
+        ),
+    ),
+)  # fmt: skip
 
 
 MESHED_SET = _teeth_stage(
     compute=_meshed,
-    present=_present_meshed,
+    present=_MESHED_SHEET.present,
     cites=citing(Citation("mark", "tooth pairs as springs about the mean load", "section 2")),
     forecast=lambda _scene, _name: forecasts.constant(_TEETH),
 )
@@ -198,72 +211,115 @@ def _compute(inputs: LoadInputs, upstream: Upstream, _work: Work) -> PlanetLoads
     return planet_loads(cast("SetCycle", upstream[Task("set-cycle", inputs.name)]), inputs.errors)
 
 
-def _tables(data: PlanetLoads, inputs: LoadInputs) -> tuple[Table, ...]:
-    name, count = inputs.name, data.mesh_force.shape[1]
-    known = bool(data.cycle.off.size)
+@dataclass(frozen=True)
+class PlanetCycle:
+    """Load of one planet over the mesh cycle, and its error where the teeth have one; shape (M,)."""
 
-    def with_error(column: Column, error: Array) -> tuple[Column, ...]:
-        return column, error_column(column, error)
+    error: Array | None
+    s: Array = shown("", "mesh position, in base pitches")
+    load: Array = shown("N", "mesh force of this planet, along the line of action")
 
-    def over(column: Column, answer: Callable[[PlanetLoads], Array]) -> tuple[Column, ...]:
-        return with_error(column, data.shift(answer)) if known else (column,)
+    @property
+    def in_order(self) -> PlanetCycle:
+        """By rising mesh position."""
+        order = np.argsort(self.s)
+        return PlanetCycle(None, self.s[order], self.load[order])
 
-    cycle = [*columns_of(data, "s"), *over(column_of(data, "te"), lambda one: one.te)]
-    for n in range(count):
-        load = Column(f"load_{n + 1}", data.mesh_force[0, n], "N", "mesh force of this planet, along the line of "
-                                                                   "action")  # fmt: skip
-        cycle += over(load, lambda one, n=n: one.mesh_force[0, n])  # type: ignore[misc]
-    pins = data.pin_force @ data.weights
-    pins = np.where(np.abs(pins) < _ROUND_OFF * data.mean_force, 0.0, pins)
-    of_pins = data.mean_error(lambda one: one.pin_force)
-    shares = [
-        Column("planet", np.arange(1, count + 1), "", "counter-clockwise"),
-        Column("tangential_error", inputs.errors[1], "um", "tangential displacement of its pin, counter-clockwise"),
-        Column("radial_error", inputs.errors[0], "um", "radial displacement of its pin, outward"),
-        *with_error(column_of(data, "shares"), data.shares_error),
-        *with_error(column_of(data, "largest_load"), data.largest_load_error),
-        Column("apart_sun", data.lifted[0], "", "fraction of the mesh cycle without contact, sun mesh"),
-        Column("apart_ring", data.lifted[1], "", "fraction of the mesh cycle without contact, ring mesh"),
-        *with_error(Column("pin_radial", pins[0], "N", "mean radial pin force on the planet, outward"), of_pins[0]),
-        *with_error(Column("pin_tangential", pins[1], "N", "mean tangential pin force on the planet, "
-                                                           "counter-clockwise"),
-                    of_pins[1]),
-    ]  # fmt: skip
-    if inputs.tilting:
-        meaning = "mean tilting moment of its meshes on the planet, carried by its pin"
-        shares += with_error(Column("tilting_moment", inputs.tilting * data.shares, "N.m", meaning),
-                             abs(inputs.tilting) * data.shares_error)  # fmt: skip
-    return (
-        Table(f"planet_loads_{name}", tuple(cycle), f"Loads of the planets of {name} over the mesh cycle"),
-        Table(f"planet_shares_{name}", tuple(shares), f"Load sharing of the planets of {name}", printed=True),
-        _forces(data, inputs),
+
+@dataclass(frozen=True)
+class PlanetShares:
+    """What every planet and its pin carry, shape (planets,); helical teeth tilt them."""
+
+    pin_radial_error: Array
+    pin_tangential_error: Array
+    tilting_error: Array | None
+    planet: NDArray[np.intp] = shown("", "counter-clockwise")
+    tangential_error: Array = shown("um", "tangential displacement of its pin, counter-clockwise")
+    radial_error: Array = shown("um", "radial displacement of its pin, outward")
+    apart_sun: Array = shown("", "fraction of the mesh cycle without contact, sun mesh")
+    apart_ring: Array = shown("", "fraction of the mesh cycle without contact, ring mesh")
+    pin_radial: Array = shown("N", "mean radial pin force on the planet, outward")
+    pin_tangential: Array = shown("N", "mean tangential pin force on the planet, counter-clockwise")
+    tilting_moment: Array | None = shown("N.m", "mean tilting moment of its meshes on the planet, carried by its pin")
+
+
+@dataclass(frozen=True)
+class ForceHarmonics:
+    """Harmonics of the force on one member, shape (harmonics,)."""
+
+    error: Array
+    n: NDArray[np.intp] = shown("", "mesh harmonic")
+    force: Array = shown("N", "radial force amplitude")
+
+
+@dataclass(frozen=True)
+class PlanetHarmonics:
+    """Harmonics of the transmission error and of the forces on each member, and which of them phasing cancels."""
+
+    te_error: Array
+    forces: dict[str, ForceHarmonics]
+    n: NDArray[np.intp] = shown("", "mesh harmonic")
+    te: Array = shown("um", "0-peak")
+    cancels: NDArray[np.str_] = shown(
+        "", "cancelled by phasing (equal planets): transmission error and torque, radial forces, or both"
     )
 
+    @property
+    def unexcited(self) -> bool:
+        """Whether no member is."""
+        return not any(np.any(one.force) for one in self.forces.values())
 
-def _forces(data: PlanetLoads, inputs: LoadInputs) -> Table:
-    """Harmonics of the transmission error and of the forces on each member, and which of them phasing cancels."""
+
+@dataclass(frozen=True)
+class ShownLoads:
+    """What is shown of the loads of a set."""
+
+    loads: PlanetLoads
+    planets: dict[str, PlanetCycle]
+    te_error: Array | None
+    shares: PlanetShares
+    harmonics: PlanetHarmonics
+
+
+def _shown(data: PlanetLoads, inputs: LoadInputs) -> ShownLoads:
+    known = bool(data.cycle.off.size)
+
+    def planet(n: int) -> PlanetCycle:
+        error = data.shift(lambda one: one.mesh_force[0, n]) if known else None
+        return PlanetCycle(error, data.s, data.mesh_force[0, n])
+
+    planets = {str(n + 1): planet(n) for n in range(data.mesh_force.shape[1])}
+    te_error = data.shift(lambda one: one.te) if known else None
+    return ShownLoads(data, planets, te_error, _shares(data, inputs), _harmonics(data, inputs))
+
+
+def _shares(data: PlanetLoads, inputs: LoadInputs) -> PlanetShares:
+    pins = data.pin_force @ data.weights
+    radial, tangential = np.where(np.abs(pins) < _ROUND_OFF * data.mean_force, 0.0, pins)
+    radial_error, tangential_error = data.mean_error(lambda one: one.pin_force)
+    tilted = inputs.tilting != 0.0
+    return PlanetShares(
+        radial_error, tangential_error, abs(inputs.tilting) * data.shares_error if tilted else None,
+        np.arange(1, data.shares.size + 1), inputs.errors[1], inputs.errors[0], data.lifted[0], data.lifted[1], radial,
+        tangential, inputs.tilting * data.shares if tilted else None,
+    )  # fmt: skip
+
+
+def _harmonics(data: PlanetLoads, inputs: LoadInputs) -> PlanetHarmonics:
     rule = inputs.phasing
     order = rule.harmonic.astype(float)
-    te = Column("te", _size(data, data.te, order), "um", "0-peak")
-    columns = [
-        Column("n", rule.harmonic, "", "mesh harmonic"),
-        te,
-        error_column(te, 2.0 * data.harmonics_error(lambda one: one.te, order)),
-    ]
-    for member in CENTRALS:
 
-        def force_of(one: PlanetLoads, member: Central = member) -> Array:
-            return force_on(one, member)
+    def forces(member: Central) -> ForceHarmonics:
+        size = np.hypot(*_size(data, force_on(data, member), order))
+        error = 2.0 * np.hypot(*data.harmonics_error(lambda one: force_on(one, member), order))
+        return ForceHarmonics(error, rule.harmonic, size)
 
-        said = f"radial force amplitude on the {member} (root of the sum of squares of both directions)"
-        force = Column(f"force_{member}", np.hypot(*_size(data, force_of(data), order)), "N", said)
-        columns += [force, error_column(force, 2.0 * np.hypot(*data.harmonics_error(force_of, order)))]
     words = {(True, True): "nothing", (False, True): "te", (True, False): "forces", (False, False): "te and forces"}
     cancelled = [words[t > 0.0, f > 0.0] for t, f in zip(rule.torque, rule.force, strict=True)]
-    said = "cancelled by phasing (equal planets): transmission error and torque, radial forces, or both"
-    columns.append(Column("cancels", np.array(cancelled), "", said))
-    title = f"Harmonics of the transmission error and of forces in {inputs.name}"
-    return Table(f"planet_forces_{inputs.name}", tuple(columns), title)
+    return PlanetHarmonics(
+        2.0 * data.harmonics_error(lambda one: one.te, order), {member: forces(member) for member in CENTRALS},
+        rule.harmonic, _size(data, data.te, order), np.array(cancelled),
+    )  # fmt: skip
 
 
 def _size(data: PlanetLoads, values: Array, order: Array) -> Array:
@@ -273,58 +329,103 @@ def _size(data: PlanetLoads, values: Array, order: Array) -> Array:
     return np.where(found < _ROUND_OFF * scale, 0.0, found)
 
 
-def _present(data: PlanetLoads, inputs: LoadInputs) -> Outcome:
-    name = inputs.name
-    values = [value_of(data, key, name, getattr(data, f"{key}_error"))
-              for key in ("mesh_load_factor", "largest_share", "te_mean", "te_peak_to_peak")]  # fmt: skip
-    said = []
-    apart = [
-        f"planet {n + 1} ({percent(share)} of the cycle)" for n, share in enumerate(data.lifted.max(axis=0)) if share
-    ]
-    if apart:
-        said.append(f"Set {name}: loss of contact: {', '.join(apart)}.")
-    if not data.cycle.off.size:
-        said.append(f"Set {name}: specified stiffnesses are assumed exact; errors include the mesh positions only.")
-    return Outcome(data, _tables(data, inputs), tuple(values), {"positions": int(data.s.size)}, tuple(said),
-                   (_over_cycle(name, data), _harmonics(name, data, inputs)))  # fmt: skip
+def _apart(seen: Seen) -> str:
+    """Planets that lose contact."""
+    lifted = seen.data.loads.lifted.max(axis=0)
+    return ", ".join(f"planet {n + 1} ({percent(share)} of the cycle)" for n, share in enumerate(lifted) if share)
 
 
-def _over_cycle(name: str, data: PlanetLoads) -> Figure:
-    order = np.argsort(data.s)
-    curves = tuple(
-        Curve(data.s[order], data.mesh_force[0, n, order], f"planet {n + 1}", f"series:{n}", markers=False)
-        for n in range(data.mesh_force.shape[1])
-    )
-    x = axis_of(type(data), "s", "mesh cycle, in base pitches")
-    return Figure(
-        f"planet_load_sharing_{name}", f"Load sharing of the planets of {name}",
-        f"Set {name}: mesh forces of each planet over a mesh cycle, and transmission error at the "
-        f"{data.cycle.driving}. K_gamma = {data.mesh_load_factor:.4g}.",
-        (
-            Panel(x, Axis("mesh force", "N", zero=True), curves),
-            Panel(x, axis_of(type(data), "te", "transmission error"), (curve_of(data, "s", "te"),)),
-        ),
-    )  # fmt: skip
+def _with_error(quantity: str, error: str = "") -> tuple[str, Off]:
+    return quantity, Off(quantity, error or f"{quantity}_error")
 
 
-def _harmonics(name: str, data: PlanetLoads, inputs: LoadInputs) -> Figure:
-    order = inputs.phasing.harmonic.astype(float)
-    bars = tuple(
-        Bars(order, np.hypot(*_size(data, force_on(data, member), order)), member, f"series:{k}")
-        for k, member in enumerate(CENTRALS)
-    )
-    none = not any(np.any(bar.y) for bar in bars)
-    return Figure(
-        f"planet_forces_{name}", f"Radial forces on sun, ring and carrier, set {name}",
-        f"Set {name}: harmonics of the forces of the planets on sun, ring and carrier, amplitude; zero for floating "
-        "members.",
-        (
-            Panel(
-                Axis("mesh harmonic", whole=True), Axis("force", "N", limits=(0.0, 1.0) if none else None), bars,
-                title="none (planet forces cancel)" if none else "",
+_SHEET = Sheet(
+    of=_shown,
+    tables=(
+        Rows(
+            "planet_loads_{name}", "Loads of the planets of {name} over the mesh cycle",
+            (
+                "loads.s", *_with_error("loads.te", "te_error"),
+                Each("planets", Cell("load", ending="_{key}"), Off("load", "error", name="load_{key}")),
             ),
         ),
-    )  # fmt: skip
+        Rows(
+            "planet_shares_{name}", "Load sharing of the planets of {name}",
+            (
+                *(f"shares.{one}" for one in ("planet", "tangential_error", "radial_error")),
+                *_with_error("loads.shares"),
+                *_with_error("loads.largest_load"),
+                "shares.apart_sun", "shares.apart_ring",
+                *_with_error("shares.pin_radial"),
+                *_with_error("shares.pin_tangential"),
+                *_with_error("shares.tilting_moment", "shares.tilting_error"),
+            ),
+            printed=True,
+        ),
+        Rows(
+            "planet_forces_{name}", "Harmonics of the transmission error and of forces in {name}",
+            (
+                "n", *_with_error("te", "harmonics.te_error"),
+                Each(
+                    "harmonics.forces",
+                    Cell(
+                        "force", ending="_{key}",
+                        further=" on the {key} (root of the sum of squares of both directions)",
+                    ),
+                    Off("force", "error", name="force_{key}"),
+                ),
+                "cancels",
+            ),
+            of="harmonics",
+        ),
+    ),
+    values=tuple(
+        Number(f"loads.{one}", f"loads.{one}_error")
+        for one in ("mesh_load_factor", "largest_share", "te_mean", "te_peak_to_peak")
+    ),
+    figures=(
+        Chart(
+            "planet_load_sharing_{name}", "Load sharing of the planets of {name}",
+            "Set {name}: mesh forces of each planet over a mesh cycle, and transmission error at the "
+            "{d.loads.cycle.driving}. K_gamma = {d.loads.mesh_load_factor:.4g}.",
+            (
+                Over(
+                    _CYCLE,
+                    (
+                        Line(
+                            "load", x="s", of="in_order", each=Family("planets", "planet {key}", most=None),
+                            look={"markers": False},
+                        ),
+                    ),
+                    Axis("mesh force", "N", zero=True),
+                ),
+                Over(_CYCLE, (Line("te", x="s"),), Axis("transmission error", "um")),
+            ),
+            of="loads",
+        ),
+        Chart(
+            "planet_forces_{name}", "Radial forces on sun, ring and carrier, set {name}",
+            "Set {name}: harmonics of the forces of the planets on sun, ring and carrier, amplitude; zero for floating "
+            "members.",
+            (
+                Over(
+                    Axis("mesh harmonic", whole=True),
+                    (Line("force", x="n", kind="bars", each=Family("harmonics.forces")),),
+                    lambda seen: Axis("force", "N", limits=(0.0, 1.0) if seen.data.harmonics.unexcited else None),
+                    title=lambda seen: "none (planet forces cancel)" if seen.data.harmonics.unexcited else "",
+                ),
+            ),
+        ),
+    ),
+    remarks=(
+        Remark(lambda seen: f"Set {seen.name}: loss of contact: {_apart(seen)}.", when=_apart),
+        Remark(
+            "Set {name}: specified stiffnesses are assumed exact; errors include the mesh positions only.",
+            when=lambda seen: not seen.data.loads.cycle.off.size,
+        ),
+    ),
+    settings={"positions": "loads.s.size"},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -336,7 +437,7 @@ PLANET_LOAD_SHARING = Stage(
     needs=lambda _scene, name: (Task("set-cycle", name),),
     inputs=_load_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     cites=citing(Citation("lin-parker", "bodies and springs of the set", "section 2")),
     forecast=_forecast,
 )

@@ -8,28 +8,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.shown import declared
+from fegear.base.shown import shown
 from fegear.case.built.planetary import planetary_part, ring_checks, set_inputs
 from fegear.case.planetary import PHASED_HARMONICS
 from fegear.dynamics.planetary.kinematics import axial_forces, passing, sidebands
 from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_of, value_of
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Bars, Curve, Points
+from fegear.engine.figure.items import Curve, Points
 from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage
-from fegear.engine.table import Column, Table
 from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from fegear.case.built.planetary import SetInputs
     from fegear.case.reading import Scene
-    from fegear.dynamics.planetary.kinematics import Passing, Sidebands
+    from fegear.dynamics.planetary.kinematics import AxialForces, Passing, Sidebands
     from fegear.dynamics.planetary.phases import Phasing
+    from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.internal_interference import InternalCheck
 
@@ -71,78 +73,49 @@ def _compute(inputs: PlanetSetInputs, _upstream: Upstream, _work: Work) -> Plane
     return PlanetSetData(passing(found, run), sidebands(found, run), phasing(found, inputs.harmonics))
 
 
-def _members(asked: SetInputs) -> Table:
-    run = asked.run
-    speed, torque = (np.array([of[name] for name in CENTRALS]) for of in (run.speed, run.torque))
-    columns = [
-        Column("member", np.array(CENTRALS), "", "member of the set"),
-        Column("speed", speed, "rpm", "counter-clockwise"),
-        Column("torque", torque, "N.m", "external torque, counter-clockwise"),
-        Column("power", torque * speed, "W", "power into the set"),
-    ]
-    if asked.base_twist:
-        axial = axial_forces(asked.found, run, asked.base_twist).sun * np.array([1.0, -1.0, 0.0])
-        columns.append(Column("axial_force", axial, "N", "axial force of the planets, towards the observer"))
-    return Table(f"planet_members_{asked.name}", tuple(columns), f"Speeds and torques of set {asked.name}")
+@dataclass(frozen=True)
+class MemberRow:
+    """How one member of a set runs."""
+
+    member: str = shown("", "member of the set")
+    speed: float = shown("rpm", "counter-clockwise")
+    torque: float = shown("N.m", "external torque, counter-clockwise")
+    power: float = shown("W", "power into the set")
+    axial_force: float | None = shown("N", "axial force of the planets, towards the observer")
 
 
-def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
-    asked, rule = inputs.asked, data.phasing
-    name, found, run, phases = asked.name, asked.found, asked.run, asked.phases
-    tables = [_members(asked)]
-    if asked.at_speed:
-        tables.append(Table(
-            f"planet_passing_{name}",
-            (Column("what", np.array(data.passing.what), "", "event"), *columns_of(data.passing, "frequency")),
-            f"Characteristic frequencies of set {name}",
-        ))  # fmt: skip
-        tables.append(Table(
-            f"planet_sidebands_{name}", columns_of(data.sidebands, "harmonic", "order", "frequency", "share"),
-            f"Sidebands measured at the ring of set {name}",
-        ))  # fmt: skip
-    tables.append(Table(
-        f"planet_phases_{name}",
-        (Column("planet", np.arange(1, found.count + 1), "", "counter-clockwise"),
-         *columns_of(phases, "angle", "sun", "ring")),
-        f"Mesh phases of set {name}",
-    ))  # fmt: skip
-    if inputs.checks:
-        tables.append(_ring_table(inputs))
-    excites = declared(type(rule), "excites")
-    tables.append(Table(
-        f"planet_phasing_{name}",
-        (*columns_of(rule, "harmonic", "torque", "force"), Column("excites", np.array(rule.excites), "",
-                                                                  excites.meaning)),
-        f"Planet phasing of set {name}: resultant of each mesh harmonic",
-    ))  # fmt: skip
-    values = [
-        value_of(run, "ratio", name),
-        value_of(run, "efficiency", name),
-        value_of(phases, "ring_behind_sun", name),
-        value_of(found, "sun_angle", name),
-        value_of(found, "ring_angle", name),
-    ]
-    if found.count > 1:
-        values.append(value_of(found, "neighbour_clearance", name))
-    if asked.base_twist:
-        along = axial_forces(found, run, asked.base_twist)
-        values += [value_of(along, "sun", name), value_of(along, "tilting", name)]
-    if asked.at_speed:
-        values += [value_of(run, "mesh_frequency", name), value_of(run, "planet_speed", name)]
-    return Outcome(data, tuple(tables), tuple(values), {"mirrored": run.mirrored}, _remarks(inputs),
-                   (_drawing(asked), _phasing_figure(name, rule)))  # fmt: skip
+@dataclass(frozen=True)
+class CheckRow:
+    """What planet and ring may foul each other in."""
+
+    check: str = shown("", "possible interference")
+    margin: float = shown("mm", "clearance; negative: interference, blank: not applicable")
 
 
-def _ring_table(inputs: PlanetSetInputs) -> Table:
-    margins = np.array([one.margin for one in inputs.checks]) * inputs.module
-    return Table(
-        f"planet_in_ring_{inputs.asked.name}",
-        (
-            Column("check", np.array([one.name for one in inputs.checks]), "", "possible interference"),
-            Column("margin", margins, "mm", "clearance; negative: interference, blank: not applicable"),
-        ),
-        f"Interference checks of planet and ring of set {inputs.asked.name}",
-    )
+@dataclass(frozen=True)
+class ShownSet:
+    """What is shown of a set: what it was asked for beside what follows, and axial forces of helical teeth."""
+
+    data: PlanetSetData
+    asked: SetInputs
+    axial: AxialForces | None
+    checks: list[CheckRow]
+
+    @property
+    def members(self) -> list[MemberRow]:
+        """A row each."""
+        run, along = self.asked.run, self.axial
+        axial = (None, None, None) if along is None else (along.sun, -along.sun, 0.0)
+        return [
+            MemberRow(name, run.speed[name], run.torque[name], run.torque[name] * run.speed[name], force)
+            for name, force in zip(CENTRALS, axial, strict=True)
+        ]
+
+
+def _shown(data: PlanetSetData, inputs: PlanetSetInputs) -> ShownSet:
+    asked = inputs.asked
+    axial = axial_forces(asked.found, asked.run, asked.base_twist) if asked.base_twist else None
+    return ShownSet(data, asked, axial, [CheckRow(one.name, one.margin * inputs.module) for one in inputs.checks])
 
 
 def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
@@ -162,8 +135,9 @@ def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _drawing(asked: SetInputs) -> Figure:
+def _drawing(seen: Seen) -> tuple[Figure, ...]:
     """Pitch circles of the members, with the phase of each planet."""
+    asked: SetInputs = seen.asked.asked
     found, phases = asked.found, asked.phases
     a, round_ = found.centre_distance * 1e3, np.linspace(0.0, 2.0 * math.pi, 181)
     radii = {
@@ -182,32 +156,84 @@ def _drawing(asked: SetInputs) -> Figure:
     notes = tuple(f"{n + 1}: gamma {s:.4g}" for n, s in enumerate(phases.sun))
     points = Points(x, y, "", "series:2", "circle", notes=notes, written=True)
     plane = Axis("x", "mm"), Axis("y", "mm")
-    return Figure(
+    return (Figure(
         f"planet_set_{asked.name}", f"Planetary set {asked.name}",
         f"Set {asked.name}: working pitch circles, and phase lag gamma_sn of each sun mesh relative to planet 1, in "
         f"base pitches; ring meshes lag by {phases.ring_behind_sun:.4g}.",
         (Panel(*plane, (*items, points), equal=True, height=2.0),),
-    )  # fmt: skip
+    ),)  # fmt: skip
 
 
-def _phasing_figure(name: str, rule: Phasing) -> Figure:
-    return Figure(
-        f"planet_phasing_{name}", f"Phasing of set {name}",
-        f"Set {name}: resultant of each mesh harmonic over all planets as torque and as radial force; where both are "
-        "zero only planet modes are excited.",
-        (Panel(axis_of(type(rule), "harmonic", whole=True), Axis("resultant / sum of the "
-                                                                 "planets", limits=(0.0, 1.05)), (
-            Bars(rule.harmonic, rule.torque, "torque", "series:0"), Bars(rule.harmonic, rule.force, "force",
-                                                                         "series:1"),
-        )),),
-    )  # fmt: skip
+_AT_SPEED = "asked.at_speed"
+_SHEET = Sheet(
+    of=_shown,
+    name=lambda inputs: inputs.asked.name,
+    tables=(
+        Rows(
+            "planet_members_{name}", "Speeds and torques of set {name}",
+            ("member", "speed", "torque", "power", "axial_force"), of="members",
+        ),
+        Rows(
+            "planet_passing_{name}", "Characteristic frequencies of set {name}", ("what", "frequency"),
+            of="data.passing", when=_AT_SPEED,
+        ),
+        Rows(
+            "planet_sidebands_{name}", "Sidebands measured at the ring of set {name}",
+            ("harmonic", "order", "frequency", "share"), of="data.sidebands", when=_AT_SPEED,
+        ),
+        Rows(
+            "planet_phases_{name}", "Mesh phases of set {name}", ("planet", "angle", "sun", "ring"), of="asked.phases"
+        ),
+        Rows(
+            "planet_in_ring_{name}", "Interference checks of planet and ring of set {name}", ("check", "margin"),
+            of="checks", when="checks",
+        ),
+        Rows(
+            "planet_phasing_{name}", "Planet phasing of set {name}: resultant of each mesh harmonic",
+            ("harmonic", "torque", "force", "excites"), of="data.phasing",
+        ),
+    ),
+    values=(
+        Number("ratio", of="asked.run"),
+        Number("efficiency", of="asked.run"),
+        Number("ring_behind_sun", of="asked.phases"),
+        Number("sun_angle", of="asked.found"),
+        Number("ring_angle", of="asked.found"),
+        Number("neighbour_clearance", of="asked.found", when=lambda seen: seen.data.asked.found.count > 1),
+        Number("sun", of="axial"),
+        Number("tilting", of="axial"),
+        Number("mesh_frequency", of="asked.run", when=_AT_SPEED),
+        Number("planet_speed", of="asked.run", when=_AT_SPEED),
+    ),
+    figures=(
+        _drawing,
+        Chart(
+            "planet_phasing_{name}", "Phasing of set {name}",
+            "Set {name}: resultant of each mesh harmonic over all planets as torque and as radial force; where both "
+            "are zero only planet modes are excited.",
+            (
+                Over(
+                    "harmonic",
+                    (
+                        Line("torque", "torque", "series:0", kind="bars"),
+                        Line("force", "force", "series:1", kind="bars"),
+                    ),
+                    Axis("resultant / sum of the planets", limits=(0.0, 1.05)), x_options={"whole": True},
+                ),
+            ),
+            of="data.phasing",
+        ),
+    ),
+    remarks=(lambda seen: _remarks(seen.asked),),
+    settings={"mirrored": "asked.run.mirrored"},
+)  # fmt: skip
 
 
 PLANET_SET = Stage(
     subjects=planetary_sets,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     cites=citing(
         Citation("parker", "modes excited by a harmonic with planet phasing"),
         Citation("mcfadden-smith", "sidebands of planets passing a sensor"),

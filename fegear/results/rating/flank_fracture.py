@@ -442,7 +442,7 @@ _SHEET = Sheet(
             (
                 Over(
                     "depth",
-                    (Line("exposure", each=Family("points", "at {one.letter}", most=_PLACES), look=_PLAIN),),
+                    (Line("exposure", each=Family("points", "at {one.letter}", most=None), look=_PLAIN),),
                     options={"zero": True}, x_options={"zero": True}, marks=_limits,
                 ),
                 Over(
