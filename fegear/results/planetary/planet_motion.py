@@ -9,26 +9,27 @@ from typing import TYPE_CHECKING, Literal, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.shown import declared
+from fegear.base.shown import shown, shows
 from fegear.case.built.planetary import pin_errors, planetary_part, set_inputs
+from fegear.case.planetary import MESHES
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import columns_of, drawn
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results.planetary.planet_set import planetary_sets
 from fegear.results.planetary.planet_vibration import check_vibration
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.set_motion import SetSweep
     from fegear.dynamics.planetary.set_response import LinearSet
+    from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
 
 #: Seconds of one steady motion and planet.
@@ -86,62 +87,111 @@ def _compute(asked: SetMotionInputs, upstream: Upstream, work: Work) -> SetSweep
     return set_sweep(run, frequency, asked.tolerance, asked.direction, work.progress)
 
 
-def _present(data: SetSweep, asked: SetMotionInputs) -> Outcome:
-    name, rpm = asked.name, asked.speeds * _RPM
-    kinds = np.array([state.kind for state in data.states])
-    columns = (
-        Column("speed", asked.speeds, "rpm", f"speed of the {asked.driving}"),
-        *columns_of(
-            data, "mesh_frequency", "sun_factor", "ring_factor", "tooth_factor", "error", "apart_sun", "apart_ring",
-            "behind", "periods",
-        ),
-        Column("motion", kinds, "", "periodic (stable), or type of non-periodic motion"),
-    )  # fmt: skip
-    top = int(np.argmax(data.tooth_factor))
-    error = float(data.error[top])
-    values = (
-        Value(f"{name}.motion_tooth_factor", float(data.tooth_factor[top]), "", None if math.isnan(error) else error,
-              declared(type(data), "tooth_factor").meaning + ", over all speeds"),
-        Value(f"{name}.motion_tooth_factor_speed", float(asked.speeds[top]), "rpm", None,
-            "speed at which the maximum occurs"),
-    )  # fmt: skip
-    said = [f"Set {name}: same damping ratio for all modes, also during loss of contact."]
-    apart = np.maximum(data.apart_sun, data.apart_ring)
-    if apart.any():
-        said.append(f"Set {name}: loss of contact at {np.count_nonzero(apart)} of {rpm.size} speeds, longest at "
-                    f"{rpm[int(np.argmax(apart))]:.5g} rpm.")  # fmt: skip
-    odd = kinds != "periodic"
-    if odd.any():
-        where = ", ".join(f"{at:.5g} rpm {kind}" for at, kind in zip(rpm[odd], kinds[odd], strict=True))
-        said.append(f"Set {name}: non-periodic motion at {np.count_nonzero(odd)} speeds: {where}; factors there are "
-                    "the maximum of the evaluated periods.")  # fmt: skip
-    table = Table(f"planet_motion_{name}", columns, f"Motion of set {name} over speed")
-    settings: dict[str, object] = {"tolerance": asked.tolerance, "direction": asked.direction}
-    return Outcome(data, (table,), values, settings, tuple(said), (_figure(name, data, asked),))
+@dataclass(frozen=True)
+class ShownMotion:
+    """Motions of a set over the speeds of its driving member, shape (N,)."""
+
+    found: SetSweep
+    speed: Array = shown("rpm", "speed of the driving member")
+
+    @property
+    @shows("", "periodic (stable), or type of non-periodic motion")
+    def motion(self) -> NDArray[np.str_]:
+        """In one word."""
+        return np.array([state.kind for state in self.found.states])
+
+    @property
+    def top(self) -> int:
+        """Where a tooth force is largest."""
+        return int(np.argmax(self.found.tooth_factor))
+
+    @property
+    def apart(self) -> Array:
+        """Longest time without contact of any mesh, as a fraction."""
+        return np.maximum(self.found.apart_sun, self.found.apart_ring)
 
 
-def _figure(name: str, data: SetSweep, asked: SetMotionInputs) -> Figure:
-    rpm = asked.speeds * _RPM
-    x = Axis(f"speed of the {asked.driving}", "rpm")
+def _known_error(seen: Seen) -> float | None:
+    error = float(seen.data.found.error[seen.data.top])
+    return None if math.isnan(error) else error
 
-    def curves(*keys: str) -> tuple[Curve, ...]:
-        return tuple(
-            Curve(rpm, drawn(data, key), word, f"series:{k}", markers=rpm.size < _FEW)
-            for k, (key, word) in enumerate(zip(keys, ("mesh with the sun", "mesh with the ring"), strict=True))
-        )
 
-    return Figure(
-        f"planet_motion_{name}", f"Motion of set {name} over speed",
-        f"Set {name}: maximum mesh force / equal share, and maximum fraction of time without contact.",
-        (
-            Panel(x, Axis("force / equal share"), curves("sun_factor", "ring_factor")),
-            Panel(x, Axis("time fraction without contact", zero=True), curves("apart_sun", "apart_ring")),
-        ),
-    )  # fmt: skip
+def _apart(seen: Seen) -> str:
+    apart, rpm = seen.data.apart, seen.data.speed * _RPM
+    return (
+        f"Set {seen.name}: loss of contact at {np.count_nonzero(apart)} of {rpm.size} speeds, longest at "
+        f"{rpm[int(np.argmax(apart))]:.5g} rpm."
+    )
+
+
+def _odd(seen: Seen) -> str:
+    odd, kinds = seen.data.motion != "periodic", seen.data.motion
+    where = ", ".join(f"{at:.5g} rpm {kind}" for at, kind in zip(seen.data.speed[odd] * _RPM, kinds[odd], strict=True))
+    return (
+        f"Set {seen.name}: non-periodic motion at {np.count_nonzero(odd)} speeds: {where}; factors there are the "
+        "maximum of the evaluated periods."
+    )
+
+
+def _over_speed(quantity: str, y: Axis) -> Over:
+    """A curve of either mesh; few speeds are marked."""
+
+    def look(seen: Seen) -> dict[str, bool]:
+        return {"markers": seen.data.speed.size < _FEW}
+
+    lines = tuple(
+        Line(f"found.{quantity.format(mesh=mesh)}", f"mesh with the {mesh}", f"series:{k}", x="speed", look=look)
+        for k, mesh in enumerate(MESHES)
+    )
+    return Over(lambda seen: Axis(f"speed of the {seen.asked.driving}", "rpm"), lines, y)
 
 
 #: Fewer speeds are drawn as points.
 _FEW = 40
+_SHEET = Sheet(
+    of=lambda data, asked: ShownMotion(data, asked.speeds),
+    tables=(
+        Rows(
+            "planet_motion_{name}", "Motion of set {name} over speed",
+            (
+                Cell("speed", meaning="speed of the {asked.driving}"),
+                *(
+                    f"found.{one}" for one in (
+                        "mesh_frequency", "sun_factor", "ring_factor", "tooth_factor", "error", "apart_sun",
+                        "apart_ring", "behind", "periods",
+                    )
+                ),
+                "motion",
+            ),
+        ),
+    ),
+    values=(
+        Number(
+            "found.tooth_factor", _known_error, si=lambda seen: seen.data.found.tooth_factor[seen.data.top],
+            name="motion_tooth_factor", further=", over all speeds",
+        ),
+        Number(
+            "speed", si=lambda seen: seen.data.speed[seen.data.top], name="motion_tooth_factor_speed",
+            meaning="speed at which the maximum occurs",
+        ),
+    ),
+    figures=(
+        Chart(
+            "planet_motion_{name}", "Motion of set {name} over speed",
+            "Set {name}: maximum mesh force / equal share, and maximum fraction of time without contact.",
+            (
+                _over_speed("{mesh}_factor", Axis("force / equal share")),
+                _over_speed("apart_{mesh}", Axis("time fraction without contact", zero=True)),
+            ),
+        ),
+    ),
+    remarks=(
+        Remark("Set {name}: same damping ratio for all modes, also during loss of contact."),
+        Remark(_apart, when=lambda seen: seen.data.apart.any()),
+        Remark(_odd, when=lambda seen: (seen.data.motion != "periodic").any()),
+    ),
+    settings={"tolerance": lambda seen: seen.asked.tolerance, "direction": lambda seen: seen.asked.direction},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -164,7 +214,7 @@ PLANET_MOTION = Stage(
     needs=lambda _scene, name: (Task("planet-modes", name),),
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(
         Citation("lin-parker", "model of the planetary set"),

@@ -10,20 +10,18 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.shown import declared
+from fegear.base.shown import shown
 from fegear.case.built.planetary import body_masses, check_masses, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, set_pair
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, columns_of, error_column
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Bars, Curve
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import loaded_pair
@@ -31,10 +29,13 @@ from fegear.results.planetary.planet_load_sharing import meshed_set, needs_meshe
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.dynamics.planetary.set_modes import SetModes
+    from fegear.dynamics.planetary.planet_set import Central
     from fegear.dynamics.planetary.set_response import ForcedResponse, LinearSet
+    from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
 
 #: Of the largest motion about the axes, and in any case [m]: what moves less across them is drawn as standing still.
@@ -116,54 +117,119 @@ def _shares(error: Array, amplitude: Array, harmonics: int) -> Array:
     return np.pad(np.minimum(share, 1.0), (0, harmonics - share.size), constant_values=1.0)
 
 
-def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
-    data, name = linear.modes, inputs.name
-    number = np.arange(data.frequency.size)
-    columns = (
-        Column("mode", number, "", "mode number, increasing frequency"),
-        *columns_of(data, "frequency"),
-        *columns_of(linear, "frequency_error"),
-        Column("kind", np.array(data.kind), "", declared(type(data), "kind").meaning),
-        Column("speed", data.frequency / inputs.teeth_per_turn * 2.0 * math.pi, "rpm",
-               f"speed of the {inputs.driving} at which the mesh frequency coincides"),
-        *columns_of(data, "turning", "moving", "sun_mesh", "ring_mesh"),
-    )  # fmt: skip
-    values = tuple(
-        Value(f"{name}.natural_frequency_{k}", float(data.frequency[k]), "Hz", float(linear.frequency_error[k]),
-              f"undamped natural frequency, {data.kind[k]}")
-        for k in number if data.frequency[k] > 0.0
-    ) + tuple(
-        Value(f"{name}.{member}.{what}", number, unit, None, f"{meaning}, {source}")
-        for member, mass, inertia, source in inputs.bodies
-        for what, number, unit, meaning in (
-            ("mass", mass, "kg", "mass"), ("inertia", inertia, "kg.m^2", "moment of inertia about its axis"),
-        )
-    )  # fmt: skip
-    counted = ", ".join(f"{count} of type {kind}" for kind, count in Counter(data.kind).items())
-    table = Table(f"planet_modes_{name}", columns, f"Natural modes of set {name}", printed=True)
-    said = f"Set {name}: {counted}; gyroscopic forces of the carrier's rotation are neglected."
-    return Outcome(linear, (table,), values, {}, (said,), (_modes_figure(name, data),))
+@dataclass(frozen=True)
+class Mode:
+    """One mode and the estimated error of its frequency."""
+
+    error: float
+    kind: str
+    frequency: float = shown("Hz", "undamped natural frequency")
 
 
-def _modes_figure(name: str, data: SetModes) -> Figure:
-    moving = data.frequency > 0.0
-    other = np.append(True, np.diff(data.frequency) > 1e-8 * data.frequency[-1])  # pairs of one frequency stand once
-    own = np.flatnonzero(moving & other)
-    words = tuple(f"{data.frequency[k] * 1e-3:.3g}\n{data.kind[k][0].upper()}" for k in own)
-    parts = {"sun meshes": data.sun_mesh, "ring meshes": data.ring_mesh}
-    parts["pins and bearings"] = 1.0 - data.sun_mesh - data.ring_mesh
-    bars = tuple(
-        Bars(np.arange(own.size), one[own], word, f"series:{k}") for k, (word, one) in enumerate(parts.items())
-    )
-    return Figure(
-        f"planet_modes_{name}", f"Natural modes of set {name}",
-        f"Set {name}: strain energy distribution of the modes. R: rotational, T: translational (double), P: planet, "
-        "M: mixed mode.",
-        (Panel(
-            Axis("natural frequency [kHz] and type", categories=words),
-            Axis("strain energy share", limits=(0.0, 1.0)), bars, stacked=True,
-        ),),
-    )  # fmt: skip
+@dataclass(frozen=True)
+class Body:
+    """A body of the set, and where its mass comes from."""
+
+    member: str
+    mass: float = shown("kg", "mass")
+    inertia: float = shown("kg.m^2", "moment of inertia about its axis")
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class StrainEnergy:
+    """Where the strain energy of the modes that move sits, modes of one frequency once; shape (modes,)."""
+
+    labels: tuple[str, ...]
+    mode: NDArray[np.intp] = shown("", "modes that are drawn")
+    sun_mesh: Array = shown("", "strain energy share of the sun meshes")
+    ring_mesh: Array = shown("", "strain energy share of the ring meshes")
+    elsewhere: Array = shown("", "strain energy share of pins and bearings")
+
+
+@dataclass(frozen=True)
+class ShownModes:
+    """Natural modes and bodies as they are shown."""
+
+    linear: LinearSet
+    bodies: tuple[Body, ...]
+    mode: NDArray[np.intp] = shown("", "mode number, increasing frequency")
+    speed: Array = shown("rpm", "at which the mesh frequency coincides")
+
+    @property
+    def single(self) -> dict[str, Mode]:
+        """Modes that are not rigid motions, by number."""
+        data = self.linear.modes
+        every = zip(data.frequency, self.linear.frequency_error, data.kind, strict=True)
+        return {str(k): Mode(float(off), kind, float(hz)) for k, (hz, off, kind) in enumerate(every) if hz > 0.0}
+
+    @property
+    def energy(self) -> StrainEnergy:
+        """Of the modes that are drawn."""
+        data = self.linear.modes
+        other = np.append(True, np.diff(data.frequency) > 1e-8 * data.frequency[-1])
+        own = np.flatnonzero((data.frequency > 0.0) & other)
+        labels = tuple(f"{data.frequency[k] * 1e-3:.3g}\n{data.kind[k][0].upper()}" for k in own)
+        sun, ring = data.sun_mesh, data.ring_mesh
+        return StrainEnergy(labels, np.arange(own.size), sun[own], ring[own], (1.0 - sun - ring)[own])
+
+
+def _shown_modes(linear: LinearSet, inputs: VibrationInputs) -> ShownModes:
+    data, bodies = linear.modes, tuple(Body(*one) for one in inputs.bodies)
+    speed = data.frequency / inputs.teeth_per_turn * 2.0 * math.pi
+    return ShownModes(linear, bodies, np.arange(data.frequency.size), speed)
+
+
+def _kinds(seen: Seen) -> str:
+    """How many modes of each kind there are."""
+    return ", ".join(f"{count} of type {kind}" for kind, count in Counter(seen.data.linear.modes.kind).items())
+
+
+_MODES = Sheet(
+    of=_shown_modes,
+    tables=(
+        Rows(
+            "planet_modes_{name}", "Natural modes of set {name}",
+            (
+                "mode", "linear.modes.frequency", "linear.frequency_error", "linear.modes.kind",
+                Cell("speed", meaning="speed of the {asked.driving} at which the mesh frequency coincides"),
+                *(f"linear.modes.{one}" for one in ("turning", "moving", "sun_mesh", "ring_mesh")),
+            ),
+            printed=True,
+        ),
+    ),
+    values=(
+        Number("frequency", "error", each="single", name="natural_frequency_{key}", further=", {one.kind}"),
+        Each("bodies", *(
+            Number(one, owner="{name}.{one.member}", further=", {one.source}") for one in ("mass", "inertia")
+        )),
+    ),
+    figures=(
+        Chart(
+            "planet_modes_{name}", "Natural modes of set {name}",
+            "Set {name}: strain energy distribution of the modes. R: rotational, T: translational (double), P: planet, "
+            "M: mixed mode.",
+            (
+                Over(
+                    lambda seen: Axis("natural frequency [kHz] and type", categories=seen.data.energy.labels),
+                    tuple(
+                        Line(quantity, label, f"series:{k}", x="mode", kind="bars")
+                        for k, (quantity, label) in enumerate((
+                            ("sun_mesh", "sun meshes"), ("ring_mesh", "ring meshes"), ("elsewhere", "pins and bearings")
+                        ))
+                    ),
+                    Axis("strain energy share", limits=(0.0, 1.0)), panel={"stacked": True},
+                ),
+            ),
+            of="energy",
+        ),
+    ),
+    remarks=(
+        Remark(
+            lambda seen: f"Set {seen.name}: {_kinds(seen)}; gyroscopic forces of the carrier's rotation are neglected."
+        ),
+    ),
+)  # fmt: skip
 
 
 PLANET_MODES = Stage(
@@ -171,7 +237,7 @@ PLANET_MODES = Stage(
     needs=lambda scene, name: (*needs_meshed(scene, name), *needs_teeth(scene, name)),
     inputs=_inputs,
     compute=_linear,
-    present=_present_modes,
+    present=_MODES.present,
     check=check_masses,
     cites=citing(Citation("lin-parker", "model of the planetary set and mode types")),
     forecast=lambda _scene, _name: forecasts.constant(0.3),
@@ -196,70 +262,126 @@ def _vibration(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> Forc
     return forced_response(linear, frequency)
 
 
-def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome:
-    name = inputs.name
-    speed = Column("speed", inputs.speeds, "rpm", f"speed of the {inputs.driving}")
-    columns = [speed, *columns_of(data, "mesh_frequency")]
-    for key in ("sun_force", "ring_force", "least_share"):
-        column = column_of(data, key)
-        columns += [column, error_column(column, data.shift(lambda one, key=key: getattr(one, key)))]  # type: ignore[misc]
-    for member in CENTRALS:
-        for axis, word in enumerate(_ALONG):
-            said = "amplitude: root of the sum of squares of its harmonics" + (
-                "; at the base circle or the pins" if axis == 2 else "")  # fmt: skip
-            column = Column(f"{member}_{word}", data.amplitude(member, axis), "um", said)
-            off = data.shift(lambda one, member=member, axis=axis: one.amplitude(member, axis))  # type: ignore[misc]
-            columns += [column, error_column(column, off)]
-    top = int(np.argmax(data.largest_force))
-    off = data.shift(lambda one: one.largest_force)
-    values = (
-        Value(f"{name}.dynamic_force", float(data.largest_force[top]), "N", float(off[top]),
-              "maximum dynamic mesh force over all speeds"),
-        Value(f"{name}.dynamic_force_speed", float(inputs.speeds[top]), "rpm", None,
-            "speed at which the maximum occurs"),
-    )  # fmt: skip
-    remarks = [f"Set {name}: linearised at the mean load, damping ratio of all modes {inputs.damping_ratio:.3g}."]
-    low = int(np.argmin(data.least_share))
-    if data.least_share[low] < 0.0:
-        remarks.append(
-            f"Set {name}: linear mesh force falls to {data.least_share[low]:.3g} of its mean at "
-            f"{inputs.speeds[low] * 30.0 / math.pi:.5g} rpm (loss of contact, not modelled here); use planet-motion."
-        )
-    table = Table(f"planet_vibration_{name}", tuple(columns), f"Vibration of set {name} over speed")
-    return Outcome(
-        data,
-        (table,),
-        values,
-        {},
-        tuple(remarks),
-        (_figure(name, data, inputs),),
-        "reduce accuracy.tolerance",
-    )
+@dataclass(frozen=True)
+class Motion:
+    """Amplitude of a motion of one member over speed, and its estimated error where it has one; shape (N,)."""
+
+    speed: Array = shown("rpm", "speed of the driving member")
+    amplitude: Array = shown("um", "amplitude: root of the sum of squares of its harmonics")
+    error: Array | None = None
 
 
-def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
-    rpm = inputs.speeds * 30.0 / math.pi
-    x = Axis(f"speed of the {inputs.driving}", "rpm")
-    forces = tuple(
-        Curve(rpm, force, f"{one} mesh", role, markers=False)
-        for force, one, role in ((data.sun_force, "sun", "series:0"), (data.ring_force, "ring", "series:1"))
-    )
-    across = [np.hypot(data.amplitude(member, 0), data.amplitude(member, 1)) for member in CENTRALS]
-    around = max(float(data.amplitude(member, 2).max()) for member in CENTRALS)
-    still = max(_ROUND_OFF * around, _NO_MOTION)
-    moves = tuple(
-        Curve(rpm, np.where(size < still, 0.0, size) * 1e6, member, f"series:{k}", markers=False)
-        for k, (member, size) in enumerate(zip(CENTRALS, across, strict=True))
-    )
-    return Figure(
-        f"planet_vibration_{name}", f"Vibration of set {name} over speed",
-        f"Set {name}: maximum dynamic mesh force above the mean of {data.mean_force:.5g} N, and radial motion "
-        "amplitude of sun, ring and carrier, excited by the transmission errors of the meshes with their phases.",
-        (
-            Panel(x, Axis("dynamic mesh force", "N", zero=True), forces),
-            Panel(x, Axis("radial motion", "um", zero=True), moves),
+@dataclass(frozen=True)
+class ShownVibration:
+    """Vibration of a set over the speeds of its driving member, shape (N,)."""
+
+    found: ForcedResponse
+    speed: Array = shown("rpm", "speed of the driving member")
+
+    @property
+    def top(self) -> int:
+        """Where the dynamic force is largest."""
+        return int(np.argmax(self.found.largest_force))
+
+    @property
+    def low(self) -> int:
+        """Where a mesh force is smallest."""
+        return int(np.argmin(self.found.least_share))
+
+    def error(self, quantity: str) -> Array:
+        """Estimated one of a force."""
+        return self.found.shift(lambda one: getattr(one, quantity))
+
+    @property
+    def motions(self) -> dict[str, Motion]:
+        """Of every coordinate of the central members."""
+
+        def motion(member: Central, axis: int) -> Motion:
+            error = self.found.shift(lambda one: one.amplitude(member, axis))
+            return Motion(self.speed, self.found.amplitude(member, axis), error)
+
+        return {f"{member}_{word}": motion(member, k) for member in CENTRALS for k, word in enumerate(_ALONG)}
+
+    @property
+    def across(self) -> dict[str, Motion]:
+        """Radial ones of the central members; what moves less than round-off stands still."""
+        size = self.found.amplitude
+        still = max(_ROUND_OFF * max(float(size(member, 2).max()) for member in CENTRALS), _NO_MOTION)
+        sizes = {member: np.hypot(size(member, 0), size(member, 1)) for member in CENTRALS}
+        return {member: Motion(self.speed, np.where(one < still, 0.0, one)) for member, one in sizes.items()}
+
+
+def _speed_axis(seen: Seen) -> Axis:
+    return Axis(f"speed of the {seen.asked.driving}", "rpm")
+
+
+def _with_error(quantity: str) -> tuple[str, Off]:
+    return f"found.{quantity}", Off(f"found.{quantity}", lambda seen: seen.data.error(quantity))
+
+
+def _at_circle(seen: Seen) -> str:
+    return "; at the base circle or the pins" if seen.key.endswith("turn") else ""
+
+
+_PLAIN = {"markers": False}
+_VIBRATION = Sheet(
+    of=lambda data, inputs: ShownVibration(data, inputs.speeds),
+    tables=(
+        Rows(
+            "planet_vibration_{name}", "Vibration of set {name} over speed",
+            (
+                Cell("speed", meaning="speed of the {asked.driving}"), "found.mesh_frequency",
+                *_with_error("sun_force"), *_with_error("ring_force"), *_with_error("least_share"),
+                Each(
+                    "motions", Cell("amplitude", name="{key}", further=_at_circle),
+                    Off("amplitude", "error", name="{key}"),
+                ),
+            ),
         ),
-    )  # fmt: skip
+    ),
+    values=(
+        Number(
+            "found.largest_force", lambda seen: seen.data.error("largest_force")[seen.data.top],
+            si=lambda seen: seen.data.found.largest_force[seen.data.top], name="dynamic_force",
+            meaning="maximum dynamic mesh force over all speeds",
+        ),
+        Number(
+            "speed", si=lambda seen: seen.data.speed[seen.data.top], name="dynamic_force_speed",
+            meaning="speed at which the maximum occurs",
+        ),
+    ),
+    figures=(
+        Chart(
+            "planet_vibration_{name}", "Vibration of set {name} over speed",
+            "Set {name}: maximum dynamic mesh force above the mean of {d.found.mean_force:.5g} N, and radial motion "
+            "amplitude of sun, ring and carrier, excited by the transmission errors of the meshes with their phases.",
+            (
+                Over(
+                    _speed_axis,
+                    tuple(
+                        Line(f"found.{mesh}_force", f"{mesh} mesh", f"series:{k}", x="speed", look=_PLAIN)
+                        for k, mesh in enumerate(MESHES)
+                    ),
+                    Axis("dynamic mesh force", "N", zero=True),
+                ),
+                Over(
+                    _speed_axis, (Line("amplitude", x="speed", each=Family("across"), look=_PLAIN),),
+                    Axis("radial motion", "um", zero=True),
+                ),
+            ),
+        ),
+    ),
+    remarks=(
+        Remark("Set {name}: linearised at the mean load, damping ratio of all modes {asked.damping_ratio:.3g}."),
+        Remark(
+            lambda seen: f"Set {seen.name}: linear mesh force falls to "
+            f"{seen.data.found.least_share[seen.data.low]:.3g} of its mean at "
+            f"{seen.data.speed[seen.data.low] * 30.0 / math.pi:.5g} rpm (loss of contact, not modelled here); use "
+            "planet-motion.",
+            when=lambda seen: seen.data.found.least_share.min() < 0.0,
+        ),
+    ),
+)  # fmt: skip
 
 
 PLANET_VIBRATION = Stage(
@@ -267,7 +389,7 @@ PLANET_VIBRATION = Stage(
     needs=lambda _scene, name: (Task("planet-modes", name),),
     inputs=_inputs,
     compute=_vibration,
-    present=_present_vibration,
+    present=_VIBRATION.present,
     check=check_vibration,
     cites=citing(
         Citation("lin-parker", "model of the planetary set"),
