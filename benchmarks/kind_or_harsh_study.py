@@ -25,7 +25,7 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.load_factors import iso_face_load_factor
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Mark, Zone
+from fegear.engine.figure.items import Curve, Mark, Zone
 from fegear.engine.figure.panel import Panel
 from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
@@ -33,7 +33,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.output.draw_png import draw_pictures
-from fegear.results.gear.root_stress_study import fe_error, sentences, spread_curve, spread_figure
+from fegear.results.gear.root_stress_spread import fe_error, sentences, spread, spread_figure
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 TABLE = DOCS / "studies" / "root_stress_population.csv"
@@ -104,11 +104,15 @@ def helical_figure() -> Figure:
     panels = []
     for against, title in (("fe_even", "load even over the contact lines"), ("fe", "load as the flanks share it")):
         off = helical_error(against)
-        curves = (spread_curve(r, RATED[k], f"series:{i}") for i, (k, r) in enumerate(helical_ratios(against).items()))
+        known = {RATED[key]: spread(ratio) for key, ratio in helical_ratios(against).items()}
+        curves = tuple(
+            Curve(one.ratio, 100.0 * one.share, name, f"series:{i}", dash="steps", markers=False)
+            for i, (name, one) in enumerate(known.items()) if one is not None
+        )  # fmt: skip
         panels.append(
             Panel(
                 Axis("root stress, formula / FE", limits=(0.5, 1.5)),
-                Axis("gears with a smaller ratio", "%", limits=(0.0, 100.0)), tuple(c for c in curves if c),
+                Axis("gears with a smaller ratio", "%", limits=(0.0, 100.0)), curves,
                 (Zone("x", 1.0 - off, 1.0 + off), Mark("x", 1.0), Mark("y", 50.0)), title=title,
             )
         )  # fmt: skip

@@ -11,7 +11,8 @@ from fegear.contact.compared.population import LOADS, drawn_gears, share_error, 
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
-from fegear.results.gear.root_stress_study import WORDS, spread_curve
+from fegear.results.gear.root_stress_spread import WORDS, bounds_in_words, spread
+from fegear.results.gear.root_stress_study import StudyRows
 
 BASE = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 1e-3, 6e-3)
 BOX = {"teeth": (20.0, 100.0), "profile_shift": (-0.2, 0.5), "rack_tip_radius": (0.1, 0.35)}
@@ -123,12 +124,23 @@ def test_right_everywhere_and_silent_everywhere():
 
 
 def test_a_curve_ends_at_all_of_its_points_and_tells_what_lies_beyond():
-    curve = spread_curve(np.array([0.2, 0.9, 1.1, 2.0, np.nan]), "f", "series:0")
-    assert curve.y[0] == 25.0
-    assert curve.y[-1] == 100.0
-    assert (curve.x.min(), curve.x.max()) == (0.5, 1.5)
-    assert spread_curve(np.array([np.nan]), "f", "series:0") is None
+    curve = spread(np.array([0.2, 0.9, 1.1, 2.0, np.nan]))
+    assert curve.share[0] == 0.25
+    assert curve.share[-1] == 1.0
+    assert (curve.ratio.min(), curve.ratio.max()) == (0.5, 1.5)
+    assert spread(np.array([np.nan])) is None
     assert NEAR == 0.1
+
+
+def test_a_pressure_angle_is_said_in_degrees():
+    """A page once had the conversion twice: 20 degrees were 1150."""
+    one, two = np.ones(2), np.array([0.2, 0.8])
+    rows = StudyRows(
+        np.array([20, 30]), one, one, two, one, np.array(["f", "f"]), one, one, one, one, one, np.array(["high"] * 2),
+        reason=np.array(["", ""]), rack_dedendum=one, pressure_angle=np.radians([20.0, 25.0]), stress_fe_error=one,
+    )  # fmt: skip
+    assert "z 20 to 30" in bounds_in_words(rows.read())
+    assert "pressure angle 20 to 25°," in bounds_in_words(rows.read())
 
 
 def test_stress_across_the_root_of_a_surface_that_is_pulled_across_its_helix():
