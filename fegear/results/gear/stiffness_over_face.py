@@ -19,8 +19,9 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import DeferredFigure, Figure, SolidMeshField
-from fegear.engine.figure.items import Curve, HeatMap, Skin
+from fegear.engine.figure.items import HeatMap, Skin
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.field import SolidField
-    from fegear.fem.solid.table import SolidTable
+    from fegear.fem.solid.table import RootStressOfBands, SolidTable
     from fegear.geometry.gear import Gear
 
 
@@ -218,34 +219,46 @@ def _map(seen: Seen) -> Iterator[Figure]:
     )
 
 
-def _along(seen: Seen) -> Iterator[Figure]:
-    """Largest stress up each fillet along the face, at the radius of the largest tension."""
-    name, t = seen.name, seen.data
-    row, _ = worst_band(t)
-    count = t.position.size
-    chosen = np.unique(np.round(np.linspace(0, count - 1, min(count, _MOST_CURVES))).astype(int))
-    panels = []
-    for side, sign, title, label in (
-        ("tension", 1.0, "Fillet of the loaded flank (tension side)", "maximum tension in the fillet"),
-        ("compression", -1.0, "Opposite fillet (compression side)", "maximum compression (magnitude)"),
-    ):
-        found = t.root[side]
-        places, along = drawn(found, "places"), sign * drawn(found, "along")[row]
-        curves = tuple(
-            Curve(places, along[j], f"band at {t.position[j] * 1e3:.4g} mm",
-                  f"series:{i}", dash="solid", markers=False)
-            for i, j in enumerate(chosen)
-        )  # fmt: skip
-        axes = axis_of(found, "places"), axis_of(found, "along", label, zero=True)
-        panels.append(Panel(*axes, curves, title=title))
-    yield Figure(
-        f"root_stress_over_face_{name}",
-        f"Root stress of gear {name} over the face width",
-        f"Gear {name}: maximum tangential stress in both fillets over the face width, per force on bands at radius "
-        f"{t.radius[row] * 1e3:.6g} mm.",
-        tuple(panels),
-        columns=2,
-    )
+def _bands_drawn(seen: Seen) -> list[int]:
+    count = seen.data.position.size
+    return np.unique(np.round(np.linspace(0, count - 1, min(count, _MOST_CURVES))).astype(int)).tolist()
+
+
+def _up_fillet(side: Side, sign: float, title: str, label: str) -> Over:
+    """Largest stress up a fillet along the face, at the radius of the largest tension; a curve for each band."""
+
+    def fillet(seen: Seen) -> RootStressOfBands:
+        return seen.data.root[side]
+
+    def along(seen: Seen) -> Array:
+        row, _ = worst_band(seen.data)
+        return np.asarray(sign * fillet(seen).along[row, seen.one])
+
+    def band(seen: Seen) -> str:
+        return f"band at {seen.data.position[seen.one] * 1e3:.4g} mm"
+
+    look = {"dash": "solid", "markers": False}
+    line = Line("along", x="places", of=fillet, si=along, each=Family(_bands_drawn, band, most=None), look=look)
+    return Over(
+        "places", (line,), lambda seen: axis_of(fillet(seen), "along", label, zero=True), title=title,
+        of=fillet,
+    )  # fmt: skip
+
+
+_OVER_FACE = Chart(
+    "root_stress_over_face_{name}", "Root stress of gear {name} over the face width",
+    lambda seen: f"Gear {seen.name}: maximum tangential stress in both fillets over the face width, per force on bands "
+    f"at radius {seen.data.radius[worst_band(seen.data)[0]] * 1e3:.6g} mm.",
+    (
+        _up_fillet(
+            "tension", 1.0, "Fillet of the loaded flank (tension side)", "maximum tension in the fillet"
+        ),
+        _up_fillet(
+            "compression", -1.0, "Opposite fillet (compression side)", "maximum compression (magnitude)"
+        ),
+    ),
+    columns=2,
+)  # fmt: skip
 
 
 def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure:
@@ -337,7 +350,7 @@ _SHEET = Sheet(
         _extreme("largest_band_root_tension", "root.tension", "value", "root_tension", 1.0),
         _extreme("largest_band_root_compression", "root.compression", "value", "root_compression", -1.0),
     ),
-    figures=(_map, _along, _deformed, HOLES_FIGURE),
+    figures=(_map, _OVER_FACE, _deformed, HOLES_FIGURE),
     remarks=(
         Remark(_bands),
         Remark(
