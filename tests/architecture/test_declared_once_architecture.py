@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 
 HOUSE = Path(__file__).resolve().parents[2] / "fegear"
@@ -23,6 +24,7 @@ TWO_UNITS = {
     "te": {"um", "arcsec"},  # along the line of action; of unloaded helical contact, as its sources have it
     "limit": {"um", ""},
     "stress": {"MPa", "MPa.mm/N"},  # under a load, and per line load
+    "root_tension": {"MPa", ""},  # and over the mean of the teeth over holes
     "power": {"W", "N^2"},  # of losses, and of a spectrum
 }
 
@@ -63,12 +65,30 @@ def written_again(sources: dict[str, str], meanings: dict[str, str]) -> list[str
     ]
 
 
+def _columns(source: str) -> Iterator[tuple[str | None, ast.expr | None]]:
+    """Name and unit of every column, made by hand or declared as one of a table."""
+    for call in _calls(source, "Column"):
+        yield _text(call.args[0]), call.args[2] if len(call.args) > 2 else None
+    for node in ast.walk(ast.parse(source)) if "table=" in source else ():
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            name, how = node.target.id, [node.value]
+        elif isinstance(node, ast.FunctionDef):
+            name, how = node.name, list(node.decorator_list)
+        else:
+            continue
+        for call in how:
+            if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in ("shown", "shows"):
+                words = {keyword.arg: keyword.value for keyword in call.keywords}
+                if "table" in words:
+                    yield _text(words["name"]) if "name" in words else name, call.args[0] if call.args else None
+
+
 def units_of_columns(sources: dict[str, str]) -> dict[str, set[str]]:
     """Units that columns are given in the source, by the names of the columns."""
     found: dict[str, set[str]] = defaultdict(set)
     for source in sources.values():
-        for call in _calls(source, "Column"):
-            name, unit = _text(call.args[0]), _text(call.args[2]) if len(call.args) > 2 else ""
+        for name, given in _columns(source):
+            unit = "" if given is None else _text(given)
             if name is not None and unit is not None:
                 found[name].add(unit)
     return found
@@ -99,3 +119,6 @@ def test_what_the_two_tests_look_for_is_found():
     assert written_again({"results/b.py": source}, meanings)
     assert not written_again({"results/b.py": 'column_of(t, "radius")'}, meanings)
     assert units_of_columns({"a": source, "b": 'Column("radius", r, "um")'}) == {"radius": {"mm", "um"}}
+    declared = 'class A:\n    r: Array = shown("um", "", name="radius", table="a")\n    x: Array = shown("mm", "")'
+    shows = 'class A:\n    @property\n    @shows("deg", "of it", table="a")\n    def turn(self): ...'
+    assert units_of_columns({"a": source, "b": declared, "c": shows}) == {"radius": {"mm", "um"}, "turn": {"deg"}}
