@@ -1,5 +1,7 @@
 """Errors from two orders of elements: what counts of edges, of widths, and of neighbours' stress."""
 
+from collections import defaultdict
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,22 +12,31 @@ from fegear.fem.plane.estimate import (
     _LEAST_NEIGHBOUR_STRESS,
     _LEAST_STRESS_SHARE,
     _OF_OWN_STRESS,
+    _SCATTERED,
+    _SCATTERED_HERE,
     _SMOOTH_STRESS,
     _STRESS_EDGES,
     _STRESS_POWER,
     _USUAL,
     Estimate,
 )
+from fegear.fem.plane.root_stress import FilletCurve
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 ORDER = 4
 
 
-def estimate(edges, stresses):
+def estimate(edges, stresses, scatter=0.0):
     """With fillet edges so long, and differences as if looked for at samples: tooth, side -> value, difference."""
     arc = np.concatenate([[0.0], np.cumsum(np.repeat(np.asarray(edges) / ORDER, ORDER))])
     fine = SimpleNamespace(flank=SimpleNamespace(order=ORDER), fillets={"tension": SimpleNamespace(arc=arc)})
     found = Estimate(fine, fine, 0.1, 0.2)
     found.__dict__["_stresses"] = stresses
+    found.__dict__["_scatter"] = defaultdict(lambda: np.full(17, scatter))
     return found
 
 
@@ -103,3 +114,53 @@ def test_of_a_neighbours_deflection_more_of_the_order_counts_where_edges_are_lon
         shares.append(Estimate(found.fine, found.coarse, patch, 1.4 * patch)._neighbour_share)
     assert shares[0] == shares[1] == 0.15
     assert 0.33 < shares[2] < 0.4
+
+
+@pytest.mark.parametrize(
+    ("k", "side", "here", "least"),
+    [
+        (0, "tension", 0.0, 2.0),
+        (0, "tension", 3.0, 3.0 * _SCATTERED_HERE / _SCATTERED),
+        (1, "tension", 0.0, 2.0),
+        (1, "compression", 0.0, 3.0),
+    ],
+)
+def test_no_error_is_less_than_a_part_of_what_stress_scatters_within_the_edges(k, side, here, least):
+    """Usually over the flank or at this contact; of a neighbour more beside the loaded flank."""
+    samples = np.ones(17)
+    own = {"tension": (100.0 * samples, 0.0 * samples), "compression": (-100.0 * samples, 0.0 * samples)}
+    found = estimate([0.3 / 40] * 40, {0: own, 1: dict.fromkeys(own, (0.0 * samples, 0.0 * samples))}, 2.0)
+    error = found._stress_estimate(k, side, np.array([100.0 if k == 0 else 0.0]), np.zeros(1), here)
+    assert error == pytest.approx([_SCATTERED * least])
+
+
+def test_stress_scatters_by_what_no_smooth_curve_through_its_points_has():
+    """Nothing of a polynomial of fifth degree, nearly all of what alternates, only beside the place, below the end."""
+    arc = np.linspace(0.01, 0.99, 40)
+    smooth = (arc**5 - 2.0 * arc**3 + 1.0)[:, None]
+    apart = np.where(arc < 0.5, 0.1 * (-1.0) ** np.arange(40), 0.0)[:, None]
+    pressed = FilletCurve("compression", arc, 1.0, 10.0, (0.1, 0.2))
+    pulled = replace(pressed, side="tension")
+    places, high = np.array([0.25, 0.9]), np.full(2, np.inf)
+    for curve in (pressed, pulled):
+        assert np.abs(curve.scatter_below(smooth, places[:1], high[:1], np.zeros(1))).max() < 1e-12
+        found = curve.scatter_below(np.hstack([smooth + apart] * 2), places, high, np.zeros(2))
+        assert 0.08 < found[0] < 0.11
+        assert found[1] < 1e-12
+    # A contact beside the fillet: what lies beyond half the clearance does not enter.
+    beside = np.where(arc > 0.8, 50.0 * (-1.0) ** np.arange(40), 0.0)[:, None]
+    assert pulled.scatter_below(smooth + beside, np.array([0.7]), np.array([-0.2]), np.array([0.02]))[0] < 0.1
+
+
+@pytest.mark.dear
+def test_a_long_fillet_of_few_long_edges_errs_by_more_than_the_order_of_its_elements_changes():
+    """At a tolerance of 3e-2 the largest root stress was 3.1 times the stated error off; both orders had it."""
+    rack = BasicRack(1.154, 1.464, 0.2516, np.radians(14.5))
+    gear = Gear(Tooth(21, rack, profile_shift=-0.107), 3e-3, bore_radius=8.3849e-3, face_width=0.02)
+    known, truth = solve_gear(gear, settings_at(-5.0)), solve_gear(gear, settings_at(0.0), estimate_error=False)
+    radius = known.estimate._samples * gear.module
+    for side in ("tension", "compression"):
+        value, _, error = known.root_stress_with_error(0, side, radius)
+        off = np.abs(value - truth.largest_root_stress(0, side, radius)[0])
+        assert (off <= 1.2 * error).all()
+        assert (error < 0.05 * np.abs(value).max()).all()

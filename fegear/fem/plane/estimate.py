@@ -31,6 +31,10 @@ _NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 2.5
 #: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
 #: other, for both orders have the edges' own curves. Elements of lower orders were not looked at, and count twice.
 _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.23, 2.0
+#: What both orders have, edges that are few and their own curves, shows as scatter of stress about the smooth curve
+#: along a fillet. Of what is usual beside the largest stress so much is error, of that at one contact on the tooth
+#: itself so much. It counts on long fillets of long edges, and below contacts beside a fillet.
+_SCATTERED, _SCATTERED_HERE = 0.65, 0.85
 #: Compression, which is largest nearer to the root land where edges are graded, has so much more of the part.
 _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
@@ -98,7 +102,8 @@ class Estimate:
         """Largest root stress, where it sits, and its error, shape (P,) each."""
         self._stress_at_samples(k)  # first: at the same positions side after side is asked for
         value, place, difference = self._stress_difference(k, side, radius, half_width)
-        return value, place, self._stress_estimate(k, side, value, difference)
+        scatter = 0.0 if k else self.fine.root_stress_scatter(k, side, radius, place, half_width)
+        return value, place, self._stress_estimate(k, side, value, difference, scatter)
 
     @cached_property
     def largest(self) -> Mapping[str, float]:
@@ -113,7 +118,8 @@ class Estimate:
             errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
         for side in SIDES:
             value, difference = self._stress_at_samples(0)[side]
-            errors[f"root_{side}"] = self._stress_estimate(0, side, value, difference) / _stress_scale(value)
+            error = self._stress_estimate(0, side, value, difference, self._scatter[0, side])
+            errors[f"root_{side}"] = error / _stress_scale(value)
         return read_only({key: float(np.max(values)) for key, values in errors.items()})
 
     def _self_difference(self, value: Array, radius: Array, half_width: Array) -> Array:
@@ -180,10 +186,16 @@ class Estimate:
         """Value of each side, and its difference from the other solution's."""
         if k not in self._stresses:
             r, b = self._samples, np.asarray(REFERENCE_HALF_WIDTH)
-            self._stresses[k] = {side: self._stress_difference(k, side, r, b)[::2] for side in SIDES}
+            self._stresses[k] = {}
+            for side in SIDES:
+                value, place, difference = self._stress_difference(k, side, r, b)
+                self._stresses[k][side] = value, difference
+                self._scatter[k, side] = self.fine.root_stress_scatter(k, side, r, place, b)
         return self._stresses[k]
 
-    def _stress_estimate(self, k: int, side: Side, value: Array, difference: Array) -> Array:
+    def _stress_estimate(
+        self, k: int, side: Side, value: Array, difference: Array, scatter: Array | float = 0.0
+    ) -> Array:
         share, own = self._stress_share, self._stress_at_samples(0)
         # Both fillets have one shape and edges as long: neither errs less, should its difference vanish by chance.
         shares = [_root_mean_square((off / _stress_scale(largest))[:_SAMPLES]) for largest, off in own.values()]
@@ -193,16 +205,22 @@ class Estimate:
             # error does neither.
             usual = {one: _root_mean_square(off[:_SAMPLES]) for one, (_, off) in self._stress_at_samples(k).items()}
             beside = max(usual[side], _OTHER_FILLET * max(usual.values()))
+            scattered = _SCATTERED * _root_mean_square(self._scatter[k, side][:_SAMPLES])
             if k > 0 and side == "compression":
                 share, beside = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS), _USUAL * beside
+                scattered *= _NEIGHBOUR_STRESS
             else:
                 share *= _SMOOTH_STRESS
-            error = share * np.maximum(difference, beside)
+            error = np.maximum(share * np.maximum(difference, beside), scattered)
             return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
         size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
         if side == "compression":
             share *= _COMPRESSED
-        return np.asarray(share * np.maximum(difference, least * size))
+        error = share * np.maximum(difference, least * size)
+        known = (self._scatter[0, side] / _stress_scale(own[side][0]))[:_SAMPLES]
+        return np.asarray(
+            np.maximum(error, np.maximum(_SCATTERED_HERE * scatter, _SCATTERED * _root_mean_square(known) * size))
+        )
 
     @cached_property
     def _stress_share(self) -> float:
@@ -217,6 +235,10 @@ class Estimate:
 
     @cached_property
     def _stresses(self) -> dict[int, dict[Side, tuple[Array, Array]]]:
+        return {}
+
+    @cached_property
+    def _scatter(self) -> dict[tuple[int, Side], Array]:
         return {}
 
     @cached_property

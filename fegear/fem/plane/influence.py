@@ -337,10 +337,22 @@ class Influence:
         That of the whole fillet, up to the start of the flank, but no nearer than .05 modules to the contact's edge;
         of a fillet that this would leave less than half of, that of its lower half (`search_end`).
         """
+        stress, above, width = self._below(k, side, radius_q, half_width)
+        return self.fillet_curve(side).largest_below(stress, above, width)
+
+    def root_stress_scatter(
+        self, k: int, side: Side, radius_q: ArrayLike, place: Array, half_width: ArrayLike = REFERENCE_HALF_WIDTH
+    ) -> Array:
+        """How far stress at the points of the edges scatters beside those arc lengths of a fillet, shape (Q,)."""
+        stress, above, width = self._below(k, side, radius_q, half_width)
+        return self.fillet_curve(side).scatter_below(stress, place, above, width)
+
+    def _below(self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array, Array]:
+        """Stress along a fillet, how far above it contacts stand, infinitely where on another flank; their widths."""
         loads, above, width = self.fillet_loads(radius_q, half_width)
         if k or side == "compression":
             above = np.full(above.shape, math.inf)
-        return self.fillet_curve(side).largest_below((loads @ self.stress[k, side].T).T, above, width)
+        return (loads @ self.stress[k, side].T).T, above, width
 
     def fillet_curve(self, side: Side, module: float = 1.0) -> FilletCurve:
         """Where the largest stress of a fillet is looked for, radii and places in the unit of the module given."""

@@ -161,6 +161,16 @@ class FilletCurve:
         value, place = self.largest_below(stress, above, contact_width(half_width, above, room))
         return value, place * self.module
 
+    def scatter_below(self, stress: Array, place: Array, above: Array, width: Array) -> Array:
+        """How far stress at the points scatters about the smooth curve beside places [modules], shape (Q,).
+
+        What edges as a whole bring into it, however good their elements: their own curves, and that they are few.
+        """
+        if self.side == "compression":
+            return _scatter(stress, self.arc, place, np.full(place.shape, self.length))
+        end = np.broadcast_to(search_end(self.length, above, width, CLEARANCE), place.shape)
+        return _scatter(_without_contact(stress, self.arc, end, CLEARANCE), self.arc, place, end)
+
     def largest_below(self, stress: Array, above: Array, width: Array) -> tuple[Array, Array]:
         """The same below contacts that stand so far above the fillet, of those half-widths [modules].
 
@@ -263,6 +273,16 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
     order = np.lexsort((-piece, best, column))
     last = order[np.append(np.diff(column[order]) > 0, True)]
     return sign * best[last], arc[piece[last]] + at[last] * step[piece[last]]
+
+
+def _scatter(values: Array, arc: Array, place: Array, end: Array) -> Array:
+    """Largest distance of values from the smooth curve among the points that it is fitted to beside a place."""
+    values = np.ascontiguousarray(values)
+    count = min(_POINTS, arc.size)
+    first = np.clip(np.searchsorted(arc, place) - count // 2, 0, arc.size - count)
+    beside, column = first + np.arange(count)[:, None], np.arange(place.size)
+    off = np.abs(values - _smoothing(np.ascontiguousarray(arc).tobytes())[0] @ values)[beside, column]
+    return np.asarray(np.where(arc[beside] <= end, off, 0.0).max(axis=0))
 
 
 def _without_contact(values: Array, arc: Array, ends: Array, clearance: float) -> Array:
