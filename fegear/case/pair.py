@@ -93,7 +93,8 @@ class IsoPart(Part):
 
     edition: Literal[2006, 2019] | None = Field(
         default=None,
-        description="Edition of ISO 6336. Default: 2019 in a rating, 2006 in the crosscheck.",
+        description="Edition of ISO 6336-2 and -3 (part 1: formulas of 2006, which 2019 keeps). "
+        "Default: 2019 in a rating, 2006 in the crosscheck.",
     )
     accuracy_grade: Annotated[int, Field(ge=0, le=12)] = Field(
         default=6, description="Accuracy grade of the gears, 0 to 12; Y_DT for deep teeth requires grade 4 or better."

@@ -47,6 +47,14 @@ def test_the_pictures_and_tables_of_a_rating_are_whole():
     assert len(set(table["symbol"].tolist())) == len(table)
 
 
+def test_a_safety_names_the_part_whose_edition_was_chosen():
+    """Part 1 is of 2006 in both editions: "ISO 6336:2019" stood beside clauses of "ISO 6336-1:2006"."""
+    for case, year in (("rating_spur", 2019), ("rating_helical", 2006)):
+        meaning = {one.name: one.meaning for one in run(case, ALONE).values}
+        assert meaning["I.driver.S_H"].endswith(f", ISO 6336-2:{year}")
+        assert meaning["I.driver.S_F"].endswith(f", ISO 6336-3:{year}")
+
+
 def test_stresses_follow_from_the_factors_that_are_shown():
     for case in ("rating_spur", "rating_helical"):
         outcome = run(case, ALONE)

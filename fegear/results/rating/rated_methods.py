@@ -74,8 +74,9 @@ class ByMethod:
 
 def methods(data: RatingData, asked: PairToRate) -> Iterator[tuple[Method, dict[str, Both]]]:
     """Every method that was asked for, ISO 6336 first, and what it says of pinion and wheel."""
-    edition = f"ISO 6336:{asked.conditions.edition}"
-    yield _method(edition, "", f", {edition}"), _of(data.formula, *_FLANKS, *_ROOTS)
+    year = asked.conditions.edition
+    parts = f", ISO 6336-2:{year}", f", ISO 6336-3:{year}"
+    yield _method(f"ISO 6336, edition {year}", "", *parts), _of(data.formula, *_FLANKS, *_ROOTS)
     flanks = _FLANKS if computed_flanks(data) else ()  # of a plane pair nothing of the contact is computed
     if data.by_computed is not None and data.computed is not None:
         off = data.computed
