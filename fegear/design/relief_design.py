@@ -119,6 +119,11 @@ class ReliefDesign:
     left: float | None
     tables_leave: float
 
+    @property
+    def best_ground(self) -> tuple[Shape, TipReliefPair]:
+        """The shape that leaves the least by the metric of the task, and its reliefs."""
+        return min(self.ground.items(), key=lambda one: one[1].objective)
+
 
 def design_relief(
     engagement: Engagement,

@@ -26,7 +26,7 @@ from fegear.window.on_gears import UNASKED
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.results.relief.relief import How
+    from fegear.results.relief.relief_in_case import How
     from fegear.window.case_text import Path as KeyPath
     from fegear.window.computing import Computing
     from fegear.window.document import Verdict

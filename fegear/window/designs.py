@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.errors import InputError
 from fegear.engine.run import key_without_needs
-from fegear.results.relief.relief import relief_for_case, what_it_leaves
+from fegear.results.relief.relief_in_case import relief_for_case, what_it_leaves
 from fegear.window.case_text import literal, value_at, with_values
 from fegear.window.order import ANSWERS, in_order
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
-    from fegear.results.relief.relief import How
+    from fegear.results.relief.relief_in_case import How
     from fegear.window.case_text import Path
     from fegear.window.job_queue import Asked
 

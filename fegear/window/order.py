@@ -12,7 +12,7 @@ import numpy as np
 
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.pair.loaded_teeth import teeth_of
-from fegear.results.relief.relief_tables import NOW, load_now, slider_map
+from fegear.results.relief.harris import NOW, load_now, slider_map
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping

@@ -15,10 +15,12 @@ from fegear.design.flanks.topography import lines_at
 from fegear.design.flanks.trials import FlankTrials
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.engine.sheet.seen import Seen
 from fegear.engine.stage import Task
 from fegear.output.tables import write_table
 from fegear.results.catalogue import STAGES
-from fegear.results.relief.flank_design_tables import keys_of, topography_table
+from fegear.results.relief.flank_design_sheet import TOPOGRAPHY, topography_points
+from fegear.results.relief.ground_flank_keys import keys_of
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_flank_design.toml"
 COARSE = (
@@ -106,7 +108,8 @@ def test_its_topography_is_read_back_by_a_case(cache, outcome, tmp_path, on):
     overrides = []
     for gear, member in (("pinion", "driver"), ("wheel", "driven")):
         if on == "both":
-            found = topography_table("I", gear, member, 0.5, outcome.data)
+            points = topography_points(outcome.data, member, gear, 0.5)
+            (found,) = replace(TOPOGRAPHY, each=None).tables(Seen(None, name="I", one=points))
         elif gear == "pinion":
             found = table(outcome, "flank_topography_I_pinion")
         else:

@@ -39,8 +39,8 @@ from fegear.output.report.blocks import Values
 from fegear.output.report.page import fragment
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.loaded_teeth import loaded_pair
+from fegear.results.relief.harris import NOW, load_now, slider_map
 from fegear.results.relief.relief_handles import handled_relief
-from fegear.results.relief.relief_tables import NOW, load_now, slider_map
 from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper, Keys
 from fegear.window.bench import Bench
@@ -471,6 +471,16 @@ face_width = "20 mm"
 hertz = "load-dependent"
 """
 )
+
+
+def test_the_curve_of_a_relief_stays_within_its_axes(tmp_path):
+    deep = '[gear.a.relief]\ntable = { roll_angles = ["0 deg", "90 deg"], removals = ["60 um", "60 um"] }\n'
+    relief = handled_relief(scene_of(Asked(TWO + deep, "c", str(tmp_path))), "I", "driver")
+    (panel,) = relief.figure.panels
+    assert relief.handles == ()
+    assert len(panel.items) == 1
+    assert panel.items[0].y == pytest.approx(60.0)
+    assert panel.y.limits[1] == pytest.approx(75.0)
 
 
 def test_a_relief_moved_by_hand_is_the_relief_of_the_case(tmp_path):

@@ -14,6 +14,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, GROUPS, Family, ReliefGrid
 from fegear.design.flanks.quick import QuickFlanks, quick_flanks
@@ -39,29 +40,25 @@ class FamilyBest:
     family : str
     on_grid : GroundRelief
         Best of all combinations of the grid.
-    value_on_grid : float
-        What it leaves [m], see `FlankTrials.value`.
     relief : GroundRelief
         Best of all, after the descents.
     value : float
-        [m].
-    candidates, exact : int
-        Combinations tried, and those of them that were loaded exactly.
-    quick_error : float
-        By how much the quick way was too high at most among those [m].
-    proven : bool
-        Whether no combination left to the quick way could be better with an error as large as that.
+        What this one leaves, see `FlankTrials.value` [m].
     """
 
     family: Family
     on_grid: GroundRelief
-    value_on_grid: float
     relief: GroundRelief
     value: float
-    candidates: int
-    exact: int
-    quick_error: float
-    proven: bool
+    candidates: int = shown("", "number of combinations evaluated", name="combinations")
+    exact: int = shown("", "computed exactly", name="loaded_exactly")
+    value_on_grid: float = shown(
+        "um", "best value on the grid before local optimisation; 0: no search", name="best_on_grid"
+    )
+    quick_error: float = shown(
+        "um", "largest observed overestimate of the approximate method used to screen the combinations"
+    )
+    proven: bool = shown("", "1: optimum on the grid proven")
 
 
 def quick_values(
@@ -161,7 +158,7 @@ def best_of_family(
     reached = [descend(trials, numbers[i], value, (low, high), most_factor, _SCOUTED) for value, i in seen]
     value, at = min(reached, key=lambda found: found[0])
     best = FamilyBest(
-        family, GroundRelief.of(numbers[on_grid[1]]), on_grid[0], GroundRelief.of(at), value, len(numbers), exact,
+        family, GroundRelief.of(numbers[on_grid[1]]), GroundRelief.of(at), value, len(numbers), exact, on_grid[0],
         error, proven,
     )  # fmt: skip
     for start in starts:

@@ -27,6 +27,7 @@ from fegear.engine.figure.items import (
     ramp,
 )
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.seen import Seen, Text, Where, reach
 
 
@@ -203,7 +204,7 @@ class Chart:
     Parameters
     ----------
     name, title, caption : text
-    panels : tuple of Over
+    panels : tuple of Over, or Each of these
     of : where
         What declares the quantities. None there: no figure.
     each, when : where, optional
@@ -222,7 +223,7 @@ class Chart:
     name: Text
     title: Text
     caption: Text
-    panels: tuple[Over, ...]
+    panels: tuple[Over | Each, ...]
     of: Where = ""
     each: Where | None = None
     when: Where | None = None
@@ -249,7 +250,7 @@ class Chart:
             )  # fmt: skip
 
     def _all_panels(self, seen: Seen, owner: Any) -> tuple[Panel, ...]:
-        return tuple(panel for over in self.panels if seen.holds(over.when) for panel in _panels(seen, owner, over))
+        return tuple(panel for over in self.panels for panel in _panels(seen, owner, over))
 
 
 def _only_load(seen: Seen) -> str:
@@ -257,7 +258,15 @@ def _only_load(seen: Seen) -> str:
     return f"{seen.loads[0]:.5g} N" if len(seen.loads) == 1 else ""
 
 
-def _panels(seen: Seen, owner: Any, over: Over) -> Iterator[Panel]:
+def _panels(seen: Seen, owner: Any, over: Over | Each) -> Iterator[Panel]:
+    if isinstance(over, Each):
+        for one in seen.each(over.where):
+            if one.holds(over.when):
+                for element in over.elements:
+                    yield from _panels(one, one.one, element)
+        return
+    if not seen.holds(over.when):
+        return
     for member in seen.each(over.each):
         if over.of is not None:
             yield _panel(member, member.find(over.of), over)

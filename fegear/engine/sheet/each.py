@@ -11,13 +11,13 @@ from fegear.engine.sheet.seen import Seen, Where
 
 @dataclass(frozen=True)
 class Each:
-    """Elements for each of some objects; in a sheet's tables, values, figures or remarks, or among columns.
+    """Elements for each of some objects; in a sheet's tables, values, figures or remarks, among columns or panels.
 
     Parameters
     ----------
     where : where
         Objects; paths of the elements begin there. None there: nothing.
-    *elements : Rows, Number, Chart, Remark, columns or callable
+    *elements : Rows, Number, Chart, Remark, columns, panels or callable
         Of one kind.
     when : where, optional
         Of which objects.

@@ -17,14 +17,14 @@ from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import Mark, few, ramp
+from fegear.engine.figure.items import Mark
 from fegear.engine.stage import Stage, Task, Upstream
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
     from fegear.base.arrays import Array
     from fegear.case.effects import EffectsPart
@@ -187,14 +187,6 @@ def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
 def gears_of(scene: Scene, name: str) -> dict[Member, str]:
     """Names of a pair's gears by member."""
     return {member: gear_name(scene, name, member) for member in MEMBERS}
-
-
-def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -> list[tuple[int, str, str]]:
-    """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
-    near = min(range(len(loads)), key=lambda i: abs(loads[i] - nominal))
-    chosen = few(len(loads), (near,))
-    labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
-    return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
 
 
 def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:

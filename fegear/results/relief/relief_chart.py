@@ -8,35 +8,56 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.printed import percent
-from fegear.base.shown import declared
+from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import axis_of, columns_on_grid, drawn, stacked, value_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure, View
-from fegear.engine.figure.items import Curve, HeatMap, Mark
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Map, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Cell, Every, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
-from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
-from fegear.results.relief.relief import ReliefData, design_pairs, design_part, relief_stage
-from fegear.results.relief.relief_tables import tip_values
+from fegear.results.relief.ground_tips import GroundTip, tip_numbers, tips_of
+from fegear.results.relief.relief import design_pairs, design_part, relief_stage
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
+    from fegear.base.arrays import Array
     from fegear.case.design import ChartPart, RobustnessPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.charts import Metric, ReliefChart
     from fegear.design.held_relief import Robustness
     from fegear.design.tip_relief.grindable import TipReliefPair
+    from fegear.engine.sheet.seen import Seen
+    from fegear.results.relief.relief_data import ReliefData
 
 
 #: How the single best of a chart is found.
 _BEST = "equal tip reliefs, maximum over the loads, by A_e"
+
+
+@dataclass(frozen=True)
+class ChartAtLoad:
+    """A chart under one of its loads.
+
+    Parameters
+    ----------
+    chart : ReliefChart
+        With amounts (A,) and lengths (B,).
+    label : str
+    effective_error : ndarray, shape (A, B)
+        [m].
+    best_lengths : ndarray, shape (A,)
+        With the least of it for each amount; nan at an end of the chart.
+    """
+
+    chart: ReliefChart
+    label: str
+    effective_error: Array
+    best_lengths: Array
 
 
 @dataclass(frozen=True)
@@ -50,13 +71,41 @@ class ReliefChartData:
     best : TipReliefPair
         Found by the optimiser over the chart's loads, each gear on its own.
     delta : float
-        Unit of the amounts in the picture [m]: transmission error of the unmodified pair at its largest.
+        Unit of the amounts in the picture: transmission error of the unmodified pair at its largest.
     """
 
     pair: LoadedPair
     chart: ReliefChart
     best: TipReliefPair
-    delta: float
+    delta: float = shown("um", "unit of the amounts")
+
+    @property
+    def tips(self) -> tuple[GroundTip, ...]:
+        """The best reliefs, a gear each."""
+        return tips_of(self.best, self.pair.pair)
+
+    @property
+    def drawable(self) -> bool:
+        """Whether there are enough candidates for a picture."""
+        return self.chart.amounts.size > 1 and self.chart.lengths.size > 2
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Of the effective errors of all loads [m]."""
+        return float(self.chart.effective_error.min()), float(self.chart.effective_error.max())
+
+    @property
+    def loads(self) -> list[ChartAtLoad]:
+        """The chart at each load, the nominal one first."""
+        chart, best = self.chart, self.chart.optimum_lengths()
+        inside = (best > chart.lengths[0]) & (best < chart.lengths[-1])
+        return [
+            ChartAtLoad(
+                chart, f"{load:.5g} N{' (nominal)' if load == self.pair.nominal else ''}",
+                chart.effective_error[:, :, i], np.where(inside[:, i], best[:, i], np.nan),
+            )
+            for i, load in sorted(enumerate(chart.loads.tolist()), key=lambda one: one[1] != self.pair.nominal)
+        ]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,39 +139,69 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     return ReliefChartData(pair, chart, optimise_tip_relief(e, loads, asked.shape, inputs.metric), delta)
 
 
-def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
+def _meaning_of_unit(seen: Seen) -> str:
     from fegear.design.charts import meaning_of_unit
 
-    name, metric, asked = inputs.name, inputs.metric, inputs.part
-    chart, best, delta = data.chart, data.best, data.delta
-    tables = (
-        Table(
-            f"relief_chart_{name}",
-            columns_on_grid(chart, ("amounts", "lengths", "loads"), table="chart"),
-            f"Excitation of {name} over amount, length and load",
+    return meaning_of_unit(seen.data.pair.pair)
+
+
+_CHART_SHEET = Sheet(
+    tables=(
+        Rows(
+            "relief_chart_{name}", "Excitation of {name} over amount, length and load", (Every("chart"),), of="chart",
+            on=("amounts", "lengths", "loads"),
         ),
-        Table(
-            f"relief_optimum_{name}",
-            columns_on_grid(chart, ("amounts", "loads"), table="optimum"),
-            f"Optimum lengths of tip relief of {name}",
+        Rows(
+            "relief_optimum_{name}", "Optimum lengths of tip relief of {name}", (Every("optimum"),), of="chart",
+            on=("amounts", "loads"),
         ),
-    )
-    amount, length = chart.best()
-    values = [
-        Value(f"{name}.delta", delta, "um", None, meaning_of_unit(data.pair.pair)),
-        value_of(chart, "unit_length", name, 0.0),
-        value_of(chart, "amounts", name, si=amount, name="best_amount", meaning=_BEST),
-        value_of(chart, "lengths", name, si=length, name="best_length", meaning=_BEST),
-    ]
-    for member in MEMBERS:
-        values += tip_values(f"{name}.{member}.optimum_", best, member)
-    left = float(getattr(best, metric)[-1])
-    values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "remaining at the maximum load"))
-    settings = {
-        "shape": asked.shape, "metric": metric, "candidates": best.candidates, "starts": best.starts,
-        "apart": f"difference between two independent searches {best.least_error * 1e6:.1g} um",
-    }  # fmt: skip
-    return Outcome(data, tables, tuple(values), settings, figures=_chart_figures(name, data))
+    ),
+    values=(
+        Number("delta", meaning=_meaning_of_unit),
+        Number("unit_length", exact, "chart"),
+        Number("amounts", of="chart", si=lambda seen: seen.data.chart.best()[0], name="best_amount", meaning=_BEST),
+        Number("lengths", of="chart", si=lambda seen: seen.data.chart.best()[1], name="best_length", meaning=_BEST),
+        tip_numbers("tips", "optimum_"),
+        Number(
+            "{asked.metric}", of="chart", si=lambda seen: getattr(seen.data.best, seen.asked.metric)[-1],
+            name="optimum_{asked.metric}", meaning="remaining at the maximum load",
+        ),
+    ),
+    figures=(
+        Chart(
+            "relief_chart_{name}", "Tip relief chart of pair {name}",
+            lambda seen: seen.said(
+                "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
+                "with minimum A_e for each amount. Dotted: "
+            ) + f"{_meaning_of_unit(seen)} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
+            (
+                Over(
+                    "chart.lengths",
+                    (
+                        Map(
+                            "chart.effective_error", "chart.amounts", si="effective_error",
+                            limits=lambda seen: seen.data.limits,
+                        ),
+                        Line(
+                            "chart.amounts", lambda _: "length with minimum A_{e}", "over map", x_si="best_lengths",
+                            look={"width": 2.2, "markers": False},
+                        ),
+                    ),
+                    "chart.amounts",
+                    marks=lambda seen: (Mark("y", seen.data.delta * 1e6, "Δ"),),
+                ),
+            ),
+            when="drawable", views="loads", view="{one.label}",
+        ),
+    ),
+    settings={
+        "shape": lambda seen: seen.asked.part.shape,
+        "metric": lambda seen: seen.asked.metric,
+        "candidates": "best.candidates",
+        "starts": "best.starts",
+        "apart": lambda seen: f"difference between two independent searches {seen.data.best.least_error * 1e6:.1g} um",
+    },
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -130,6 +209,7 @@ class RobustnessData:
     """How each candidate holds up, by its name."""
 
     candidates: Mapping[str, Robustness]
+    candidate: str = shown("", "relief", default="")
 
 
 @dataclass(frozen=True)
@@ -176,81 +256,56 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
     return RobustnessData(found)
 
 
-def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outcome:
-    name, metric, values = inputs.name, inputs.metric, []
-    for label, r in data.candidates.items():
-        factor, spacing, depth = r.worst_case
-        where = f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} um, relief {percent(depth, signed=True)}"
-        where = f"maximum of the {r.values.size} combinations: {where}"
-        values.append(
-            Value(f"{name}.worst_{metric}.{label.replace(' ', '_')}", r.worst, "um", None, f"{label}, {where}")
-        )
-    labels = np.repeat(list(data.candidates), [r.values.size for r in data.candidates.values()])
-    axes = ("load_factors", "spacing_errors", "relief_errors")
-    *over, excitation = stacked([columns_on_grid(r, axes, "values") for r in data.candidates.values()])
-    table = Table(
-        f"robustness_{name}",
-        (Column("candidate", labels, "", "relief"), *over, replace(excitation, name=metric)),
-        f"Robustness of the reliefs of {name}",
-    )
-    figure = _robustness_figure(name, data.candidates, metric)
-    return Outcome(data, (table,), tuple(values), {"metric": metric}, figures=(figure,))
+def _worst_combination(seen: Seen) -> str:
+    """Which combination is worst, in words."""
+    factor, spacing, depth = seen.one.worst_case
+    where = f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} um, relief {percent(depth, signed=True)}"
+    return f"{seen.key}, maximum of the {seen.one.values.size} combinations: {where}"
 
 
-def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
-    """A_e over amount and length for every load with the best length; none without enough candidates."""
-    from fegear.design.charts import meaning_of_unit
-
-    chart = data.chart
-    if chart.amounts.size < 2 or chart.lengths.size < 3:
-        return ()
-    best, error, amounts, views = chart.optimum_lengths(), drawn(chart, "effective_error"), drawn(chart, "amounts"), []
-    effective = declared(type(chart), "effective_error")
-    for i in sorted(range(len(chart.loads)), key=lambda i: float(chart.loads[i]) != data.pair.nominal):
-        load = chart.loads[i]
-        inside = (best[:, i] > chart.lengths[0]) & (best[:, i] < chart.lengths[-1])
-        length = np.where(inside, best[:, i], np.nan)
-        items = (
-            HeatMap(chart.lengths, amounts, error[:, :, i], effective.label, effective.unit,
-                    limits=(float(error.min()), float(error.max()))),
-            Curve(length, amounts, "length with minimum A_{e}", "over map", width=2.2, markers=False),
-        )  # fmt: skip
-        axes = axis_of(chart, "lengths"), axis_of(chart, "amounts")
-        word = " (nominal)" if float(load) == data.pair.nominal else ""
-        views.append(View(f"{load:.5g} N{word}", (Panel(*axes, items, (Mark("y", data.delta * 1e6, "Δ"),)),)))
-    figure = Figure(
-        f"relief_chart_{name}",
-        f"Tip relief chart of pair {name}",
-        f"Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length with "
-        f"minimum A_e for each amount. Dotted: {meaning_of_unit(data.pair.pair)} at {data.pair.nominal:.5g} N, "
-        f"{data.delta * 1e6:.4g} µm.",
-        views=tuple(views),
-    )
-    return (figure,)
+def _over_load(extreme: Callable[..., Array], width: float) -> Line:
+    """The extreme of all combinations at each load, over the loads in their order."""
+    return Line(
+        "values", "{key}", si=lambda seen: extreme(seen.one.values, axis=(1, 2))[np.argsort(seen.one.load_factors)],
+        x_si=lambda seen: np.sort(seen.one.load_factors), look={"width": width, "markers": width > 1.0},
+    )  # fmt: skip
 
 
-def _robustness_figure(name: str, found: Mapping[str, Robustness], metric: str) -> Figure:
-    curves = []
-    for label, r in found.items():
-        order = np.argsort(r.load_factors)
-        for values, width in ((r.values.max(axis=(1, 2)), 1.8), (r.values.min(axis=(1, 2)), 0.8)):
-            curves.append(
-                Curve(r.load_factors[order], values[order] * 1e6, label, label, width=width, markers=width > 1)
-            )
-    what = "peak-to-peak" if metric == "peak_to_peak" else "effective"
-    return Figure(
-        f"robustness_{name}",
-        f"Robustness of the reliefs of pair {name}",
-        f"Pair {name}: maximum (marked) and minimum (thin) over all combinations of pitch deviation and relief "
-        "tolerance.",
-        (
-            Panel(
-                axis_of(next(iter(found.values())), "load_factors"),
-                Axis(f"{what} transmission error", "um", zero=True),
-                tuple(curves),
+_EXCITATION = {"peak_to_peak": "peak-to-peak", "effective_error": "effective"}
+_ROBUSTNESS_SHEET = Sheet(
+    tables=(
+        Rows(
+            "robustness_{name}", "Robustness of the reliefs of {name}",
+            (
+                Cell("candidate", lambda seen: seen.key, lambda _: RobustnessData),
+                Cell("values", name="{asked.metric}"),
             ),
+            stacked="candidates", on=("load_factors", "spacing_errors", "relief_errors"),
         ),
-    )
+    ),
+    values=(
+        Number(
+            "values", si="worst", each="candidates", meaning=_worst_combination,
+            name=lambda seen: f"worst_{seen.asked.metric}.{seen.key.replace(' ', '_')}",
+        ),
+    ),
+    figures=(
+        Chart(
+            "robustness_{name}", "Robustness of the reliefs of pair {name}",
+            "Pair {name}: maximum (marked) and minimum (thin) over all combinations of pitch deviation and relief "
+            "tolerance.",
+            (
+                Over(
+                    "load_factors",
+                    (Bundle(Family("candidates", role="{key}"), (_over_load(np.max, 1.8), _over_load(np.min, 0.8))),),
+                    lambda seen: Axis(f"{_EXCITATION[seen.asked.metric]} transmission error", "um", zero=True),
+                ),
+            ),
+            of=lambda seen: next(iter(seen.data.candidates.values())),
+        ),
+    ),
+    settings={"metric": lambda seen: seen.asked.metric},
+)  # fmt: skip
 
 
 def _chart_forecast(scene: Scene, name: str) -> Forecast:
@@ -287,7 +342,7 @@ RELIEF_CHART = relief_stage(
     every_load=True,
     inputs=_chart_inputs,
     compute=_compute_chart,
-    present=_present_chart,
+    present=_CHART_SHEET.present,
     cites=_CITES,
     forecast=_chart_forecast,
 )
@@ -298,7 +353,7 @@ ROBUSTNESS = relief_stage(
     needs=lambda _scene, name: (Task("relief", name),),
     inputs=_robustness_inputs,
     compute=_compute_robustness,
-    present=_present_robustness,
+    present=_ROBUSTNESS_SHEET.present,
     cites=_CITES,
     forecast=_robustness_forecast,
 )

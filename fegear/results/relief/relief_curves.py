@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.declared import column_of, column_over, columns_of, repeated, stacked
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, ramp
-from fegear.engine.figure.panel import Panel
-from fegear.engine.outcome import Outcome
+from fegear.engine.figure.items import ramp
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
-from fegear.engine.table import Column, Table
-from fegear.engine.value import Value
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.relief.relief import design_part, relief_stage
 
@@ -29,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.engine.sheet.seen import Seen
 
 _POSITIONS, _HARMONICS, _TOLD = 200, 12, 4
 #: Reliefs that one figure still tells apart.
@@ -39,33 +38,31 @@ _EACH = 0.02
 
 @dataclass(frozen=True)
 class ReliefCurve:
-    """What one relief makes of the pair.
+    """What one relief makes of the pair; without an amount there are perfect involutes.
 
     Parameters
     ----------
-    amount : float
-        At both tips [m]; zero for perfect involutes.
-    length : float
-        L_n of TM-89901.
     history : PairHistory
         One tooth pair over the path of contact.
     error : TransmissionError
         Over the base pitch.
     """
 
-    amount: float
-    length: float
     history: PairHistory
     error: TransmissionError
+    amount: float = shown("um", "amount of relief at both tips")
+    amount_over_delta: float = shown("", "amount / Welbourn's Delta")
+    length: float = shown("", "relief length relative to the length from tip to HPSTC on the line of action")
+    amplitude: float = shown("um", "harmonic, amplitude", default=math.nan)
 
 
 @dataclass(frozen=True)
 class ReliefCurvesData:
-    """Every relief, perfect involutes first, and Welbourn's Delta [m]."""
+    """Every relief, perfect involutes first, and Welbourn's Delta."""
 
     pair: LoadedPair
-    delta: float
     curves: tuple[ReliefCurve, ...]
+    delta: float = shown("um", "unit of the amounts")
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -93,7 +90,7 @@ def _compute(inputs: Reads[ChartPart], upstream: Upstream, work: Work) -> Relief
     plain, part = pair.engagement.unmodified(), inputs.part
     delta = welbourn_amount(plain, pair.nominal)
     amounts = part.amounts or [delta * share for share in part.amounts_over_delta or [1.0]]
-    curves = [_curve(plain, pair.nominal, 0.0, 0.0)]
+    curves = [_curve(plain, pair.nominal, 0.0, 0.0, 0.0)]
     wanted = list(product(sorted(amounts), sorted(part.lengths or [1.0])))
     for amount, length in wanted:
         relieved = replace(
@@ -101,87 +98,90 @@ def _compute(inputs: Reads[ChartPart], upstream: Upstream, work: Work) -> Relief
             driver_relief=normalised_tip_relief(plain.pair, "driver", amount, length, part.shape),
             driven_relief=normalised_tip_relief(plain.pair, "driven", amount, length, part.shape),
         )
-        curves.append(_curve(relieved, pair.nominal, amount, length))
+        curves.append(_curve(relieved, pair.nominal, amount, amount / delta, length))
         work.progress(len(curves) / (1 + len(wanted)))
-    return ReliefCurvesData(pair, delta, tuple(curves))
+    return ReliefCurvesData(pair, tuple(curves), delta)
 
 
-def _curve(engagement: Engagement, load: float, amount: float, length: float) -> ReliefCurve:
+def _curve(engagement: Engagement, load: float, *relief: float) -> ReliefCurve:
     from fegear.contact.plane.pair_history import pair_history
     from fegear.contact.plane.transmission_error import transmission_error
 
     history = pair_history(engagement, [load], _POSITIONS)
-    return ReliefCurve(amount, length, history, transmission_error(engagement, load, _HARMONICS))
+    return ReliefCurve(history, transmission_error(engagement, load, _HARMONICS), *relief)
 
 
-def _along(history: PairHistory) -> tuple[Column, ...]:
-    return (
-        *columns_of(history, "x", "driver_roll_angle", load=0),
-        column_of(history, "transmission_error", load=0, name="te"),
-        *columns_of(history, "load", "share", load=0),
-    )
+def _meaning_of_unit(seen: Seen) -> str:
+    from fegear.design.charts import meaning_of_unit
+
+    return meaning_of_unit(seen.data.pair.pair)
 
 
-def _present(data: ReliefCurvesData, inputs: Reads[ChartPart]) -> Outcome:
-    from fegear.design.charts import ReliefChart, meaning_of_unit
+def _told(seen: Seen) -> str:
+    """The relief of a curve in the legend."""
+    one: ReliefCurve = seen.one
+    return f"{one.amount_over_delta:.3g} Δ, L_{{n}} = {one.length:.3g}" if one.amount_over_delta else "no relief"
 
-    name, curves = inputs.name, data.curves
-    amounts, lengths = np.array([c.amount for c in curves]), np.array([c.length for c in curves])
-    relief = column_of(ReliefChart, "amounts", amounts), column_of(ReliefChart, "lengths", lengths)
-    history = Table(
-        f"relief_curves_{name}",
-        (
-            *repeated(relief, [curve.history.x.size for curve in curves]),
-            *stacked([_along(curve.history) for curve in curves]),
+
+def _role(seen: Seen) -> str:
+    number = int(seen.key)
+    return ramp(len(seen.data.curves) - 1)[number - 1] if number else "no relief"
+
+
+def _over_roll(quantity: str, axis: Axis) -> Over:
+    """A quantity of the tooth pair over the roll angle, a curve for each relief."""
+    line = Line(
+        f"history.{quantity}", _told, _role, x="history.driver_roll_angle", each=Family("curves", most=_MOST + 1),
+        look={"markers": False},
+    )  # fmt: skip
+    return Over(
+        Axis("roll angle of the driver", "deg"), (line,), axis,
+        marks=lambda seen: roll_marks(seen.data.pair.pair, "driver"),
+    )  # fmt: skip
+
+
+def _amplitude(n: int) -> Cell:
+    return Cell("amplitude", lambda seen: [one.error.series.amplitude[n] for one in seen.data.curves],
+                name=f"amplitude_{n + 1}")  # fmt: skip
+
+
+_SHEET = Sheet(
+    loads=lambda seen: [seen.data.pair.nominal],
+    nominal=lambda _: 0,
+    tables=(
+        Rows(
+            "relief_curves_{name}",
+            "Transmission error and load of a tooth pair of {name} for each relief, {load:.6g} N",
+            (
+                "amount", "length", "history.x", "history.driver_roll_angle",
+                Cell("history.transmission_error", name="te"), "history.load", "history.share",
+            ),
+            stacked="curves",
         ),
-        f"Transmission error and load of a tooth pair of {name} for each relief, {data.pair.nominal:.6g} N",
-    )
-    series = np.array([curve.error.series.amplitude[:_TOLD] for curve in curves])
-    summary = Table(
-        f"relief_curves_summary_{name}",
-        (
-            relief[0],
-            Column("amount_over_delta", amounts / data.delta, "", "amount / Welbourn's Delta"),
-            relief[1],
-            *(column_over([curve.error for curve in curves], key) for key in ("peak_to_peak", "effective_error")),
-            *(Column(f"amplitude_{n + 1}", series[:, n], "um", "harmonic, amplitude") for n in range(_TOLD)),
+        Rows(
+            "relief_curves_summary_{name}", "Transmission error of {name} for each relief",
+            (
+                "amount", "amount_over_delta", "length", "error.peak_to_peak", "error.effective_error",
+                *(_amplitude(n) for n in range(_TOLD)),
+            ),
+            of="curves",
         ),
-        f"Transmission error of {name} for each relief",
-    )
-    value = Value(f"{name}.delta", data.delta, "um", None, meaning_of_unit(data.pair.pair))
-    return Outcome(data, (history, summary), (value,), {"reliefs": len(curves) - 1}, figures=(_figure(name, data),))
-
-
-def _figure(name: str, data: ReliefCurvesData) -> Figure:
-    """Transmission error and load over the roll angle, one curve for each relief."""
-    roll = Axis("roll angle of the driver", "deg")
-    looks = [("no relief", "no relief")]
-    looks += [
-        (f"{curve.amount / data.delta:.3g} Δ, L_{{n}} = {curve.length:.3g}", role)
-        for curve, role in zip(data.curves[1:], ramp(len(data.curves) - 1), strict=True)
-    ]
-
-    def curves(key: str, factor: float) -> tuple[Curve, ...]:
-        return tuple(
-            Curve(
-                np.degrees(curve.history.driver_roll_angle), np.ravel(getattr(curve.history, key)) * factor, text, role,
-                markers=False,
-            )
-            for curve, (text, role) in zip(data.curves, looks, strict=True)
-        )  # fmt: skip
-
-    marks = roll_marks(data.pair.engagement.pair, "driver")
-    return Figure(
-        f"relief_curves_{name}",
-        f"Reliefs of pair {name}",
-        f"Pair {name}: static transmission error, and load on one tooth pair from its first to its last contact, with "
-        f"equal tip relief on both gears: amount over Δ = {data.delta * 1e6:.4g} µm, length 1 from tip to HPSTC.",
-        (
-            Panel(roll, Axis("transmission error", "um"), curves("transmission_error", 1e6), marks),
-            Panel(roll, Axis("load on the pair", "N", zero=True), curves("load", 1.0), marks),
+    ),
+    values=(Number("delta", meaning=_meaning_of_unit),),
+    figures=(
+        Chart(
+            "relief_curves_{name}", "Reliefs of pair {name}",
+            "Pair {name}: static transmission error, and load on one tooth pair from its first to its last contact, "
+            "with equal tip relief on both gears: amount over Δ = {d.delta:.4g}, length 1 from tip to HPSTC.",
+            (
+                _over_roll("transmission_error", Axis("transmission error", "um")),
+                _over_roll("load", Axis("load on the pair", "N", zero=True)),
+            ),
+            under="{load:.5g} N",
         ),
-        under=f"{data.pair.nominal:.5g} N",
-    )
+    ),
+    settings={"reliefs": lambda seen: len(seen.data.curves) - 1},
+)  # fmt: skip
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
@@ -195,7 +195,7 @@ RELIEF_CURVES = relief_stage(
     answers=("transmission error",),
     inputs=Reads.of(lambda scene: design_part(scene).chart),
     compute=_compute,
-    present=_present,
+    present=_SHEET.present,
     check=_check,
     cites=citing(Citation("lin-townsend-oswald", "tip reliefs by amount over Delta and length L_n", "Figs. 3 to 6")),
     forecast=_forecast,

@@ -9,16 +9,18 @@ from typing import Literal
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.members import gear_name
 from fegear.case.reading import Scene
 from fegear.case.relief import STARTS as STARTS  # noqa: PLC0414  (for the window)
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Points
-from fegear.engine.figure.panel import Panel
-from fegear.geometry.pair import MEMBERS, Member, active_profile
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.seen import Seen
+from fegear.geometry.pair import MEMBERS, GearPair, Member, active_profile
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, Relief
 from fegear.results.gear.drawing import roll_marks
 
@@ -80,6 +82,64 @@ class HandledRelief:
     figure: Figure
 
 
+@dataclass(frozen=True)
+class _Drawn:
+    """The relief of a gear over the active profile, and the points that can be moved."""
+
+    gear: str
+    member: Member
+    pair: GearPair
+    roll: Array = shown("deg", "roll angle")
+    removal: Array = shown("um", "removal")
+    places: Array = shown("deg", "roll angle")
+    amounts: Array = shown("um", "removal")
+
+    @property
+    def section(self) -> str:
+        """Which section it is of, where that has to be said."""
+        return " in any transverse section" if self.pair.driver.helix_angle else ""
+
+    @property
+    def movable(self) -> str:
+        """What can be done with the points, where there are any."""
+        return " The points can be moved." if self.places.size else ""
+
+    @property
+    def along(self) -> Axis:
+        """With room at both ends."""
+        low, high = np.degrees(self.roll[[0, -1]]).tolist()
+        room = 0.06 * (high - low)
+        return Axis("roll angle", "deg", limits=(low - room, high + room))
+
+    @property
+    def across(self) -> Axis:
+        """To above all that is drawn."""
+        top = max(_LEAST, 1.25e6 * float(max(self.removal.max(), *self.amounts, 0.0)))
+        return Axis("removal", "um", limits=(-0.06 * top, top))
+
+
+_FIGURE = Chart(
+    "relief_of_{name}_{d.member}",
+    "Relief of gear {d.gear}",
+    "Modification of the {d.member} flanks over the active profile{d.section}; A to E: points of the path of "
+    "contact.{d.movable}",
+    (
+        Over(
+            lambda seen: seen.data.along,
+            (
+                Line("removal", role="designed", x="roll", look={"markers": False}),
+                Line(
+                    "amounts", role="ink", x="places", kind="points", look={"symbol": "circle", "size": 9.0},
+                    when="places",
+                ),
+            ),
+            lambda seen: seen.data.across,
+            marks=lambda seen: roll_marks(seen.data.pair, seen.data.member),
+        ),
+    ),
+)  # fmt: skip
+
+
 def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     """The relief of a gear of a pair, ready to be changed by hand.
 
@@ -91,27 +151,15 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     member : {"driver", "driven"}
     """
     pair, gear = scene.pairs[name], gear_name(scene, name, member)
-    ends = sorted(math.degrees(float(pair.roll_angle(x, member))) for x in (pair.x_start, pair.x_end))
-    relief = _relief(scene, gear)
-    roll = np.linspace(ends[0], ends[1], _PLACES)
-    removal = np.zeros(_PLACES) if relief is None else relief.removal(np.radians(roll)) * 1e6
+    first, last = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+    relief, roll = _relief(scene, gear), np.linspace(first, last, _PLACES)
+    removal = np.zeros(_PLACES) if relief is None else relief.removal(roll)
     handles = tuple(_handles(scene, gear, relief))
     points = [(one.start, 0.0) for one in handles if one.end != "crowning"] + [(one.at, one.amount) for one in handles]
-    items: list[Curve | Points] = [Curve(roll, removal, "", "designed", markers=False)]
-    if points:
-        x, y = np.array(points).T
-        items.append(Points(x, y, "", "ink", symbol="circle", size=9.0))
-    top = max(_LEAST, 1.25 * float(removal.max()), *(1.25 * y for _, y in points)) if points else _LEAST
-    room = 0.06 * (ends[1] - ends[0])
-    axis = Axis("roll angle", "deg", limits=(ends[0] - room, ends[1] + room))
-    section = " in any transverse section" if pair.driver.helix_angle else ""
-    figure = Figure(
-        f"relief_of_{name}_{member}",
-        f"Relief of gear {gear}",
-        f"Modification of the {member} flanks over the active profile{section}; A to E: points of the path of "
-        f"contact.{' The points can be moved.' if points else ''}",
-        (Panel(axis, Axis("removal", "um", limits=(-0.06 * top, top)), tuple(items), roll_marks(pair, member)),),
-    )
+    places, amounts = np.array(points).reshape(-1, 2).T
+    drawn = _Drawn(gear, member, pair, roll, removal, np.radians(places), amounts * 1e-6)
+    (figure,) = _FIGURE.figures(Seen(drawn, name=name))
+    ends = math.degrees(first), math.degrees(last)
     alone = active_profile(pair, member)
     usual = {
         end: math.degrees(float(_roll(scene, gear, radius)))

@@ -1,0 +1,63 @@
+"""Flank modifications as they are ground, as keys of the gears of a case."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.design.flanks.forms import GroundRelief
+
+
+def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -> list[str]:
+    """The relief as keys of both gears; lead and bias are those of the first whose face is the common one.
+
+    Where both faces reach beyond the common one, lead and bias are given for the driver all the same, and count over
+    the common face.
+    """
+    lines = []
+    tips: tuple[tuple[Member, float, float, float], ...] = (
+        ("driver", relief.driver_tip, pair.x_end, pair.x_end - relief.driver_tip_length),
+        ("driven", relief.driven_tip, pair.x_start, pair.x_start + relief.driven_tip_length),
+    )
+    by_gear: dict[str, list[str]] = {gear: [] for gear in gears.values()}
+    for member, amount, end, start in tips:
+        if amount:
+            radii = [float(pair.radius(at, member)) for at in (start, end)]
+            by_gear[gears[member]].append(
+                f'relief = {{ tip = {{ amount = "{_um(amount)}", start_radius = "{_mm(radii[0])}", '
+                f'at_radius = "{_mm(radii[1])}" }} }}'
+            )
+    lead = [
+        f'{key} = "{_um(value)}"' for key, value in (("crowning", relief.crowning), ("slope", relief.slope)) if value
+    ]
+    if relief.end_relief:
+        ends = f'amount = "{_um(relief.end_relief)}", length = "{_mm(relief.end_relief_length)}"'
+        lead.append(f"end_relief = {{ {ends} }}")
+    bearer: Member = next((m for m in MEMBERS if _is_common(pair, m)), "driver")
+    if lead:
+        by_gear[gears[bearer]].append(f"lead = {{ {', '.join(lead)} }}")
+    if relief.bias:
+        # The driven gear's tip is where the driver's root is.
+        bias = relief.bias if bearer == "driver" else -relief.bias
+        by_gear[gears[bearer]].append(f'bias = "{_um(bias)}"')
+    for gear, keys in by_gear.items():
+        lines += [f"gear.{gear}.{key}" for key in keys]
+    return lines
+
+
+def _is_common(pair: GearPair, member: Member) -> bool:
+    """Whether a gear's face is the common one."""
+    slack = 1e-9 * pair.face_width
+    return abs(pair.gear(member).face_width - pair.face_width) <= slack and abs(pair.face_height(member)) <= slack
+
+
+def _um(value: float) -> str:
+    return f"{value * 1e6:.5g} um"
+
+
+def _mm(value: float) -> str:
+    return f"{value * 1e3:.7g} mm"

@@ -1,0 +1,184 @@
+"""Tip reliefs that a shop can grind, one gear each: what a table and single values give of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.shown import shown, shows
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.design.tip_relief.grindable import TipReliefPair
+    from fegear.engine.sheet.seen import Seen, Where
+    from fegear.geometry.relief import EndRelief
+
+
+@dataclass(frozen=True)
+class GroundTip:
+    """Tip relief of one gear.
+
+    Parameters
+    ----------
+    ground : TipReliefPair
+        Of both gears.
+    base_radius : float
+        [m].
+    left : TransmissionError or None
+        What the reliefs of both gears leave.
+    """
+
+    ground: TipReliefPair
+    base_radius: float
+    left: TransmissionError | None
+    shape: str = shown("", "of the tip relief")
+    member: Member = shown("", "driver or driven", name="gear")
+
+    @property
+    def relief(self) -> EndRelief:
+        """Its own."""
+        return self.ground.driver if self.member == "driver" else self.ground.driven
+
+    @property
+    def _own(self) -> slice:
+        return slice(0, 2) if self.member == "driver" else slice(2, 4)
+
+    @property
+    def error(self) -> Array:
+        """Of amount [m] and start [rad]."""
+        return self.ground.error[self._own]
+
+    @property
+    def band(self) -> tuple[EndRelief, EndRelief]:
+        """The least and the largest that are equally good."""
+        return self.ground.driver_band if self.member == "driver" else self.ground.driven_band
+
+    @property
+    def low_error(self) -> Array:
+        """Of the least of these."""
+        return self.ground.band_error[0, self._own]
+
+    @property
+    def high_error(self) -> Array:
+        """Of the largest."""
+        return self.ground.band_error[1, self._own]
+
+    @property
+    @shows("mm", "as radius")
+    def start_radius(self) -> float:
+        """Of the flank point at which it starts [m]."""
+        return self.base_radius * math.hypot(1.0, self.relief.start)
+
+    @property
+    def start_radius_error(self) -> float:
+        """[m]."""
+        return float(self.base_radius * self.relief.start / math.hypot(1.0, self.relief.start) * self.error[1])
+
+    @property
+    @shows("um", "minimum found")
+    def least(self) -> float:
+        """[m]."""
+        return self.ground.least
+
+    @property
+    @shows("um", "difference between two independent searches")
+    def least_error(self) -> float:
+        """[m]."""
+        return self.ground.least_error
+
+    @property
+    @shows("", "number of reliefs scanned")
+    def candidates(self) -> int:
+        """Of both gears."""
+        return self.ground.candidates
+
+    @property
+    @shows("", "number of start points of the search")
+    def starts(self) -> int:
+        """Of both gears."""
+        return self.ground.starts
+
+    @property
+    def equal_amounts(self) -> str:
+        """Amounts that are equally good."""
+        return " to ".join(f"{one.amount * 1e6:.4g}" for one in self.band) + " um"
+
+    @property
+    def equal_starts(self) -> str:
+        """Starts that are equally good."""
+        return " to ".join(f"{math.degrees(one.start):.5g}" for one in self.band[::-1]) + " deg"
+
+
+def tips_of(
+    ground: TipReliefPair, pair: GearPair, shape: str = "", left: TransmissionError | None = None
+) -> tuple[GroundTip, ...]:
+    """The tip reliefs of both gears of a pair, driver first."""
+    return tuple(GroundTip(ground, pair.gear(member).base_radius, left, shape, member) for member in MEMBERS)
+
+
+def tip_numbers(tips: Where, head: str) -> Each:
+    """Amount and start of each tip relief; what is equally good is named with each.
+
+    Parameters
+    ----------
+    tips : where
+        Sequence of `GroundTip`.
+    head : str
+        Start of the values' names after that of the pair and the member.
+    """
+    return Each(tips, _tip_number(head, "amount", "amount to grind", 0), _tip_number(head, "start", "roll angle", 1))
+
+
+def _tip_number(head: str, what: str, words: str, number: int) -> Number:
+    return Number(
+        f"relief.{what}", lambda seen: seen.one.error[number], owner="{name}.{one.member}", name=f"{head}{what}",
+        meaning=f"{words}; equally good: {{one.equal_{what}s}}",
+    )  # fmt: skip
+
+
+def _errors(which: str, what: int) -> Callable[[Seen], Array]:
+    """Errors of amounts or starts, a number for each row."""
+    return lambda seen: np.array([getattr(tip, which)[what] for tip in seen.data.tips])
+
+
+def _end(which: str, quantity: str, name: str, meaning: str) -> Cell:
+    return Cell(quantity, lambda seen: [getattr(tip.band[which == "high"], quantity) for tip in seen.data.tips],
+                lambda seen: seen.data.tips[0].relief, name, meaning)  # fmt: skip
+
+
+def _end_off(which: str, quantity: str, name: str, how: str) -> Off:
+    return Off(f"relief.{quantity}", _errors(f"{which}_error", int(quantity == "start")),
+               f"how much {how} {name} may be", name=name)  # fmt: skip
+
+
+_EQUAL = "equally good, roll angle"
+#: The reliefs of `tips`, a row for each gear and shape, and what they leave by the evaluation of the single values.
+GRINDABLE = Rows(
+    "grindable_{name}",
+    "Grindable tip reliefs of {name}",
+    (
+        "shape", "member", "relief.amount", Off("relief.amount", _errors("error", 0)), "relief.start",
+        Off("relief.start", _errors("error", 1)), "start_radius",
+        Off("start_radius", lambda seen: [tip.start_radius_error for tip in seen.data.tips]),
+        Cell("left.peak_to_peak", meaning="remaining at design load"),
+        Off("left.peak_to_peak", "ground.objective_error", "estimated error of te_peak_to_peak and te_effective"),
+        Cell("left.effective_error", meaning="remaining A_e"), "least", "least_error",
+        _end("low", "amount", "amount_from", "lower end of near-optimum range (within 1 % of the minimum)"),
+        _end("high", "amount", "amount_to", "equally good"),
+        _end_off("low", "amount", "amount_from", "less"), _end_off("high", "amount", "amount_to", "more"),
+        _end("high", "start", "start_from", _EQUAL), _end("low", "start", "start_to", _EQUAL),
+        _end_off("high", "start", "start_from", "less"), _end_off("low", "start", "start_to", "more"),
+        "candidates", "starts",
+    ),
+    of="tips", when="tips",
+)  # fmt: skip

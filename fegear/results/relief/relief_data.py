@@ -1,0 +1,65 @@
+"""What the design of a pair's relief depends on, and what comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from fegear.case.design import DesignPart
+from fegear.case.effects import EffectsPart
+from fegear.contact.pair_spec import PairSpec
+from fegear.geometry.pair import Member
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.design.minimum_excitation import ReliefTable
+    from fegear.design.relief_design import ReliefDesign
+
+
+@dataclass(frozen=True)
+class ReliefInputs:
+    """What the design of a pair's relief depends on.
+
+    Parameters
+    ----------
+    part : DesignPart
+    asked : PairSpec
+    tolerance : float
+        That neglected effects are compared with.
+    effects : EffectsPart
+        All of the case, for the remedies.
+    neglected : bool
+        Whether the sizes of effects that are off are estimated.
+    labels, gears : mapping of str to str
+        Names of the tables and of the gears by member.
+    """
+
+    part: DesignPart
+    asked: PairSpec
+    tolerance: float
+    effects: EffectsPart = field(compare=False)
+    neglected: bool
+    labels: Mapping[Member, str] = field(compare=False)
+    gears: Mapping[Member, str] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class ReliefData:
+    """A designed relief.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+    design : ReliefDesign
+    neglected : mapping of str to tuple of str
+        What effects that are off would change, in words.
+    points : mapping of member to ReliefTable
+        At the roll angles that the case asks for; empty where it names none.
+    """
+
+    pair: LoadedPair
+    design: ReliefDesign
+    neglected: Mapping[str, tuple[str, ...]]
+    points: Mapping[Member, ReliefTable]

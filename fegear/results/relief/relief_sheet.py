@@ -1,0 +1,398 @@
+"""What a designed relief shows: the reliefs, the loads they are for, and what each of them leaves."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.printed import percent
+from fegear.base.shown import shown, shows
+from fegear.case.built.neglected_effects import design_remarks
+from fegear.engine.declared import drawn
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.items import Zone
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Every, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.geometry.pair import Member
+from fegear.results.gear.drawing import roll_marks
+from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
+from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
+from fegear.results.relief.harris import OVER_ROLL, HarrisMap
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.design.minimum_excitation import ReliefTable
+    from fegear.engine.figure.items import Mark
+    from fegear.engine.sheet.seen import Seen
+    from fegear.results.relief.relief_data import ReliefData, ReliefInputs
+
+#: Views of the Harris map in their order; others stand behind.
+_VIEWS = ("designed", "linear tip relief", "parabolic tip relief", "no relief", "diagonal only")
+#: A transmission error below this is written as none [um].
+_NOTHING = 1e-6
+
+
+@dataclass(frozen=True)
+class FlankRelief:
+    """Relief of one gear over its flank, or at the angles that a case asks for.
+
+    Parameters
+    ----------
+    label, gear : str
+        Of its tables, and name of the gear.
+    member : {"driver", "driven"}
+    table : ReliefTable
+    diagonal, error : ndarray or None
+        As those of `MemberRelief`.
+    ground : mapping of str to ReliefTable
+        The same flank with each relief that is ground.
+    marks : tuple
+        Points of the path of contact by roll angle.
+    """
+
+    label: str
+    gear: str
+    member: Member
+    table: ReliefTable
+    diagonal: Array | None
+    error: Array | None
+    ground: Mapping[str, ReliefTable]
+    marks: tuple[Mark, ...]
+
+    @property
+    def above_least(self) -> Array:
+        """The relief minus its minimum [m]."""
+        return self.table.relief - self.table.relief.min()
+
+    @property
+    def marked(self) -> tuple[Mark | Zone, ...]:
+        """The design zone, where the tooth is loaded at the design load, and the points of the path of contact."""
+        loaded = drawn(self.table, "roll_angle")[self.table.load > 0.0]
+        return Zone("x", float(loaded.min()), float(loaded.max())), *self.marks
+
+
+@dataclass(frozen=True)
+class Leaves:
+    """What one relief leaves.
+
+    Parameters
+    ----------
+    te : TransmissionError
+        At the design load.
+    error : float or None
+        Of its peak-to-peak and its effective value [m].
+    map : HarrisMap
+        Of all loads.
+    searched : float or None
+        Repeatability of a relief that was searched for [m].
+    """
+
+    te: TransmissionError
+    error: float | None
+    map: HarrisMap
+    searched: float | None
+
+    @property
+    def map_error(self) -> Array | None:
+        """Of every point of the map [m]."""
+        return None if self.searched is None else np.full(self.map.transmission_error.shape, self.searched)
+
+    @property
+    @shows("mm", "mesh position over one base pitch")
+    def x(self) -> Array:
+        """Shape (P,)."""
+        return self.map.x
+
+    @property
+    @shows("um", "transmission error minus mean")
+    def minus_mean(self) -> Array:
+        """At the design load, shape (P,)."""
+        return self.map.transmission_error[self.map.nearest[0]] - self.te.mean
+
+    @property
+    def peak_to_peak(self) -> str:
+        """As a legend says it."""
+        size = self.te.peak_to_peak * 1e6
+        return f"{size:.3g} µm" if size > _NOTHING else "0"
+
+
+@dataclass(frozen=True)
+class TriedLoading:
+    """A family of loadings with its best peak, tried for the least stress at the design load."""
+
+    family: str = shown("", "family of the ramps")
+    peak: float = shown("", "F, best of its family")
+    root_tension: float = shown("MPa", "maximum of both gears")
+    hertz_pressure: float = shown("MPa", "maximum over the path of contact")
+
+
+@dataclass(frozen=True)
+class ReliefShown:
+    """A designed relief as its sheet reads it."""
+
+    data: ReliefData
+    asked: ReliefInputs
+
+    @property
+    def load(self) -> float:
+        """Design load [N]."""
+        return self.data.design.task.load
+
+    @cached_property
+    def tried(self) -> tuple[TriedLoading, ...]:
+        """Loadings tried for the least stress; empty where none was searched for."""
+        chosen, root = self.data.design.chosen, math.sqrt(self.load)
+        return () if chosen is None else tuple(
+            TriedLoading("sinusoidal" if r is None else f"polynomial, r = {r}", peak, s * self.load, p * root)
+            for r, peak, s, p in chosen.candidates
+        )  # fmt: skip
+
+    @property
+    def least_stress(self) -> TriedLoading | None:
+        """Stresses of the loading that was chosen."""
+        chosen, task = self.data.design.chosen, self.data.design.task
+        return None if chosen is None else TriedLoading(
+            "", task.loading.peak, chosen.stress * self.load, chosen.pressure * math.sqrt(self.load)
+        )  # fmt: skip
+
+    def _flank(
+        self, member: Member, table: ReliefTable, diagonal: Array | None = None, error: Array | None = None
+    ) -> FlankRelief:  # fmt: skip
+        ground = {
+            f"{shape} tip relief": replace(table, relief=getattr(one, member).removal(table.roll_angle))
+            for shape, one in self.data.design.ground.items()
+        }
+        return FlankRelief(
+            self.asked.labels[member], self.asked.gears[member], member, table, diagonal, error, ground,
+            roll_marks(self.data.pair.pair, member),
+        )  # fmt: skip
+
+    @cached_property
+    def reliefs(self) -> dict[Member, FlankRelief]:
+        """Of each gear, where it has a table of its own, over its flank."""
+        found = self.data.design.reliefs
+        return {m: self._flank(m, found[m].table, found[m].diagonal, found[m].error) for m in self.asked.labels}
+
+    @cached_property
+    def points(self) -> dict[Member, FlankRelief]:
+        """At the roll angles that the case asks for."""
+        return {m: self._flank(m, table) for m, table in self.data.points.items()}
+
+    @cached_property
+    def tips(self) -> tuple[GroundTip, ...]:
+        """Tip reliefs to grind, by shape and gear."""
+        design, pair = self.data.design, self.data.pair.pair
+        return tuple(
+            tip
+            for shape, ground in design.ground.items()
+            for tip in tips_of(ground, pair, shape, design.te[f"{shape} tip relief"])
+        )
+
+    @cached_property
+    def left(self) -> dict[str, Leaves]:
+        """What each relief leaves."""
+        design, pair, found = self.data.design, self.data.pair.pair, {}
+        searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
+        for label, te in design.te.items():
+            curve, ground = design.curves[label], searched.get(label)
+            error = design.left if label == "designed" else None if ground is None else ground.objective_error
+            harris = HarrisMap(pair, curve.x, curve.load, curve.transmission_error.T, at=self.load, word="design")
+            found[label] = Leaves(te, error, harris, None if ground is None else ground.removal_error)
+        return found
+
+    @property
+    def maps(self) -> dict[str, HarrisMap]:
+        """Of what each leaves, in the order of the views."""
+        order = sorted(self.left, key=lambda label: _VIEWS.index(label) if label in _VIEWS else len(_VIEWS))
+        return {label: self.left[label].map for label in order}
+
+
+def _key(seen: Seen) -> str:
+    return seen.key.replace(" ", "_")
+
+
+def _removal(y: str, label: str, **options: object) -> Line:
+    """A relief over the roll angle."""
+    return Line(y, label, label, look={"markers": False}, **options)  # type: ignore[arg-type]
+
+
+def _at_points(y: str, axis: str = "", **options: object) -> Over:
+    """A quantity at the roll angles that the case asks for, a curve for each gear."""
+    line = Line(
+        f"table.{y}", "{key}: gear {one.gear}", "{key}", x="table.roll_angle", each=Family("points"),
+        look={"markers": True}, **options,  # type: ignore[arg-type]
+    )  # fmt: skip
+    named = {"label": axis} if axis else {}
+    return Over(Axis("roll angle of the gear", "deg"), (line,), options={**named, "zero": True})
+
+
+def _diagonal_remark(seen: Seen) -> str:
+    te = {label: one.te for label, one in seen.data.left.items()}
+    d, n = te["diagonal only"].peak_to_peak, te["no relief"].peak_to_peak
+    return (
+        f"Pair {seen.name}: relief designed without tooth coupling (Mark 5.4) gives a peak-to-peak transmission error "
+        f"of {d * 1e6:.3g} um, {percent(d / te['diagonal only'].mean)} of the mean and {percent(d / n)} of the "
+        "value without relief."
+    )
+
+
+def _neglected(seen: Seen) -> Iterator[str]:
+    yield from design_remarks(seen.name, seen.data.data.neglected, seen.asked.effects, seen.asked.tolerance)
+
+
+_LEFT_CAPTION = "Pair {name}: remaining transmission error with each relief at the design load, {d.load:.5g} N."
+_DIAGONAL_CAPTION = (
+    " Diagonal only: relief designed without the neighbours' loads (Mark, Eq. 5.4), applied to teeth with coupling."
+)
+_LOADING = "data.design.task.loading"
+
+RELIEF_SHEET = Sheet(
+    of=ReliefShown,
+    name=lambda asked: asked.asked.name,
+    tables=(
+        Rows(
+            "loading_candidates_{name}", "Loadings of {name} evaluated for minimum stress",
+            ("family", "peak", "root_tension", "hertz_pressure"), of="tried", when="tried",
+        ),
+        Rows(
+            "relief_{one.label}", "Relief of gear {one.gear} in pair {name}",
+            (
+                Every("flank"),
+                Cell("relief", "diagonal", name="relief_diagonal", meaning="without tooth coupling (Mark 5.4)"),
+                Off("relief", "error"),
+            ),
+            of="table", each="reliefs",
+        ),
+        Rows(
+            "relief_points_{one.label}", "Relief of gear {one.gear} in pair {name} at the requested angles",
+            (
+                "roll_angle", "radius", "x", "load", "deflection", "relief",
+                Cell("relief", "above_least", name="relief_over_least", meaning="minus the minimum of these rows"),
+            ),
+            of="table", each="points",
+        ),
+        GRINDABLE,
+        Rows(
+            "harris_map_{name}", "Harris map of {name}",
+            (
+                Each(
+                    "left",
+                    Cell(
+                        "map.transmission_error", name=lambda seen: f"te_{_key(seen)}",
+                        meaning="transmission error, {key}",
+                    ),
+                    Off(
+                        "map.transmission_error", "map_error", "repeatability of the search",
+                        name=lambda seen: f"te_{_key(seen)}",
+                    ),
+                ),
+            ),
+            of=lambda seen: next(iter(seen.data.left.values())).map, on=("load", "x"),
+        ),
+    ),
+    values=(
+        Number("root_tension", of="least_stress", name="design_root_tension",
+               meaning="maximum of both gears, design load"),
+        Number("hertz_pressure", of="least_stress", name="design_hertz_pressure"),
+        Each(
+            "left",
+            Number("te.peak_to_peak", "error", name=lambda seen: f"te_peak_to_peak.{_key(seen)}",
+                   meaning="{key}, design load"),
+            Number("te.effective_error", "error", name=lambda seen: f"te_effective.{_key(seen)}",
+                   meaning="A_e, {key}, design load"),
+        ),
+        Number("te.peak_to_peak", of="left.designed", si="data.design.tables_leave",
+               name="te_peak_to_peak.relief_tables",
+               meaning="designed, relief tables interpolated linearly, design load"),
+        Number("te.mean", of="left.designed", name="te_mean.designed", meaning="design load"),
+        tip_numbers("tips", "{one.shape}_tip_"),
+        Number("relief", of="table", si=lambda seen: seen.one.table.relief.max(), owner="{name}.{one.member}",
+               name="largest_relief", meaning="over the path", each="reliefs"),
+    ),
+    figures=(
+        Chart(
+            "relief_{name}", "Profile relief of pair {name}",
+            "Pair {name}: relief of both gears for {d.load:.5g} N over the active profile, and the load "
+            "of the tooth. Shaded: the design zone, where the tooth is loaded at the design load. Grindable reliefs "
+            "are tip reliefs only; a constant offset has no effect.",
+            (
+                Over(
+                    "roll_angle",
+                    (
+                        _removal("relief", "designed", error="error"),
+                        _removal("relief", "diagonal only", si="diagonal"),
+                        Line("relief", "{key}", "{key}", each=Family("ground"), look={"markers": False}),
+                    ),
+                    title="{one.member}: gear {one.gear}", each="reliefs", of="table", marks="marked",
+                ),
+                Over(
+                    "roll_angle",
+                    (Line("load", "load of the design", "grey", look={"dash": "solid", "markers": False}),),
+                    options={"zero": True}, title="{one.member}: load", panel={"height": 0.6}, each="reliefs",
+                    of="table", marks="marked",
+                ),
+            ),
+            columns=2, under="{d.load:.5g} N",
+        ),
+        Chart(
+            "relief_points_{name}", "Loads, deflections and relief of pair {name}",
+            "Pair {name}: at the roll angles asked for, design load, flank deflection and compensating relief, "
+            "relative to the minimum of these points.",
+            (
+                _at_points("load"), _at_points("deflection"),
+                _at_points("relief", "relief from the minimum", si="above_least"),
+            ),
+            when="points", under="{d.load:.5g} N",
+        ),
+        Chart(
+            "relief_candidates_{name}", "Transmission error of pair {name} with and without relief",
+            lambda seen: seen.said(_LEFT_CAPTION) + (_DIAGONAL_CAPTION if "diagonal only" in seen.data.left else ""),
+            (
+                Over(
+                    BASE_PITCH,
+                    (
+                        Line(
+                            "minus_mean", "{key}: {one.peak_to_peak} peak to peak", "{key}", each=Family("left"),
+                            look={"markers": False},
+                        ),
+                    ),
+                    marks=lambda seen: pitch_marks(seen.data.data.pair.pair, next(iter(seen.data.left.values())).x),
+                ),
+            ),
+            under="{d.load:.5g} N",
+        ),
+        Chart(
+            "harris_map_{name}", "Harris map of pair {name}",
+            "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
+            "wide: the design load, {d.load:.5g} N.",
+            (OVER_ROLL,),
+            views="maps",
+        ),
+    ),
+    remarks=(
+        Remark(
+            "Pair {name}: each relief compensates half the oil film at the design load; the remaining transmission "
+            "error includes the film, assumed equally thick at all loads. Grindable tip reliefs are searched without "
+            "it.",
+            when=lambda seen: seen.asked.part.film is not None,
+        ),
+        Remark(_diagonal_remark, when=lambda seen: "diagonal only" in seen.data.left),
+        _neglected,
+    ),
+    settings={
+        "design_load": "load",
+        "design_contact_ratio": lambda seen: seen.find(_LOADING).length / seen.find(_LOADING).base_pitch,
+        "peak": f"{_LOADING}.peak", "slope": f"{_LOADING}.ramp.slope",
+        "exponent": lambda seen: seen.find(_LOADING).ramp.exponent or 0, "centre": f"{_LOADING}.centre",
+    },
+)  # fmt: skip
