@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -221,16 +221,16 @@ def _key(seen: Seen) -> str:
     return seen.key.replace(" ", "_")
 
 
-def _removal(y: str, label: str, **options: object) -> Line:
+def _removal(y: str, label: str, **options: Any) -> Line:
     """A relief over the roll angle."""
-    return Line(y, label, label, look={"markers": False}, **options)  # type: ignore[arg-type]
+    return Line(y, label, label, look={"markers": False}, **options)
 
 
-def _at_points(y: str, axis: str = "", **options: object) -> Over:
+def _at_points(y: str, axis: str = "", **options: Any) -> Over:
     """A quantity at the roll angles that the case asks for, a curve for each gear."""
     line = Line(
         f"table.{y}", "{key}: gear {one.gear}", "{key}", x="table.roll_angle", each=Family("points"),
-        look={"markers": True}, **options,  # type: ignore[arg-type]
+        look={"markers": True}, **options
     )  # fmt: skip
     named = {"label": axis} if axis else {}
     return Over(Axis("roll angle of the gear", "deg"), (line,), options={**named, "zero": True})
