@@ -19,7 +19,8 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.stage import Task
 from fegear.output.tables import write_table
 from fegear.results.catalogue import STAGES
-from fegear.results.relief.flank_design_sheet import TOPOGRAPHY, topography_points
+from fegear.results.relief.flank_design_data import topography_points
+from fegear.results.relief.flank_design_sheet import TOPOGRAPHY
 from fegear.results.relief.ground_flank_keys import keys_of
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_flank_design.toml"

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.shown import shown
 
 #: Confidence of the intervals of percentiles.
 CONFIDENCE = 0.95
@@ -88,21 +89,15 @@ def sure_of_less(values: Array, others: Array, percent: float) -> tuple[float, f
 class Influence:
     """How one deviation goes with one result.
 
-    Parameters
-    ----------
-    rank_correlation : float
-        Spearman's, -1 to 1: zero for what acts alike to both sides.
-    share : float
-        Of the result's variance that is left between the means of classes of the deviation (correlation ratio eta^2,
-        less what chance leaves): the first-order effect of the deviation alone, to either side. Without bias, so that
-        chance takes it below zero as often as above for a deviation that changes nothing.
-    error : float
-        Standard error of the share; NaN where draws are too few for it.
+    The rank correlation is Spearman's, -1 to 1: zero for what acts alike to both sides. The share of the result's
+    variance is what is left between the means of classes of the deviation (correlation ratio eta^2, less what chance
+    leaves): the first-order effect of the deviation alone, to either side. Without bias, so that chance takes it below
+    zero as often as above for a deviation that changes nothing. Its standard error is NaN where draws are too few.
     """
 
-    rank_correlation: float
-    share: float
-    error: float
+    rank_correlation: float = shown("", "rank correlation")
+    share: float = shown("", "share of the variance by this deviation only; values around zero: none")
+    error: float = shown("", "standard error of the share")
 
     @property
     def resolved(self) -> bool:

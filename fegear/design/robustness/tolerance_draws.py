@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.base.shown import shown
 from fegear.geometry.flank_modification import FlankModification
 
 Sequence = Literal["sobol", "halton", "random"]
@@ -113,27 +114,18 @@ class HelixDeviation(FlankModification):
 class Deviations:
     """Rows of deviations; arrays of shape (D,), (D, 2) for driver and driven, (D, 2, 2 T) for the pitches.
 
-    Parameters
-    ----------
-    centre_distance : ndarray
-        [m].
-    profile_slope, profile_form, helix_slope : ndarray
-        [m].
-    waves, phase : ndarray
-        Of the profile form, see `ProfileDeviation`.
-    pitch : ndarray
-        Single pitch deviations along the line of action [m] between neighbouring teeth: of the gaps before and after
-        tooth 0 in turn, from it outward, so that entry 0 lies between teeth 0 and -1, entry 1 between 0 and 1, entry 2
-        between -1 and -2.
+    Waves and phase are those of the profile form, see `ProfileDeviation`. Single pitch deviations along the line of
+    action between neighbouring teeth are of the gaps before and after tooth 0 in turn, from it outward, so that entry 0
+    lies between teeth 0 and -1, entry 1 between 0 and 1, entry 2 between -1 and -2.
     """
 
-    centre_distance: Array
-    profile_slope: Array
-    profile_form: Array
-    helix_slope: Array
-    waves: Array
-    phase: Array
-    pitch: Array
+    centre_distance: Array = shown("um", "deviation from nominal")
+    profile_slope: Array = shown("um", "f_Halpha, positive: excess material at the tip")
+    profile_form: Array = shown("um", "band of the profile form, f_falpha")
+    helix_slope: Array = shown("um", "f_Hbeta, positive: less material at end II")
+    waves: Array = shown("", "number of waves over the active profile")
+    phase: Array = shown("deg", "phase of the waves at the start of contact")
+    pitch: Array = shown("um", "f_p cos(alpha_t) between neighbouring teeth")
 
     def __len__(self) -> int:
         """D."""

@@ -69,7 +69,8 @@ class Line:
     Parameters
     ----------
     y : str
-        None there: no line. A single number is drawn level.
+        None there: no line. A single number is drawn level. Of several that are alike, as x, one that the object of a
+        repetition names: ``{key}``.
     label, role : text
         Of the legend and of the look, blue if empty; a family has its own, which a bundle's lines may replace.
     error : where, optional
@@ -335,7 +336,7 @@ def _items(seen: Seen, owner: Any, line: Line | Bundle | Map, base: str) -> Iter
 
 def _there(seen: Seen, owner: Any, quantity: str, si: Where | None) -> bool:
     """Whether there is anything to be drawn of a quantity."""
-    return (getattr(*reach(_first(owner), quantity)) if si is None else seen.find(si)) is not None
+    return (getattr(*reach(_first(owner), seen.said(quantity))) if si is None else seen.find(si)) is not None
 
 
 def _bundle(seen: Seen, bundle: Bundle, base: str) -> Iterator[Item]:
@@ -371,15 +372,15 @@ def _item(
     seen: Seen, owner: Any, line: Line, base: str, label: str, role: str, load: int | None, *, banded: bool = True
 ) -> Item:  # fmt: skip
     """One curve, row of bars or of stems, in the units in which its quantities are read."""
-    upto = slice(line.first)
+    upto, x, quantity = slice(line.first), seen.said(line.x) or base, seen.said(line.y)
     si, x_si = (None if where is None else seen.find(where) for where in (line.si, line.x_si))
-    along, y = _drawn(owner, line.x or base, x_si, load=load)[upto], _drawn(owner, line.y, si, load=load)
+    along, y = _drawn(owner, x, x_si, load=load)[upto], _drawn(owner, quantity, si, load=load)
     y = y[upto] if y.ndim else np.full(along.shape, y)
     if line.ends:
         along, y = along[[0, -1]], y[[0, -1]]
     error = None if line.error is None or not banded else seen.find(line.error)
     if error is not None:
-        error = _drawn(owner, line.y, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
+        error = _drawn(owner, quantity, error[..., load] if load is not None and np.ndim(error) > 1 else error)[upto]
     look = line.look(seen) if callable(line.look) else line.look
     if line.kind == "bars":
         return Bars(along, y, label, role, error)
