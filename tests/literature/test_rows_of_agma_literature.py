@@ -33,7 +33,15 @@ def test_dynamic_factor_by_clause_8(level):
 )  # fmt: skip
 def test_load_distribution_by_clause_15(enclosure, a, b, c):
     """Table 2, K_Hpf of the three ranges of width, K_Hpm from S_1/S = .175 on, K_Hmc and K_He of .8."""
-    for face, d in ((20.0, 40.0), (100.0, 60.0), (432.0, 500.0), (500.0, 400.0), (300.0, 2000.0)):
+    for face, d in (
+        (20.0, 40.0),
+        (25.0, 40.0),
+        (26.0, 40.0),
+        (100.0, 60.0),
+        (432.0, 500.0),
+        (440.0, 400.0),
+        (300.0, 2e3),
+    ):
         slim = max(face / (10.0 * d), 0.05)
         if face <= 25.0:
             proportion = slim - 0.025

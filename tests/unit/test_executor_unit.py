@@ -279,6 +279,24 @@ def test_nobody_waits_for_what_is_under_way_when_a_run_is_stopped(tmp_path):
     assert run.wait(timeout=60) != 0
 
 
+def test_a_folder_is_removed_when_its_process_has_ended_and_not_before(tmp_path):
+    program = (
+        "import os, sys, time\n"
+        "from fegear.engine.processes import _remove_after_the_end\n"
+        "own = os.getpid()\n"
+        "_remove_after_the_end(sys.argv[1])\n"
+        "if os.getpid() != own:\n"
+        "    os._exit(0)\n"
+        "time.sleep(0.05)\n"
+        "print(os.path.isdir(sys.argv[1]))\n"
+    )
+    (scratch := tmp_path / "scratch").mkdir()
+    command = [sys.executable, "-c", program, str(scratch)]
+    ran = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout == "True\n"  # read to its end, which is that of the process that removes
+    assert not scratch.exists()
+
+
 @pytest.mark.dear
 def test_no_worker_outlives_a_killed_parent(tmp_path):
     program = (

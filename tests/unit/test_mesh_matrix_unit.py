@@ -18,6 +18,7 @@ from fegear.contact.wide.mesh_matrix import (
     tilt_lever,
 )
 from fegear.contact.wide.roll_points import roll_points
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.gear import Gear, Material
@@ -216,7 +217,6 @@ def test_a_wide_spur_face_nears_even_springs():
 
 def test_parameters_are_those_of_the_paper(known):
     """Eq. 6 with the parameters is the matrix where both gears tilt about the pitch axis."""
-    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 
     flanks, matrix = known
     ms = mesh_stiffness(flanks.solve([LOAD], MISALIGNED, matrix), flanks.points)
@@ -231,3 +231,8 @@ def test_parameters_are_those_of_the_paper(known):
     lift[1, 2] = r * math.tan(pair.working_pressure_angle) / b  # the axis stays where the pitch point is
     full = lift.T @ own @ full @ own @ lift
     np.testing.assert_allclose(full, paper, rtol=1e-9, atol=1e-9 * stiffness)
+
+
+def test_a_mesh_of_a_stiffness_only_is_even_over_its_face():
+    mesh = MeshParameters(3e8)
+    assert (mesh.kappa, mesh.mu, mesh.base_helix_angle) == (0.0, pytest.approx(1.0 / 3.0, abs=1e-15), 0.0)

@@ -198,3 +198,18 @@ def test_pairs_are_alike_where_they_are_described_alike(pair):
     assert pair.document(load="1 kN")["pair"]["I"]["load"] == "1 kN"
     with pytest.raises(InputError, match="is required for tooth contact analysis"):
         _ = pair.flanks
+
+
+@pytest.mark.parametrize("ask", [fegear.load_sharing, fegear.transmission_error, fegear.root_stress, fegear.rating])
+def test_every_question_of_a_pair_hands_on_effects_tolerance_progress_and_neglected(pair, asked, ask):
+    scene = ask(pair, load="1 kN", effects={"hertz": "linear"}, tolerance=3e-2, neglected=True, progress=False)
+    assert (scene.case.effects.hertz, scene.case.accuracy.tolerance, scene.neglects) == ("linear", 3e-2, True)
+    assert asked[0][1]["progress"] is False
+
+
+def test_a_rating_has_the_pair_s_own_keys_and_those_that_are_asked_for(pair, asked):
+    one = fegear.rating(pair, torque="90 N*m", speed="1500 rpm", operation={"application_factor": 1.3}).case
+    assert list(one.rating.beside) == ["agma-2101"]
+    assert (one.pair["I"].torque, one.pair["I"].operation.application_factor) == (90.0, 1.3)
+    assert one.pair["I"].speed == pytest.approx(50.0 * math.pi)
+    assert list(fegear.rating(pair, load="1 kN", beside="computed").case.rating.beside) == ["computed"]

@@ -102,6 +102,12 @@ def test_a_field_says_what_may_be_typed_and_what_holds_without_it():
     assert {"effects", "accuracy"} < set(tables_to_add(tomllib.loads(TEXT)))
 
 
+def test_sections_are_called_by_their_keys_as_words():
+    titles = [section.title for section in form({"gear": {"wheel_2": {}}, "tooth_contact": {"positions": 9}})]
+    assert titles[0] == "case"
+    assert {"gear wheel 2", "tooth contact"} <= set(titles)
+
+
 def test_remarks_of_a_run_find_the_fields_that_they_are_about(tmp_path):
     text = TWO.replace('face_width = "20 mm"', "").replace('"weber-banaschek"', '"fe"')
     scene = scene_of(Asked(text + "[accuracy]\ntolerance = 0.1\n", "c", str(tmp_path)))
