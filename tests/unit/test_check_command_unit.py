@@ -84,6 +84,24 @@ def test_a_gear_with_a_mesh_of_its_own_is_refused_in_a_sentence(case):
         app(["check", str(case), "--set", 'gear.a.tooth_mesh="own.msh"'], standalone_mode=False)
 
 
+def test_a_small_gear_by_scikit_fem_alone_gives_what_it_gave():
+    """Six teeth on few edges: 2 % from the condensed ring, but to the last digits what was accepted."""
+    from fegear.fem.plane.scikit_fem_alone import solve_alone
+    from fegear.fem.plane.settings import settings_at
+    from fegear.geometry.rack import BasicRack
+    from fegear.geometry.tooth import Tooth
+
+    tooth = Tooth(6, BasicRack(1.0, 1.25, 0.25), 0.4)
+    radius = np.sqrt(np.linspace(tooth.form_radius**2, tooth.involute_tip_radius**2, 6)[2:5:2])
+    found = solve_alone(tooth, 1.2, 0.3, "stress", settings_at(-4).scaled(6.0), radius, 0.15)
+    kept = {
+        "c_self": (7.49180176, 10.84834599), "c_next": (0.85686874, 0.84242879), "c_prev": (0.85648217, 0.84143559),
+        "root_tension": (3.5372226, 4.37572513), "root_compression": (-4.22643209, -5.6145935),
+    }  # fmt: skip
+    for name, values in kept.items():
+        assert getattr(found, name) == pytest.approx(values, rel=1e-6)
+
+
 @pytest.mark.long
 def test_each_number_of_the_whole_gear_moves_with_what_it_depends_on():
     """A softer body, a load nearer the tip: directions that both solutions must show."""
