@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 #: Ratios that figures shade as agreement.
 _AGREEMENT = (0.95, 1.05)
-#: Every formula is drawn.
-_ALL = 99
 _C = TypeVar("_C", bound="Compared")
 
 
@@ -48,7 +46,7 @@ class Compared:
     ----------
     formula, reason : ndarray of str
     result, reference, ratio_to_fe : ndarray
-        By the formula, and by finite elements.
+        By the formula, and by finite elements; declared in the unit of what is compared.
     """
 
     reason: NDArray[np.str_]
@@ -98,6 +96,8 @@ class Compared:
 class RootStressRows(Compared):
     """Root stress of one gear; radii [m], angles [rad]."""
 
+    result: Array = shown("MPa.mm/N", label="root stress per line load")
+    reference: Array = shown("MPa.mm/N")
     radius: Array = shown("mm")
     roll_angle: Array = shown("deg", label="roll angle of the load")
     error: Array = shown("MPa.mm/N")
@@ -105,18 +105,6 @@ class RootStressRows(Compared):
     place_radius_fe: Array = shown("mm")
     place_angle: Array = shown("deg", label="angle of fillet tangent to tooth centre line")
     place_angle_fe: Array = shown("deg")
-
-    @property
-    @shows("MPa.mm/N", label="root stress per line load")
-    def drawn(self) -> Array:
-        """By the formula."""
-        return self.result
-
-    @property
-    @shows("MPa.mm/N")
-    def drawn_fe(self) -> Array:
-        """By finite elements."""
-        return self.reference
 
     @classmethod
     def of(cls, answers: Mapping[str, RootStressAnswers], fe: StiffnessTable, module: float) -> RootStressRows:
@@ -134,17 +122,8 @@ class RootStressRows(Compared):
 class ComplianceRows(Compared):
     """Compliances [m^2/N]."""
 
-    @property
-    @shows("um.mm/N", label="deflection per line load")
-    def drawn(self) -> Array:
-        """By the formula."""
-        return self.result
-
-    @property
-    @shows("um.mm/N")
-    def drawn_fe(self) -> Array:
-        """By finite elements."""
-        return self.reference
+    result: Array = shown("um.mm/N", label="deflection per line load")
+    reference: Array = shown("um.mm/N")
 
 
 @dataclass(frozen=True)
@@ -356,13 +335,13 @@ def comparison(name: str, title: Text, what: str, where: str, x: str, *, stress:
     stress : bool
         Whether it is root stress.
     """
-    formulas = Family(f"{where}.formulas", most=_ALL)
+    formulas = Family(f"{where}.formulas", most=None)
 
     def first(seen: Seen) -> Compared:
         return next(iter(seen.find(where).formulas.values()))
 
-    def panel(key: str) -> tuple[Line, Line]:
-        fe = Line(f"{key}_fe", "finite elements", "finite elements", of=first, look={"width": 2.6})
+    def panel(key: str, reference: str) -> tuple[Line, Line]:
+        fe = Line(reference, "finite elements", "finite elements", of=first, look={"width": 2.6})
         return fe, Line(key, each=formulas)
 
     def caption(seen: Seen) -> str:
@@ -371,9 +350,9 @@ def comparison(name: str, title: Text, what: str, where: str, x: str, *, stress:
 
     agreement = (Zone("y", *_AGREEMENT), Mark("y", 1.0, "±5 %"))
     panels = [
-        Over(x, panel("drawn"), "drawn", options={"zero": not stress}, panel={"height": 1.2}),
+        Over(x, panel("result", "reference"), "result", options={"zero": not stress}, panel={"height": 1.2}),
         Over(x, (Line("ratio_to_fe", each=formulas),), "ratio_to_fe", marks=lambda _: agreement),
     ]
     if stress:
-        panels.append(Over(x, panel("place_angle"), "place_angle"))
+        panels.append(Over(x, panel("place_angle", "place_angle_fe"), "place_angle"))
     return Chart(name, title, caption, tuple(panels), of=where)
