@@ -2,7 +2,7 @@
 // Stress inside the teeth in colour: tables for unit loads are superposed with the loads of the pairs as they are now.
 const fegearField = (() => {
   const MEASURES = { // what may be shown: its name, and whether it has a sign
-    mises: ["von Mises stress", false], tension: ["largest principal stress", true], pressure: ["smallest principal stress", true],
+    mises: ["von Mises stress", false], tension: ["maximum principal stress", true], pressure: ["minimum principal stress", true],
   };
   const STOPS = {
     light: ["#e6ebf1", "#9cc3e2", "#58b59b", "#efc455", "#e0662f", "#8c0d1c"],

@@ -7,7 +7,7 @@ const fegearGears = (() => {
   const KINDS = { // what can be switched on
     stress: ["Root stress", "Root stress along the fillets of all teeth, in colour"],
     deformed: ["Deformed", "Deformed teeth (displacements magnified)"],
-    tool: ["Tool", "Positions of the rack tool that generates the teeth, in one space of either gear"],
+    tool: ["Tool", "Positions of the rack tool that generates the teeth, in one tooth space of each gear"],
   };
 
   const svg = (tag, attributes, parent) => {
@@ -38,7 +38,7 @@ const fegearGears = (() => {
     const step = (way) => () => { kept.place = (kept.place + way * 0.05 + 2) % 1; draw(); };
     const told = document.createElement("span");
     told.className = "quiet loads";
-    const large = button("Enlarge", "The gears alone", () => {
+    const large = button("Enlarge", "Gears only", () => {
       const on = host.classList.toggle("large");
       large.textContent = on ? "Back" : "Enlarge";
       large.setAttribute("aria-pressed", String(on));
@@ -178,7 +178,7 @@ const fegearGears = (() => {
       which.append(Object.assign(document.createElement("option"), { value, textContent: words }));
     }
     which.setAttribute("aria-label", "Stress inside the teeth");
-    which.title = "Stress inside the teeth, from the loads of all pairs and the solved gears; deformed teeth are drawn without it";
+    which.title = "Stress inside the teeth, from the loads of all pairs and the solved gears; not shown on deformed teeth";
     which.value = fegearGlance.view().measure ?? "mises";
     which.onchange = () => { fegearGlance.keep({ measure: which.value }); rest(); };
     whichLabel.append(which);
@@ -194,7 +194,7 @@ const fegearGears = (() => {
       if (limit > 0) {
         const title = document.createElement("span"), [words, signed] = fegearField.MEASURES[measure()], number = digits(limit, 3);
         title.textContent = `${words}:`;
-        fieldScale.title = "The scale ends at the largest value on the fillets over the mesh. Beneath a contact the pressure is spread over 0.3 modules: Hertz's own peak, which is higher, is among the numbers.";
+        fieldScale.title = "The colour scale ends at the maximum fillet stress over the mesh cycle. In contacts the pressure is distributed over 0.3 modules; the Hertzian pressure, which is higher, is one of the values.";
         fieldScale.replaceChildren(title, ...bar(fegearField.stops(measure()), signed ? `−${number}` : "0", number, "MPa"));
       }
       kept.soon();
@@ -281,9 +281,9 @@ const fegearGears = (() => {
         title.textContent = "tangential root stress:";
         scale.replaceChildren(title, ...bar(fegearLayers.stops("stress"), `−${number}`, number, "MPa"));
         const wide = faced(), where = wide ? `, z = ${largest.z.toFixed(3)} mm` : "";
-        const touches = wide ? "contact line crosses the middle of the face" : "pair touches";
-        lines.push(`Largest root tension over the mesh cycle${wide ? " and the face" : ""}: ${digits(largest.value, 5)} MPa in the ${largest.member} gear, at radius `
-          + `${largest.radius.toFixed(3)} mm${where}, while its ${touches} at x = ${largest.x.toFixed(3)} mm (ring).`);
+        const touches = wide ? "contact line crosses mid-face" : "contact is";
+        lines.push(`Maximum root stress (tension side) over the mesh cycle${wide ? " and the face" : ""}: ${digits(largest.value, 5)} MPa in the ${largest.member} gear, at radius `
+          + `${largest.radius.toFixed(3)} mm${where} when its ${touches} at x = ${largest.x.toFixed(3)} mm (circled).`);
         if (wide) {
           const span = wide.z.at(-1) - wide.z[0];
           along.value = Math.round(200 * (sectionAt() - wide.z[0]) / span);
@@ -295,8 +295,8 @@ const fegearGears = (() => {
         slider.value = Math.round(100 * Math.log10(factor()));
         value.textContent = `${factor()} ×`;
         lines.push(`Displacements, transmission error and relief are drawn ${factor()} times as large (largest: `
-          + `${digits(deformed.largest, 3)} µm); pale lines show the gears at rest. Flanks that carry load touch at the dots; `
-          + "beside them, and where teeth do not touch, they may seem to overlap, for gaps are drawn as they are.");
+          + `${digits(deformed.largest, 3)} µm); pale lines: unloaded gears. Loaded flanks are in contact at the dots; `
+          + "elsewhere flanks may appear to overlap, because gaps are not magnified.");
       }
       if (has("tool")) lines.push("The profile is the envelope of the tool's positions.");
       for (const kind of Object.keys(KINDS)) {

@@ -65,7 +65,7 @@ const fegearGlance = (() => {
       watch.observe(body);
     }
     const choice = made("details", "choice"), list = made("div");
-    choice.append(made("summary", "", "Choose pictures"), list);
+    choice.append(made("summary", "", "Choose figures"), list);
     for (const [name, one] of Object.entries(told.pictures).filter(([, { of }]) => of === kind)) {
       const label = made("label"), box = Object.assign(made("input"), { type: "checkbox", checked: names.includes(name) });
       box.onchange = () => {

@@ -116,8 +116,8 @@ const fegearHands = (() => {
         gear: relief.gear, end, start: relief.usual[end], amount: 10, moving: false })));
     }
     if (relief.given.length) tools.append(button("Without relief", "Remove the relief of this gear", () => emitEvent("drop", { gear: relief.gear })));
-    if (relief.given.includes("table")) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "Its table is part of the curve, and is changed in the form or the text." }));
-    if (relief.over_face.length) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: `What is removed over the face (${relief.over_face.join(", ")}) is changed in the form or the text.` }));
+    if (relief.given.includes("table")) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "The curve includes a relief table; edit it in the form or the text." }));
+    if (relief.over_face.length) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: `Modifications over the face width (${relief.over_face.join(", ")}) are edited in the form or the text.` }));
     if (relief.given.length && !relief.on) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "No influence: effects.relief is off." }));
   }
 

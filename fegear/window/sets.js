@@ -163,9 +163,9 @@ const fegearSets = (() => {
       const d = kept.data, parts = (values) => values.map((one) => Number(one.toFixed(3))).join(", ");
       angle.setAttribute("aria-label", `Angle of the ${d.driving}`);
       now.title = `Angle of the ${d.driving}, which drives`;
-      const ring = d.gears.ring.tooth[0].length ? "" : " The ring is no gear of the case: its working pitch circle is drawn.";
+      const ring = d.gears.ring.tooth[0].length ? "" : " The ring is not a gear of the case: its working pitch circle is drawn.";
       const loads = kept.loads ? ` Mean load over an equal share: ${kept.loads.shares.map((one) => one.toFixed(3)).join(", ")}. Arrows are the forces on the planets.` : "";
-      told.textContent = `The ${d.driving} drives, the ${d.fixed} is held. Phases of planets 1 to ${d.angles.length} in base pitches: with the sun ${parts(d.meshes.sun.delay)}; with the ring ${parts(d.meshes.ring.delay.map((one) => one % 1))}.${loads}${ring}`;
+      told.textContent = `The ${d.driving} drives, the ${d.fixed} is fixed. Phases of planets 1 to ${d.angles.length} in base pitches: with the sun ${parts(d.meshes.sun.delay)}; with the ring ${parts(d.meshes.ring.delay.map((one) => one % 1))}.${loads}${ring}`;
       canvas.setAttribute("aria-label", `Planetary set ${name}, ${d.angles.length} planets. ${told.textContent}`);
       scale.hidden = !kept.loads;
       if (kept.loads) {
