@@ -59,7 +59,7 @@ TEN = (
         "Four planets, one of them late: who carries what, and the set's transmission error.",
     ),
     ("two_stage_shafts", "shaft_deflection_mid", "How the middle shaft of a gearbox bends on its bearings."),
-    ("lin_dynamic_factor", "dynamic_factor_I", "Tooth force over speed, and how long the teeth are apart."),
+    ("lin_dynamic_factor", "dynamic_factor_I", "Tooth force over speed, and the share of time with loss of contact."),
     ("four_square_dynamics", "mesh_force_waterfall_I", "Harmonics of the mesh force over speed."),
     ("rating_spur", "rating_I", "Safeties by ISO 6336, AGMA 2101 and with computed stresses."),
 )

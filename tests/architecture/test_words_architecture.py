@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -80,6 +81,76 @@ def test_templates_and_cases_have_no_words_that_were_replaced():
     assert len(paths) > 30
     found = [f"{path.relative_to(ROOT)}: {one[0]}" for path in paths for one in WORDS.finditer(path.read_text("utf-8"))]
     assert found == []
+
+
+#: What other texts that people read have in no place: their numbers have a zero before the point.
+OF_OTHERS = re.compile(
+    r"(?<![\w.\d)\]:\"'/*%])\.\d+(?![\w.]*[/;)])|\b(?:is|are) apart\b|\bheld (?:fast|all round|over|by the)\b|"
+    r"\bacross (?:the|its) ax[ei]s\b|\balike\b|\b0-peak\b|processor seconds|\bwithout it does\b"
+)
+#: What JavaScript says, and not the names of its classes and the shapes that it draws.
+OF_SCRIPTS = re.compile(r"\"((?:[^\"\\\n]|\\.)*)\"|`((?:[^`\\]|\\.)*)`")
+SENTENCE = re.compile(r"[A-Za-z}]{2,},? [a-z{]{2,}")
+#: Classes of an element, some of which have a hyphen.
+CLASSES = re.compile(r"[a-z]+( [a-z]+)*( ?[a-z]+-[a-z-]+)+( [a-z-]+)*")
+
+
+def said_by_script(source: str) -> list[str]:
+    """Texts of a script of the page, what stands for values being {}."""
+    found = (one or other for one, other in OF_SCRIPTS.findall(re.sub(r"(?m)^\s*//.*$|\s// .*$", "", source)))
+    return [
+        re.sub(r"\$\{[^}]*\}", "{}", text) for text in found if SENTENCE.search(text) and not CLASSES.fullmatch(text)
+    ]
+
+
+def texts_within(table: object) -> list[str]:
+    """Every text of a table of TOML but those that a paper prints."""
+    if isinstance(table, str):
+        return [table]
+    if isinstance(table, list):
+        return [text for one in table for text in texts_within(one)]
+    if isinstance(table, dict):
+        return [text for key, one in table.items() if key not in ("printed", "statement") for text in texts_within(one)]
+    return []
+
+
+def other_texts() -> dict[Path, list[str]]:
+    """Texts of the sources' lists, the page's scripts, the shell's, the newest version of the changelog, benchmarks."""
+    found = {
+        path: texts_within(tomllib.loads(path.read_text("utf-8"))) for path in (ROOT / "docs/sources").glob("*.toml")
+    }
+    found |= {path: said_by_script(path.read_text("utf-8")) for path in (ROOT / "fegear" / "window").glob("*.js")}
+    found |= {path: [path.read_text("utf-8")] for path in ROOT.glob("*.sh")}
+    changes = (ROOT / "CHANGELOG.md").read_text("utf-8")
+    newest = re.split(r"(?m)^## ", changes)[1]
+    found[ROOT / "CHANGELOG.md"] = [re.sub(r"`[^`]*`", "", newest)]
+    for path in [*(ROOT / "benchmarks").glob("*.py"), *(ROOT / "docs").glob("*.py")]:
+        tree = ast.parse(path.read_text("utf-8"))
+        lone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        whole_texts = (whole(node) for node in ast.walk(tree) if isinstance(node, ast.expr) and id(node) not in lone)
+        # code for the browser and the look of pages is no text
+        found[path] = [text for text in whole_texts if text and " " in text and not re.search(r"[{;]\s|=>|px|document\.", text)]
+    return found
+
+
+def test_sources_scripts_changelog_and_benchmarks_have_the_words_of_the_trade():
+    texts = other_texts()
+    assert {path.suffix for path in texts} == {".toml", ".js", ".sh", ".md", ".py"}
+    found = [f"{path.relative_to(ROOT)}: {one[0]} in {text[max(0, one.start() - 40) : one.end() + 40]!r}"
+             for path, all_of_it in texts.items() for text in all_of_it
+             for rule in (WORDS, OF_MESSAGES, OF_OTHERS) for one in rule.finditer(text)]  # fmt: skip
+    assert found == []
+
+
+def test_other_texts_are_found_and_their_rules_refuse():
+    assert said_by_script('// not "this one here"\nx = "quiet"; y = `the ${z.w} drives, held`;') == [
+        "the {} drives, held"
+    ]
+    assert texts_within({"a": ["x"], "printed": {"b": "20% .5"}, "c": {"d": "y"}}) == ["x", "y"]
+    for refused in ("off by .5 %", "gears that are alike", "within (.3 mm)", "the teeth are apart", "held all round"):
+        assert OF_OTHERS.search(refused), refused
+    for said in ("0.5 %", "version 0.2.0", "cases/x.toml", "a .toml file", "row.5 of it", "equal gears"):
+        assert not OF_OTHERS.search(said), said
 
 
 def test_lines_of_a_message_are_read_as_one():
