@@ -94,6 +94,9 @@ SENTENCE = re.compile(r"[A-Za-z}]{2,},? [a-z{]{2,}")
 #: Classes of an element, some of which have a hyphen.
 CLASSES = re.compile(r"[a-z]+( [a-z]+)*( ?[a-z]+-[a-z-]+)+( [a-z-]+)*")
 
+#: Code for the browser and the look of pages, which is no text.
+FOR_BROWSERS = re.compile(r"[{;]\s|=>|px|document\.")
+
 
 def said_by_script(source: str) -> list[str]:
     """Texts of a script of the page, what stands for values being {}."""
@@ -128,8 +131,7 @@ def other_texts() -> dict[Path, list[str]]:
         tree = ast.parse(path.read_text("utf-8"))
         lone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
         whole_texts = (whole(node) for node in ast.walk(tree) if isinstance(node, ast.expr) and id(node) not in lone)
-        # code for the browser and the look of pages is no text
-        found[path] = [text for text in whole_texts if text and " " in text and not re.search(r"[{;]\s|=>|px|document\.", text)]
+        found[path] = [text for text in whole_texts if text and " " in text and not FOR_BROWSERS.search(text)]
     return found
 
 
