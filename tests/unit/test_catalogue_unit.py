@@ -44,6 +44,17 @@ def planned():
     return [line.split() for line in ran.stdout.splitlines()]
 
 
+#: Results that are made for external teeth only, or for pairs of external gears.
+EXTERNAL = {
+    "body-modes", "contact-lines", "crosscheck", "design-chart", "flank-design", "flank-fracture", "flank-generation",
+    "mesh-stiffness-matrix", "mode-tracking", "pair-forced-response", "tooth-contact", "transmissibility",
+}  # fmt: skip
+
+
+def test_which_results_refuse_internal_gears_is_decided_and_no_accident():
+    assert {entry.name for entry in STAGES.entries if not entry.internal} == EXTERNAL
+
+
 def test_every_entry_finds_a_stage_that_is_named_after_it():
     homes = [entry.home for entry in STAGES.entries]
     assert len(set(homes)) == len(homes) == len(STAGES) == len({entry.name for entry in STAGES.entries})
