@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 import tomllib
 import zipfile
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 from rexs_cases import case, more, put, text_of
 from rexs_models import gear, in_json, link, part, planetary_set, shaft, two_stages
+from scipy.optimize import brentq
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
@@ -314,3 +316,47 @@ def test_of_torques_at_two_places_the_model_leaves_open_one_is_taken_and_told() 
     tree = more(two_stages(), part(35, "external_load", u_coordinate_on_shaft=(5.0, "mm"), transmits_torque="true"),
                 relations=(link(900, "assembly", assembly=5, part=35),))  # fmt: skip
     assert "shaft 5: torque input at 5 mm not specified; total torque assumed at 120 mm" in text_of(tree)
+
+
+def of_zero_backlash(module: float, helix: float, teeth: int, shifts: float) -> float:
+    """Centre distance, by the involute function only."""
+    normal, tilt = math.radians(20.0), math.radians(helix)
+    alpha = math.atan(math.tan(normal) / math.cos(tilt))
+
+    def inv(angle: float) -> float:
+        return math.tan(angle) - angle
+
+    wanted = inv(alpha) + 2.0 * math.tan(normal) * shifts / teeth
+    working = brentq(lambda angle: inv(angle) - wanted, 0.01, 1.2, xtol=1e-15)
+    return 0.5 * module * teeth / math.cos(tilt) * math.cos(alpha) / math.cos(working)
+
+
+def without_shift(tree: dict, *numbers: int) -> dict:
+    parts = [
+        {**one, "attributes": [a for a in one["attributes"] if "modification_coefficient" not in a["id"]]}
+        if one["id"] in numbers else one
+        for one in tree["components"]
+    ]  # fmt: skip
+    return {**tree, "components": parts}
+
+
+@pytest.mark.parametrize("left_out", [(12,), (11,), (11, 12)])
+def test_a_shift_that_a_model_leaves_out_is_what_the_centre_distance_leaves(left_out) -> None:
+    distance = case(two_stages())["pair"]["I"]["centre_distance"]
+    both = brentq(lambda x: of_zero_backlash(1.98, 10.0, 80, x) - float(distance.removesuffix(" mm")), -1.0, 2.0)
+    assert both > 0.3  # teeth a little smaller than the distance is for
+    tree = two_stages()
+    for number, shift in ((11, 0.25), (12, both - 0.25)):
+        tree = put(tree, number, normal_module=(1.98, "mm"), addendum_modification_coefficient=(shift, "none"))
+    gears = case(without_shift(tree, *left_out))["gear"]
+    wanted = (0.25, both - 0.25) if len(left_out) == 1 else (0.5 * both, 0.5 * both)
+    found = gears["gear_11"]["profile_shift"], gears["gear_12"]["profile_shift"]
+    assert found == pytest.approx(wanted, abs=1e-9)
+
+
+def test_a_distance_that_no_teeth_reach_is_refused_where_a_shift_follows_from_it() -> None:
+    tree = without_shift(two_stages(), 14)
+    for number in (13, 14):
+        tree = put(tree, number, normal_module=(4.0, "mm"))
+    with pytest.raises(InputError, match="center_distance = 84 mm: is too small for the teeth of cylindrical_stage 22"):
+        case(tree)
