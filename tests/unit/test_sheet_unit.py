@@ -137,6 +137,19 @@ def test_cells_take_other_numbers_names_and_words() -> None:
     assert none.keys() == ("x",)
 
 
+def test_the_error_of_a_cell_stands_behind_it_under_its_name() -> None:
+    cell = Cell("deflection", name="sag_{key}", each="parts", error=lambda seen: 0.1 * seen.one.deflection)
+    columns = (cell, Cell("swing.deflection", error="nothing"), Cell("swing.lacking", error="swing.off"))
+    (table,) = Rows("t", "T", columns).tables(SEEN)
+    assert table.keys() == ("sag_a", "sag_a_error", "sag_b", "sag_b_error", "deflection")
+    np.testing.assert_allclose(table["sag_b_error"], 0.1 * table["sag_b"])
+    (each,) = Rows("t", "T", (Cell("x", error="off"),), of=lambda _: [Gauge(1e-3, 1e-6), Gauge(2e-3, 2e-6)]).tables(
+        SEEN
+    )
+    np.testing.assert_allclose(each["x_error"], [1e-3, 2e-3])
+    assert each.column("x_error").meaning == "estimated error of x"
+
+
 def test_stacked_rows_and_a_row_an_object() -> None:
     (below,) = Rows("t", "T", ("x",), stacked="parts").tables(SEEN)
     np.testing.assert_allclose(below["x"], [0.0, 1.0, 0.0, 2.0])
@@ -194,6 +207,14 @@ def test_a_chart_draws_families_bars_and_bands() -> None:
     assert isinstance(bars, Bars)
     np.testing.assert_allclose(bars.y, [2.0])
     assert third.y.label == "how far"
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """One length and its error."""
+
+    x: float = shown("mm", "length")
+    off: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,8 @@ class Cell:
         Objects for each of which there is such a column.
     parts : bool
         Whether it is complex: two columns, ``name_re`` and ``name_im``.
+    error : where, optional
+        Its estimated error, a column behind it; None there: none. Elsewhere among the columns it is an `Off`.
     """
 
     quantity: str
@@ -59,6 +61,7 @@ class Cell:
     each: Where | None = None
     parts: bool = False
     ending: Text = ""
+    error: Where | None = None
 
 
 @dataclass(frozen=True)
@@ -201,8 +204,11 @@ def _flat(seen: Seen, owner: Any, columns: Columns, load: int | None) -> list[Co
                     made += _flat(one, one.one, spec.elements, load)
         else:
             for one in seen.each(spec.each):
-                cells = _cell(one, owner if spec.each is None else one.one, spec, load)
+                of = owner if spec.each is None else one.one
+                cells = _cell(one, of, spec, load)
                 made += [part for cell in cells for part in _parts(cell)] if spec.parts else cells
+                errors = None if spec.error is None or not cells else _errors(one, of, spec.error, load)
+                made += [] if errors is None else [error_column(cells[0], errors)]
     return made
 
 
@@ -225,14 +231,18 @@ def _cell(seen: Seen, owner: Any, spec: Cell, load: int | None) -> list[Column]:
 
 def _off(seen: Seen, owner: Any, spec: Off, load: int | None) -> list[Column]:
     declares = owner if spec.of is None else seen.find(spec.of)
-    if isinstance(owner, Sequence) and isinstance(spec.error, str):
-        errors: Any = [getattr(*reach(one, spec.error)) for one in owner]
-    else:
-        errors = _under(seen.find(spec.error), load)
+    errors = _errors(seen, owner, spec.error, load)
     if errors is None:
         return []
     column = column_of(*_declares(declares, seen.said(spec.quantity)), errors, name=seen.said(spec.name))
     return [error_column(column, errors, seen.said(spec.meaning))]
+
+
+def _errors(seen: Seen, owner: Any, where: Where, load: int | None) -> Any:
+    """Errors under one load; by a path those of every object of a sequence."""
+    if isinstance(owner, Sequence) and isinstance(where, str):
+        return [getattr(*reach(one, where)) for one in owner]
+    return _under(seen.find(where), load)
 
 
 def _plain(owner: Any, quantity: str, load: int | None, **words: Any) -> Column:

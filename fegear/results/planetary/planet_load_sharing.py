@@ -25,9 +25,8 @@ from fegear.dynamics.planetary.set_cycle import MeshedSet, mean_force, set_cycle
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
-from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
-from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.results import forecasts
@@ -232,7 +231,7 @@ class PlanetShares:
 
     pin_radial_error: Array
     pin_tangential_error: Array
-    tilting_error: Array | None
+    tilting_moment_error: Array | None
     planet: NDArray[np.intp] = shown("", "counter-clockwise")
     tangential_error: Array = shown("um", "tangential displacement of its pin, counter-clockwise")
     radial_error: Array = shown("um", "radial displacement of its pin, outward")
@@ -335,44 +334,36 @@ def _apart(seen: Seen) -> str:
     return ", ".join(f"planet {n + 1} ({percent(share)} of the cycle)" for n, share in enumerate(lifted) if share)
 
 
-def _with_error(quantity: str, error: str = "") -> tuple[str, Off]:
-    return quantity, Off(quantity, error or f"{quantity}_error")
-
-
 _SHEET = Sheet(
     of=_shown,
     tables=(
         Rows(
             "planet_loads_{name}", "Loads of the planets of {name} over the mesh cycle",
             (
-                "loads.s", *_with_error("loads.te", "te_error"),
-                Each("planets", Cell("load", ending="_{key}"), Off("load", "error", name="load_{key}")),
+                "loads.s", Cell("loads.te", error="te_error"),
+                Cell("load", each="planets", ending="_{key}", error="error"),
             ),
         ),
         Rows(
             "planet_shares_{name}", "Load sharing of the planets of {name}",
             (
                 *(f"shares.{one}" for one in ("planet", "tangential_error", "radial_error")),
-                *_with_error("loads.shares"),
-                *_with_error("loads.largest_load"),
+                *(Cell(one, error=f"{one}_error") for one in ("loads.shares", "loads.largest_load")),
                 "shares.apart_sun", "shares.apart_ring",
-                *_with_error("shares.pin_radial"),
-                *_with_error("shares.pin_tangential"),
-                *_with_error("shares.tilting_moment", "shares.tilting_error"),
+                *(
+                    Cell(f"shares.{one}", error=f"shares.{one}_error")
+                    for one in ("pin_radial", "pin_tangential", "tilting_moment")
+                ),
             ),
             printed=True,
         ),
         Rows(
             "planet_forces_{name}", "Harmonics of the transmission error and of forces in {name}",
             (
-                "n", *_with_error("te", "harmonics.te_error"),
-                Each(
-                    "harmonics.forces",
-                    Cell(
-                        "force", ending="_{key}",
-                        further=" on the {key} (root of the sum of squares of both directions)",
-                    ),
-                    Off("force", "error", name="force_{key}"),
+                "n", Cell("te", error="harmonics.te_error"),
+                Cell(
+                    "force", each="harmonics.forces", ending="_{key}",
+                    further=" on the {key} (root of the sum of squares of both directions)", error="error",
                 ),
                 "cancels",
             ),

@@ -26,7 +26,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
-from fegear.engine.sheet.rows import Cell, Every, Off, Rows
+from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
@@ -254,7 +254,7 @@ _SHEET = Sheet(
             "planet_root_stress_{name}", "Root stress over one revolution in set {name}",
             (
                 Cell("tooth", of=lambda seen: list(_teeth(seen).values())),
-                *(column for key in _SHOWN for column in (key, Off(key, f"{key}_error"))),
+                *(Cell(key, error=f"{key}_error") for key in _SHOWN),
                 "place",
             ),
             of=lambda seen: list(seen.data.found.values()), printed=True,

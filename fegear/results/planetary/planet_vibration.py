@@ -19,7 +19,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
-from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
@@ -315,8 +315,8 @@ def _speed_axis(seen: Seen) -> Axis:
     return Axis(f"speed of the {seen.asked.driving}", "rpm")
 
 
-def _with_error(quantity: str) -> tuple[str, Off]:
-    return f"found.{quantity}", Off(f"found.{quantity}", lambda seen: seen.data.error(quantity))
+def _force(quantity: str) -> Cell:
+    return Cell(f"found.{quantity}", error=lambda seen: seen.data.error(quantity))
 
 
 def _at_circle(seen: Seen) -> str:
@@ -331,11 +331,8 @@ _VIBRATION = Sheet(
             "planet_vibration_{name}", "Vibration of set {name} over speed",
             (
                 Cell("speed", meaning="speed of the {asked.driving}"), "found.mesh_frequency",
-                *_with_error("sun_force"), *_with_error("ring_force"), *_with_error("least_share"),
-                Each(
-                    "motions", Cell("amplitude", name="{key}", further=_at_circle),
-                    Off("amplitude", "error", name="{key}"),
-                ),
+                *map(_force, ("sun_force", "ring_force", "least_share")),
+                Cell("amplitude", each="motions", name="{key}", further=_at_circle, error="error"),
             ),
         ),
     ),
