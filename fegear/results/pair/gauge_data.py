@@ -187,11 +187,7 @@ class GaugeData:
     @property
     def drawn(self) -> FittedCurve | None:
         """The comparison by as many samples as a figure can show."""
-        if self.compared is None:
-            return None
-        some = slice(None, None, -(-self.compared.samples // _DRAWN))
-        found = self.compared
-        return replace(found, angle=found.angle[some], measured=found.measured[some], computed=found.computed[some])
+        return None if self.compared is None else thinned(self.compared)
 
     @property
     def near_contact(self) -> bool:
@@ -199,32 +195,52 @@ class GaugeData:
         return self.clearance < _NEAR_CONTACT
 
     @property
-    def limits(self) -> Limits:
-        """Of the comparison at the nominal load."""
-        peak = abs(float(self.peak_strain[self.at]))
-        model = 0.0 if self.peak_error is None else float(self.peak_error[self.at]) / peak
-        scatter = 0.0 if self.compared is None else _CERTAIN * self.compared.gain_error
-        return Limits(self.peak_change_by_placement / peak, self.load_tolerance, model, scatter)
-
-    @property
     def verdict(self) -> str:
-        """Measured against computed strain, in one or two sentences without a subject."""
+        """Measured against computed strain at the nominal load; empty where nothing was measured."""
         if self.compared is None:
             return ""
-        found, limits = self.compared, self.limits
-        off = found.gain - 1.0
-        share = found.rms / abs(float(self.peak_strain[self.at]))
-        parts = (
-            f"placement {percent(limits.placement)}, load and gauge factor {percent(limits.load)}, computation "
-            f"{percent(limits.model)}, scatter {percent(limits.scatter)}"
-        )
-        if found.gain <= 0.0:
-            return "measured and computed strain have opposite signs; check fillet, sign and shift of the trace"
-        how = f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one"
-        within = abs(off) <= limits.together
-        judged = f"{how}, {'within' if within else 'beyond'} ±{percent(limits.together)} ({parts})"
-        if found.correlation < _ALIKE:
-            judged += f"; the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g})"
-        elif not within:
-            judged += "; check load, gauge factor and place of the grid"
-        return f"{judged}; RMS of the residual {percent(share)} of the peak"
+        peak, error = float(self.peak_strain[self.at]), self.peak_error
+        return verdict(
+            self.compared, peak, self.peak_change_by_placement, 0.0 if error is None else float(error[self.at]),
+            self.load_tolerance,
+        )  # fmt: skip
+
+
+def thinned(found: FittedCurve) -> FittedCurve:
+    """As many samples as a figure can show."""
+    some = slice(None, None, -(-found.samples // _DRAWN))
+    return replace(found, angle=found.angle[some], measured=found.measured[some], computed=found.computed[some])
+
+
+def verdict(found: FittedCurve, peak: float, by_placement: float, error: float, load_tolerance: float) -> str:
+    """Measured against computed strain, in one or two sentences without a subject.
+
+    Parameters
+    ----------
+    found : FittedCurve
+    peak : float
+        Computed.
+    by_placement, error : float
+        What the place within its tolerance changes of it, and its estimated error.
+    load_tolerance : float
+        Relative uncertainty of load and gauge factor.
+    """
+    size = abs(peak)
+    limits = Limits(by_placement / size, load_tolerance, error / size, _CERTAIN * found.gain_error)
+    off = found.gain - 1.0
+    if found.gain <= 0.0:
+        return "measured and computed strain have opposite signs; check fillet, sign and shift of the trace"
+    parts = (
+        f"placement {percent(limits.placement)}, load and gauge factor {percent(limits.load)}, computation "
+        f"{percent(limits.model)}, scatter {percent(limits.scatter)}"
+    )
+    within = abs(off) <= limits.together
+    judged = (
+        f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one, "
+        f"{'within' if within else 'beyond'} ±{percent(limits.together)} ({parts})"
+    )
+    if found.correlation < _ALIKE:
+        judged += f"; the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g})"
+    elif not within:
+        judged += "; check load, gauge factor and place of the grid"
+    return f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"

@@ -1,0 +1,165 @@
+"""Strain under a gauge in a root fillet of a vibrating train: forces on its tooth and those around it (Mark, 3.37)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.shown import shown, shows
+from fegear.dynamics.train.single_tooth import force_at, forces_around, positions
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.dynamics.train.tooth_force import ToothForce
+    from fegear.fem.plane.gauge import GaugesOnFillet
+    from fegear.geometry.pair import GearPair, Member
+
+#: Positions in each of the base pitches before and after the contact of the tooth.
+_BESIDE = 60
+#: Radii at which the error of the stress per load is looked at.
+_FEW = 9
+
+
+@dataclass(frozen=True)
+class ToothStrain:
+    """What a gauge sees in motion; arrays over P positions of its tooth.
+
+    Parameters
+    ----------
+    pair : GearPair
+        As it runs.
+    member : {"driver", "driven"}
+        What the gear of the gauge is there.
+    displacement : ndarray, shape (G,)
+        Of grids that are glued elsewhere along the fillet [m].
+    displaced : ndarray, shape (P, G)
+        Their strain, excited by all meshes.
+    error : ndarray, shape (P,)
+        Estimated error of what finite elements give per load, of all loads together; NaN if unknown.
+    """
+
+    pair: GearPair
+    member: Member
+    displacement: Array
+    displaced: Array
+    error: Array
+    x: Array = shown("mm", "position of the tooth's contact on the line of action", table="strain")
+    time: Array = shown("s", "time from phase zero of the mesh", name="t", table="strain")
+    total: Array = shown(
+        "um/m", "mean strain under the grid, excited by all meshes", name="strain", label="strain", table="strain"
+    )
+    own: Array = shown("um/m", "without the contribution of the other meshes", name="strain_own_mesh", table="strain")
+    static: Array = shown("um/m", "quasi-static", name="static_strain", table="strain")
+
+    @property
+    @shows(
+        "deg", "rotation of the gear, zero with its tooth in contact at the pitch point", label="rotation of the gear",
+        table="strain",
+    )  # fmt: skip
+    def angle(self) -> Array:
+        """Of the gear of the gauge, in the sense of its rotation [rad], shape (P,)."""
+        return self.x / self.pair.gear(self.member).base_radius
+
+    @property
+    def _peak(self) -> int:
+        """Position of the largest strain, in the sense of the largest static one."""
+        sign = np.sign(self.static[int(np.argmax(np.abs(self.static)))])
+        return int(np.argmax(sign * self.total))
+
+    @property
+    @shows("um/m", "peak of the mean strain under the grid, excited by all meshes", name="dynamic_peak_strain")
+    def peak(self) -> float:
+        """In motion."""
+        return float(self.total[self._peak])
+
+    @property
+    def peak_error(self) -> float | None:
+        """Estimated; None where it is not known."""
+        found = float(self.error[self._peak])
+        return None if np.isnan(found) else found
+
+    @property
+    @shows("deg", "rotation of the gear at the dynamic peak", name="dynamic_peak_angle")
+    def peak_angle(self) -> float:
+        """[rad]."""
+        return float(self.angle[self._peak])
+
+    @property
+    @shows("", "dynamic / quasi-static peak strain", name="dynamic_strain_ratio")
+    def ratio(self) -> float:
+        """Of the peaks."""
+        return self.peak / float(self.static[int(np.argmax(np.abs(self.static)))])
+
+    @property
+    @shows("um/m", "maximum change of the dynamic peak within placement_tolerance", name="dynamic_change_by_placement")
+    def change_by_placement(self) -> float:
+        """Of the peaks at all displacements."""
+        sign = np.sign(self.peak)
+        return float(np.abs(sign * (sign * self.displaced).max(axis=0) - self.peak).max())
+
+
+def tooth_strain(
+    train: GearTrain, mesh: int, member: Member, gauges: GaugesOnFillet, displacement: Array, speed: float, count: int,
+    harmonics: int, number: int = 0, *, coupled: bool = True,
+) -> ToothStrain:  # fmt: skip
+    """Follow a gauge from a base pitch before its tooth's contact to one after it, at one speed.
+
+    Parameters
+    ----------
+    train : GearTrain
+    mesh : int
+    member : {"driver", "driven"}
+        What the gear of the gauge is as the mesh runs.
+    gauges : GaugesOnFillet
+        At every displacement.
+    displacement : ndarray, shape (G,)
+        Zero is among them [m].
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    count : int
+        Even positions over the path of contact.
+    harmonics : int
+    number : int
+        Of the tooth pair, in meshing order.
+    coupled : bool
+        Whether the forces on the teeth around count.
+    """
+    pair = train.meshes[mesh].pair
+    inside, pitch = positions(train, mesh, count, number), pair.base_pitch
+    before, after = (np.linspace(end - pitch, end, _BESIDE, endpoint=False) for end in (inside[0], inside[-1] + pitch))
+    x = np.concatenate([before, inside, np.append(after[1:], inside[-1] + pitch)])
+    force = force_at(train, mesh, speed, x, harmonics, number)
+    reach = gauges.influence.reach if coupled else 0
+    around = forces_around(train, mesh, force, number, speed, harmonics, reach)
+    per_load = gauges.strain_per_stress / pair.face_width
+    ahead = 1 if member == "driver" else -1
+    at = int(np.argmin(np.abs(displacement)))
+    unit = {
+        k: per_load * gauges.stress(-ahead * k, pair.radius(np.clip(one.x, pair.x_start, pair.x_end), member))
+        for k, one in around.items()
+    }
+    displaced = sum(unit[k] * one.with_others for k, one in around.items())
+    own, static = (
+        np.asarray(sum(unit[k][at] * getattr(one, part) for k, one in around.items())) for part in ("total", "static")
+    )
+    return ToothStrain(
+        pair, member, displacement, np.asarray(displaced).T, _error(gauges.only(at), pair, member, around, ahead),
+        x, force.time, np.asarray(displaced)[at], own, static,
+    )  # fmt: skip
+
+
+def _error(
+    gauge: GaugesOnFillet, pair: GearPair, member: Member, around: Mapping[int, ToothForce], ahead: int
+) -> Array:
+    """What finite elements leave in the strain under each load, as the root of the sum of squares, shape (P,)."""
+    few = np.linspace(pair.x_start, pair.x_end, _FEW)
+    squares = np.zeros(around[0].x.size)
+    for k, force in around.items():
+        usual = gauge.stress_error(-ahead * k, pair.radius(few, member))[0] / pair.face_width
+        squares += (np.interp(force.x, few, usual) * force.with_others) ** 2
+    return np.asarray(abs(gauge.strain_per_stress) * np.sqrt(squares))

@@ -1,0 +1,152 @@
+"""What results of gauges share: grids on a solved fillet, and a trace laid over a computed curve and shown with it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.built.gauges import Gauge, place_gauge
+from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.chart import Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Rows
+from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet
+from fegear.results.pair.gauge_data import GaugePlace
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.contact.fitted_curve import Fitted, FittedCurve
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.geometry.pair import GearPair, Member
+
+#: Places to either side of the grid's at which the peak is computed.
+_PLACES = 10
+#: Looks of displaced grids and of samples.
+DASHED = {"dash": "dash", "width": 1.0}
+_DOTS = {"size": 3.0, "symbol": "circle"}
+
+
+@dataclass(frozen=True)
+class PlacedGauge:
+    """A gauge on a solved gear.
+
+    Parameters
+    ----------
+    gauges : GaugesOnFillet
+        At every displacement.
+    opposite : GaugesOnFillet
+        One like it in the other fillet.
+    displacement : ndarray, shape (G,)
+        Zero is among them [m].
+    place : GaugePlace
+    above : float
+        From the end of the grid to the end of the fillet [m].
+    clipped : bool
+        Whether the placement tolerance reaches beyond the fillet.
+    """
+
+    gauges: GaugesOnFillet
+    opposite: GaugesOnFillet
+    displacement: Array
+    place: GaugePlace
+    above: float
+    clipped: bool
+
+    def clearance(self, pair: GearPair, member: Member) -> float:
+        """From the end of the grid to the lowest contact on the flank above it, along the profile [modules]."""
+        if self.gauges.side == "compression":
+            return math.inf
+        flank, module = self.gauges.influence.fine.flank, self.gauges.influence.gear.module
+        ends = pair.radius(np.array([pair.x_start, pair.x_end]), member) / module
+        return float(np.min(flank.arc_of_radius(ends)) - flank.flank_start) + self.above / module
+
+
+def placed_gauge(gauge: Gauge, solved: GearInfluence) -> PlacedGauge:
+    """A gauge on the fillet as it is meshed, and grids within its placement tolerance.
+
+    Raises
+    ------
+    InputError
+        If it does not lie on the fillet.
+    """
+    profile = FilletProfile.of_mesh(solved.fine.fillets[gauge.side], solved.gear)
+    middle, length, half = place_gauge(gauge, profile), float(profile.arc[-1]), gauge.grid.half
+    low = min(max(-gauge.placement, half - middle), 0.0)
+    high = max(min(gauge.placement, length - half - middle), 0.0)
+    displacement = np.unique(np.concatenate([np.linspace(low, 0.0, _PLACES + 1), np.linspace(0.0, high, _PLACES + 1)]))
+    other, at = "compression" if gauge.side == "tension" else "tension", profile.at(middle)
+    return PlacedGauge(
+        GaugesOnFillet(solved, gauge.side, gauge.grid, middle + displacement),
+        GaugesOnFillet(solved, other, gauge.grid, np.array([middle])),  # type: ignore[arg-type]  # the two words
+        displacement,
+        GaugePlace(middle, 2.0 * at["radius"], at["tangent_angle"], at["centre_angle"]),
+        length - half - middle,
+        high - low < 2.0 * gauge.placement * (1.0 - 1e-9),
+    )
+
+
+def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
+    """What the gauge measured beside a computed curve; None where it measured nothing.
+
+    Raises
+    ------
+    InputError
+        If the trace is elsewhere.
+    """
+    measured = gauge.measured
+    if measured is None:
+        return None
+    try:
+        return fit_curve(measured.angle, measured.strain, angle, strain, measured.fit)
+    except NothingToCompareError:
+        ends = np.rad2deg(angle[[0, -1]])
+        raise InputError(
+            f"gauge.{gauge.name}.measured.file", f'"{measured.file}"',
+            f"has too few samples within the computed engagement, {ends[0]:.4g} to {ends[1]:.4g} deg",
+            "check the unit of the angle" if "shift" in measured.fit else 'set fit = ["shift"]',
+        ) from None  # fmt: skip
+
+
+def comparison_values(prefix: str = "") -> tuple[Number | Each, ...]:
+    """Values of a comparison, which stands at `compared`; their names begin with the prefix."""
+    names = {
+        "offset": "measured_offset", "scale": "measured_scale", "shift": "measured_shift", "gain": "measured_gain",
+        "rms": "residual_rms", "correlation": "correlation", "samples": "measured_samples",
+    }  # fmt: skip
+
+    def name(quantity: str) -> str:
+        known = quantity.removesuffix("_error")
+        return prefix + names[known] + ("_standard_error" if known != quantity else "")
+
+    def fitted(quantity: Fitted) -> Each:
+        return Each(
+            lambda seen: [seen.data.compared],
+            Number(quantity, name=name(quantity)), Number(f"{quantity}_error", name=name(f"{quantity}_error")),
+            when=lambda seen: seen.one is not None and quantity in seen.one.fit,
+        )  # fmt: skip
+
+    others = ("gain", "gain_error", "rms", "correlation")
+    return (
+        *map(fitted, FITTED),
+        *(Number(one, of="compared", name=name(one)) for one in others),
+        Number("samples", exact, of="compared", name=name("samples")),
+    )
+
+
+def comparison_table(name: str, title: str) -> Rows:
+    """Samples beside the computed curve."""
+    return Rows(name, title, ("angle", "measured", "computed", "residual"), of="compared")
+
+
+#: Samples of a comparison, which stands thinned at `drawn`, over the computed curve, and a panel of their residuals.
+MEASURED = Line("measured", "measured", "series:1", of="drawn", kind="points", look=_DOTS)
+RESIDUAL = Over(
+    "angle", (Line("residual", "measured less computed", "series:1", kind="points", look=_DOTS),), of="drawn",
+    marks=lambda _seen: (Mark("y", 0.0),), when="compared",
+)  # fmt: skip
