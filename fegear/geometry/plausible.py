@@ -30,10 +30,10 @@ def refuse_size(module: float, face_width: float, key: str = "module") -> None:
     GeometryError
         With the remedy.
     """
-    _refuse(key, module, MODULES, "m", "the modules of gears", "a module of 3 mm is 3e-3 m")
+    _refuse(key, module, MODULES, "m", "gear modules", "a module of 3 mm is 3e-3 m")
     ends = (FACE_WIDTHS[0] * module, FACE_WIDTHS[1] * module)
     _refuse(
-        "face_width", face_width, ends, "m", f"the face widths of gears of module {module:.4g} m", "20 mm are 20e-3 m"
+        "face_width", face_width, ends, "m", f"face widths for a module of {module * 1e3:.4g} mm", "20 mm are 20e-3 m"
     )
 
 
@@ -62,14 +62,19 @@ def refuse_material(young_modulus: float, density: float) -> None:
         With the remedy.
     """
     _refuse(
-        "material.young_modulus", young_modulus, YOUNG_MODULI, "Pa", "the moduli of solids", "206.8 GPa are 206.8e9 Pa"
+        "material.young_modulus",
+        young_modulus,
+        YOUNG_MODULI,
+        "Pa",
+        "Young's moduli of solids",
+        "206.8 GPa are 206.8e9 Pa",
     )
-    _refuse("material.density", density, DENSITIES, "kg/m^3", "the densities of solids", "steel has 7850 kg/m^3")
+    _refuse("material.density", density, DENSITIES, "kg/m^3", "densities of solids", "steel has 7850 kg/m^3")
 
 
 def _refuse(key: str, value: float, ends: tuple[float, float], unit: str, what: str, remedy: str) -> None:
     if not ends[0] <= value <= ends[1]:
         raise GeometryError(
-            key, f"{value:.6g} {unit}", f"is outside {what}, {ends[0]:.3g} to {ends[1]:.3g} {unit}",
+            key, f"{value:.6g} {unit}", f"is outside the range of {what}, {ends[0]:.3g} to {ends[1]:.3g} {unit}",
             f"check the unit: {remedy} in SI",
         )  # fmt: skip

@@ -20,11 +20,11 @@ _HEAD = """\
 # {about}.
 #   fegear run {file}      computes it; the report is results/{stem}/report.html
 #   fegear plan {file}     what would be computed, why, and how long it would take
-#   fegear results{pad}       what else can be asked for
-# Values marked "assumed" were not given: put those of your drawing.
+#   fegear results{pad}       list of all available results
+# Values marked "assumed" were not specified: replace them by those of the drawing.
 
 title = {title}
-# What is wanted; this and what it needs is computed, nothing else.\
+# Requested results; only these and what they require are computed.\
 """
 _SPUR = """\
 [gear.{name}]
@@ -34,11 +34,11 @@ pressure_angle = {pressure_angle}
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
-# bore_radius = "20 mm"        # where the body is held fast; without it half the root radius
-# tip_diameter = "{tip_diameter}"     # without it: this, the reference circle + 2 (1 + x) modules
+# bore_radius = "20 mm"        # radius at which the gear body is fixed; default: half the root radius
+# tip_diameter = "{tip_diameter}"     # default: this value, d + 2 m (1 + x)
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
 {relief}
-# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # without it steel
+# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # default: steel
 """
 _HELICAL = """\
 [gear.{name}]
@@ -60,11 +60,11 @@ module = {module}{module_note}
 pressure_angle = {pressure_angle}
 profile_shift = {profile_shift}{profile_shift_note}     # above zero toward the tip: diameters shrink (ISO 21771)
 cutter = {{ teeth = {cutter}, profile_shift = 0.0, addendum = 1.25, tip_radius = 0.2 }}     # in modules; assumed
-rim_thickness = {rim}     # outside the root circle, held at its outside; assumed
+rim_thickness = {rim}     # radial, beyond the root circle; outer circle fixed; assumed
 face_width = {face_width}{face_width_note}
-# tip_diameter = "{tip_diameter}"     # without it: this, the reference circle - 2 (1 + x) modules
+# tip_diameter = "{tip_diameter}"     # default: this value, d - 2 m (1 + x)
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
-# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # without it steel
+# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # default: steel
 """
 _PAIR = """\
 [pair.I]
@@ -72,7 +72,7 @@ driver = {first}
 driven = {second}
 torque = {torque}{torque_note}
 speed = {speed}{speed_note}
-# centre_distance = "{centre_distance}"     # without it: free of backlash
+# centre_distance = "{centre_distance}"     # default: zero backlash
 # loads = ["2 kN", "4 kN"]     # further loads along the line of action
 """
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.

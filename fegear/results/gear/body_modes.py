@@ -153,9 +153,9 @@ def _figure(seen: Seen) -> Iterator[Figure]:
 def _on_the_body(seen: Seen) -> str:
     held = "bore" if seen.asked.gear.body is None else "hub"
     return (
-        f"Gear {seen.name}: natural frequencies of its body alone, the {held} held fast over its width; without the "
-        f"mesh, shaft and bearings. Up to {seen.data.found.modes[-1].diameters} nodal diameters, {_EACH} modes with "
-        "each; those with some come in pairs."
+        f"Gear {seen.name}: natural frequencies of the gear body only, {held} fixed over its width; no "
+        f"mesh, shaft or bearings. Up to {seen.data.found.modes[-1].diameters} nodal diameters, {_EACH} modes each; "
+        "modes with nodal diameters occur in pairs."
     )
 
 
