@@ -1,10 +1,15 @@
-"""A sector of a few teeth with free sides: what a plain finite-element model cuts out of a gear."""
+"""Sectors in a row: joined to one, or with free ends, as a plain finite-element model cuts a few teeth out of a gear.
+
+The stiffness between the sides of a row is block tridiagonal, so one sweep from either end leaves the two sides of the
+loaded sector.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.errors import FegearError
 
 
 def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, Array], dict[int, Array]]:
@@ -43,3 +48,52 @@ def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, 
             motion[side] = -np.linalg.solve(aa + left[side], ab @ motion[side + 1])
         found.append({k: motion[middle + k] for k in range(-reach, reach + 2)})
     return found[0], found[1]
+
+
+def chain_of(condensed: Array, count: int) -> Array | None:
+    """A row of equal sectors as one, between its ends, in some log2(count) steps; None of no sectors.
+
+    Parameters
+    ----------
+    condensed : ndarray, shape (2 m, 2 m)
+        Stiffness of one sector between its sides A and B, in components that agree between neighbours.
+    count : int
+    """
+    rest: Array | None = None
+    power, left = condensed, count
+    while left:
+        if left & 1:
+            rest = power if rest is None else _joined(rest, power)
+        left >>= 1
+        power = _joined(power, power) if left else power
+    return rest
+
+
+def _joined(one: Array, other: Array) -> Array:
+    """Two chains with the side between them eliminated."""
+    from scipy.linalg import lapack
+
+    m = one.shape[0] // 2
+    between = one[m:, m:] + other[:m, :m]
+    border = np.hstack([one[m:, :m], other[:m, m:]])
+    chain = np.zeros_like(one)
+    chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
+    half = lapack.dtrtrs(factored(between), border, lower=1)[0]
+    chain -= half.T @ half
+    return chain
+
+
+def factored(stiffness: Array) -> Array:
+    """Lower Cholesky factor.
+
+    Raises
+    ------
+    FegearError
+        If the stiffness is not positive definite.
+    """
+    from scipy.linalg import lapack
+
+    factor, failed = lapack.dpotrf(stiffness, lower=1)
+    if failed:
+        raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
+    return np.asarray(factor)

@@ -9,29 +9,24 @@ ties them by u_B = exp(i theta_n) u_A, theta_n = 2 pi n / z, and has the matrix
 Loads act on sector 0 only, so the response of sector k follows from the real matrices
 H_k = (1/z) sum_n exp(i k theta_n) / K_n; harmonics n and z - n are conjugate and share one inverse. For a few
 neighbours of many teeth the same H_k come cheaper from joining sectors, two and two.
-
-A sector of a few teeth with free sides: what a plain finite-element model cuts out of a gear.
-
-The same condensed sectors as the ring's, joined in a row that is not closed. Its stiffness between the sides is block
-tridiagonal, so one sweep from either end leaves the two sides of the loaded sector.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import cast
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
-from fegear.base.errors import FegearError, InputError
-from fegear.fem.plane.chain import chain_coupling
-from fegear.fem.plane.condensation import Condensed, condense
+from fegear.base.errors import InputError
+from fegear.fem.plane.chain import chain_coupling, chain_of, factored
+from fegear.fem.plane.condensation import Condensed
 from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.sector_sides import between_sides, condensed_sector, ports_of
 
 #: Motions of a side, shape (m,) or (m, d), in which a ring that nothing holds turns, and moves: harmonics 0 and 1.
 RigidSides = tuple[NDArray[np.inexact], NDArray[np.inexact]]
@@ -117,12 +112,7 @@ class Ring:
         return answer
 
     def _ports(self, unknowns: Index) -> Index:
-        order = np.argsort(self.sector.kept)
-        place = np.minimum(np.searchsorted(self.sector.kept, unknowns, sorter=order), order.size - 1)
-        found = order[place]
-        if (self.sector.kept[found] != unknowns).any():
-            raise ValueError("loads and displacements are possible at ports of the ring only")
-        return found
+        return ports_of(self.sector, unknowns)
 
     def field(self, loaded: Index, forces: Array, sectors: list[int]) -> dict[int, Array]:
         """Displacements of every unknown of chosen sectors (only within the reach), each in its own frame.
@@ -181,24 +171,9 @@ def close_ring(
         )  # fmt: skip
 
     started = time.perf_counter()
-    z = mesh.teeth
-    side_a, side_b, angle_a, radius = _matching_sides(mesh, elasticity)
-    bore = np.unique(elasticity.edge_dofs["bore"]) if motions is None else np.zeros(0, dtype=np.int64)
-    free = ~np.isin(side_a, bore)
-    side_a, side_b, angle_a = side_a[free], side_b[free], angle_a[free[::2]]
-    sides = np.concatenate([side_a, side_b])
-    inner = np.setdiff1d(ports, np.concatenate([bore, sides]))
-    sector = condense(elasticity, np.concatenate([sides, inner]), bore, expandable=expandable)
-    if motions is not None:
-        q = np.linalg.qr(motions[sector.kept])[0]
-        off = sector.stiffness @ q
-        stiffness = sector.stiffness - off @ q.T - q @ off.T + q @ (q.T @ off) @ q.T
-        sector = replace(sector, stiffness=0.5 * (stiffness + stiffness.T))
-    m, n = side_a.size, sides.size
-    turn = np.zeros((n, n))
-    turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
+    sector, m, turn, radius = condensed_sector(mesh, elasticity, ports, expandable=expandable, motions=motions)
     rigid = None if motions is None else (np.kron(radius, (0.0, 1.0)), np.tile((1.0, 1.0j), radius.size))
-    return closed_ring(sector, m, turn, z, reach, sector_teeth=sector_teeth, started=started, rigid=rigid)
+    return closed_ring(sector, m, turn, mesh.teeth, reach, sector_teeth=sector_teeth, started=started, rigid=rigid)
 
 
 def closed_ring(
@@ -235,31 +210,18 @@ def closed_ring(
     -------
     Ring
     """
-    from scipy.linalg import lapack
-
     condensed = time.perf_counter()
-    m, n = side, 2 * side
-    S = sector.stiffness
-    factor = _factor(S[n:, n:]) if n < S.shape[0] else S[n:, n:]
-    own = np.zeros_like(S)
-    triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if n < S.shape[0] else S[n:, n:]
-    own[n:, n:] = triangle + np.tril(triangle, -1).T
-    turned = S[:, :n] if turn is None else S[:, :n] @ turn
-    follow = np.vstack([np.eye(n) if turn is None else turn, -own[n:, n:] @ turned[n:]])
-    held = turned[:n] + S[:n, n:] @ follow[n:]
-    if turn is not None:
-        held = turn.T @ held
-    held = 0.5 * (held + held.T)
+    part = between_sides(sector, side, turn)
     if sector_teeth:
-        from_a, from_b = chain_coupling(held, sector_teeth, reach)
+        from_a, from_b = chain_coupling(part.held, sector_teeth, reach)
     else:
-        from_a = _coupling(held, teeth, reach + 1, rigid)
+        from_a = _coupling(part.held, teeth, reach + 1, rigid)
         from_b = {k: from_a[k - 1] for k in range(-reach, reach + 2)}
     return Ring(
         sector=sector,
-        follow_a=follow[:, :m],
-        follow_b=follow[:, m:],
-        own=own,
+        follow_a=part.follow_a,
+        follow_b=part.follow_b,
+        own=part.own,
         from_a=from_a,
         from_b=from_b,
         teeth=teeth,
@@ -337,96 +299,32 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
     from scipy.linalg import lapack
 
     m = condensed.shape[0] // 2
-
-    def joined(one: Array, other: Array) -> Array:
-        between = one[m:, m:] + other[:m, :m]
-        border = np.hstack([one[m:, :m], other[:m, m:]])
-        chain = np.zeros_like(one)
-        chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
-        half = lapack.dtrtrs(_factor(between), border, lower=1)[0]
-        chain -= half.T @ half
-        return chain
-
-    rest: Array | None = None
-    power, left = condensed, z - reach
-    while left:
-        if left & 1:
-            rest = power if rest is None else joined(rest, power)
-        left >>= 1
-        power = joined(power, power) if left else power
+    rest = chain_of(condensed, z - reach)
     sides = reach + 1
-    whole = np.zeros((sides, m, sides, m))
-    for chain, first, last in [*((condensed, i, i + 1) for i in range(reach)), (rest, reach, 0)]:
+    chains = [*((condensed, i, i + 1) for i in range(reach)), (rest, reach, 0)]
+    whole = closed_stiffness(chains, sides, m)
+    right = np.zeros((sides, m, m))
+    right[0] = np.eye(m)
+    found = lapack.dpotrs(factored(whole.reshape(sides * m, -1)), right.reshape(-1, m), lower=1)[0].reshape(sides, m, m)
+    return {k: (found[k] if k >= 0 else found[-k].T) for k in range(-reach, reach + 1)}
+
+
+def closed_stiffness(chains: Sequence[tuple[Array | None, int, int]], sides: int, side: int) -> Array:
+    """Stiffness between the sides of a ring of chains, shape (sides, m, sides, m).
+
+    Parameters
+    ----------
+    chains : sequence of (ndarray of shape (2 m, 2 m) or None, int, int)
+        Stiffness between the ends of each, and the numbers of the sides that its ends are.
+    sides, side : int
+        Number of sides; m.
+    """
+    whole = np.zeros((sides, side, sides, side))
+    for chain, first, last in chains:
         if chain is not None:
-            block = chain.reshape(2, m, 2, m)
+            block = chain.reshape(2, side, 2, side)
             ends = np.array([first, last])
             # One after the other: where both ends are one side, all four blocks are that side's.
             for i, j in np.ndindex(2, 2):
                 whole[ends[i], :, ends[j]] += block[i, :, j]
-    right = np.zeros((sides, m, m))
-    right[0] = np.eye(m)
-    found = lapack.dpotrs(_factor(whole.reshape(sides * m, -1)), right.reshape(-1, m), lower=1)[0].reshape(sides, m, m)
-    return {k: (found[k] if k >= 0 else found[-k].T) for k in range(-reach, reach + 1)}
-
-
-def _factor(stiffness: Array) -> Array:
-    """Lower Cholesky factor.
-
-    Raises
-    ------
-    FegearError
-        If the stiffness is not positive definite.
-    """
-    from scipy.linalg import lapack
-
-    factor, failed = lapack.dpotrf(stiffness, lower=1)
-    if failed:
-        raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
-    return np.asarray(factor)
-
-
-def _polar(angle: Array) -> Array:
-    """Matrix from polar components (radial, clockwise tangential) of nodes at clockwise angles to x and y, (2n, 2n)."""
-    n = angle.size
-    matrix = np.zeros((2 * n, 2 * n))
-    i = 2 * np.arange(n)
-    s, c = np.sin(angle), np.cos(angle)
-    matrix[i, i], matrix[i, i + 1] = s, c
-    matrix[i + 1, i], matrix[i + 1, i + 1] = c, -s
-    return matrix
-
-
-def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Index, Array, Array]:
-    """Unknowns of both sides, ascending from the axis, and the clockwise angles and radii of side A's nodes."""
-    both = []
-    for name in ("side_a", "side_b"):
-        edges, dofs = mesh.edges[name], elasticity.edge_dofs[name]
-        radius = np.hypot(*mesh.points[:, edges[:2]])
-        outward = radius[0] < radius[1]
-        dofs = np.where(outward, dofs, dofs[:, ::-1])
-        lower = np.where(outward, radius[0], radius[1])
-        sequence = np.argsort(lower)
-        dofs = dofs[:, :, sequence]
-        run = np.concatenate([dofs[:, :1, 0], dofs[:, 1:, :].transpose(0, 2, 1).reshape(2, -1)], axis=1)
-        ends = np.sort(radius.min(axis=0)), np.sort(radius.max(axis=0))
-        if not np.allclose(ends[0][1:], ends[1][:-1], rtol=1e-6):
-            raise InputError("mesh", name, "is not one unbroken line from the bore to the outline")
-        angles = np.arctan2(*mesh.points[:, edges[:2]])
-        both.append((run.T.reshape(-1), ends, float(angles.mean())))
-    (dofs_a, ends_a, angle_a), (dofs_b, ends_b, angle_b) = both
-    if dofs_a.size != dofs_b.size or not np.allclose(ends_a, ends_b, rtol=1e-6):
-        raise InputError(
-            "mesh",
-            "side_a, side_b",
-            "have different nodes, so that sectors cannot be joined",
-            "mesh side_b as side_a rotated by one pitch",
-        )
-    pitch = 2.0 * np.pi / mesh.teeth
-    if abs(angle_b - angle_a - pitch) > 1e-6:
-        raise InputError(
-            "mesh", f"{angle_b - angle_a:.8g} rad between the sides", f"must be one pitch, {pitch:.8g} rad"
-        )
-    low, high = ends_a
-    steps = np.arange(1, elasticity.order + 1) / elasticity.order
-    radius = np.append(low[0], (low[:, None] + (high - low)[:, None] * steps).ravel())
-    return dofs_a, dofs_b, np.full(dofs_a.size // 2, angle_a), radius
+    return whole
