@@ -101,10 +101,14 @@ def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: boo
 
     The material lies on the left of an external tooth's curves (side 1), on the right of an internal one's (-1).
     """
-    parameter, length = arc_length(curve)
-    end = float(length[-1])
+    end = _length(curve)
     at = np.union1d(np.linspace(0.0, end, 513), np.geomspace(1e-6 * end, end, 257)) if dense else None
-    nodes = graded(end, size, fewest=fewest, at=at)
+    return _at_nodes(name, curve, graded(end, size, fewest=fewest, at=at), side)
+
+
+def _at_nodes(name: str, curve: Curve, nodes: Array, side: int) -> Chain:
+    """Edges along a curve between given arc lengths, from its start to its end."""
+    parameter, length = arc_length(curve)
     halves = np.sort(np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])]))
     points = curve.points(np.interp(halves, length, parameter))
     points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
@@ -114,6 +118,35 @@ def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: boo
         sharp = (tangents[:, 1:] * tangents[:, :-1]).sum(axis=0) < math.cos(_SHARPEST_TURN)
         middles = np.where(sharp, 0.5 * (vertices[:, 1:] + vertices[:, :-1]), middles)
     return Chain(name, vertices, middles, tangents)
+
+
+def fillet_chain(tooth: InvoluteTooth, name: str, size: Law, through: float) -> tuple[Chain, int]:
+    """Edges along a fillet with a vertex at a given place, in their order round the sector.
+
+    Parameters
+    ----------
+    tooth : InvoluteTooth
+    name : {"fillet", "back_fillet"}
+    size : callable
+        Edge length over the arc length up the fillet [modules].
+    through : float
+        Arc length at which there is a vertex [modules].
+
+    Returns
+    -------
+    chain : Chain
+    vertex : int
+        Number of that vertex among the chain's.
+    """
+    end, side, back = _length(tooth.fillet), tooth.side, name == "back_fillet"
+    lower, upper = graded(through, size), through + graded(end - through, lambda s: size(s + through))
+    nodes, vertex = np.concatenate([lower, upper[1:]]), lower.size - 1
+    chain = _at_nodes(name, tooth.fillet, nodes, side)
+    if back:
+        chain = _mirrored(chain, name)
+    if side < 0:
+        chain = _reversed(chain)
+    return chain, vertex if back == (side < 0) else nodes.size - 1 - vertex
 
 
 def _mirrored(chain: Chain, name: str) -> Chain:
@@ -158,7 +191,7 @@ def sector_boundary(
         if tooth.root_land is None or short
         else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings), side=side)]
     )
-    front_laws = _front_sizes(tooth, settings, contacts)
+    front_laws = front_sizes(tooth, settings, contacts)
     fewest = _fewest_edges(tooth, settings)
     short_fillet = _length(tooth.fillet) < _SHORT_FILLET
     front = [
@@ -303,7 +336,7 @@ def fillet_edges(tooth: InvoluteTooth, settings: MeshSettings) -> float:
     Errors of root stress go with them; they are known before anything is meshed.
     """
     length = _length(tooth.fillet)
-    nodes = graded(length, _front_sizes(tooth, settings)["fillet"], fewest=_fewest_edges(tooth, settings))
+    nodes = graded(length, front_sizes(tooth, settings)["fillet"], fewest=_fewest_edges(tooth, settings))
     edges = np.diff(nodes)
     return float(edges.sum() ** 2 / (edges**2).sum())
 
@@ -332,7 +365,7 @@ def _back_sizes(tooth: InvoluteTooth, settings: MeshSettings) -> dict[str, Law]:
     flank, land = _length(tooth.involute), _length(tooth.outline["tip_land"])
     edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
     last = float(_fillet_size(tooth, settings)(np.array([_length(tooth.fillet)]))[0])
-    middle = float(_front_sizes(tooth, settings)["tip_land"](np.array([land]))[0])
+    middle = float(front_sizes(tooth, settings)["tip_land"](np.array([land]))[0])
     # a rounding that turns sharper than an edge can follow is drawn straight, as on the loaded side
     round_ = max(_SHARPEST_TURN * tooth.tip_rounding, settings.tip_edge_length) if tooth.tip_rounding > 0.0 else longest
 
@@ -349,7 +382,7 @@ def _back_sizes(tooth: InvoluteTooth, settings: MeshSettings) -> dict[str, Law]:
     }
 
 
-def _front_sizes(
+def front_sizes(
     tooth: InvoluteTooth, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
 ) -> dict[str, Law]:
     """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""

@@ -73,6 +73,25 @@ class Condensed:
             u[step.gone] = -inner
         return u
 
+    def collect(self, forces: Array) -> Array:
+        """Forces on the kept unknowns that do to them what forces on any unknowns do, shape (n, P).
+
+        The counterpart of `expand`: what is watched inside by weights follows from the kept unknowns by these.
+        """
+        if self.motions is not None:
+            return np.asarray(self.motions.T @ forces)
+        from scipy.linalg import solve_triangular
+
+        left = np.array(forces, dtype=float)
+        for step in self.steps:
+            if step.factor.ndim == 2:
+                inner = solve_triangular(step.factor, left[step.gone], lower=True)
+                left[step.left] -= step.border.T @ inner
+            else:
+                inner = np.linalg.solve(step.factor, left[step.gone])
+                np.subtract.at(left, step.left, step.border.transpose(0, 2, 1) @ inner)
+        return np.asarray(left[self.kept])
+
 
 def condense(elasticity: SectorElasticity, kept: Index, held: Index, *, expandable: bool = False) -> Condensed:
     """Eliminate every unknown that is neither kept nor held.

@@ -116,7 +116,7 @@ class SectorElements:
         _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
         return basis
 
-    def vector_basis(self, components: int = 2, chosen: Index | None = None) -> Any:
+    def vector_basis(self, components: int = 2, chosen: Index | None = None, degree: int = _CURVED_DEGREE) -> Any:
         """scikit-fem's basis of vector-valued functions on elements, by default all.
 
         With n components unknown n i + c is component c of node i.
@@ -131,7 +131,7 @@ class SectorElements:
         from fegear.fem.plane.curved_map import CurvedMap
 
         element, mapping = ElementVector(_element(self.order), components), CurvedMap(self.grid)
-        basis = Basis(self.grid, element, mapping, intorder=_CURVED_DEGREE, elements=chosen, disable_doflocs=True)
+        basis = Basis(self.grid, element, mapping, intorder=degree, elements=chosen, disable_doflocs=True)
         _refuse_inverted(mapping.detDF(basis.X, tind=chosen), self.origin)
         return basis
 

@@ -145,7 +145,7 @@ class Influence:
             arc = np.maximum(arc, low + width)
         return arc
 
-    def _remote(self, radius: ArrayLike, patch: float) -> Array:
+    def remote(self, radius: ArrayLike, patch: float) -> Array:
         """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution.
 
         The last ones are kept: both neighbours are asked for at the same radii.
@@ -317,7 +317,7 @@ class Influence:
 
         Weighted with the pressure of a contact at p, so that c_k(p, q) = c_-k(q, p) to round-off.
         """
-        return self._remote(radius_p, patch).T @ self.compliance[k] @ self._remote(radius_q, patch)
+        return self.remote(radius_p, patch).T @ self.compliance[k] @ self.remote(radius_q, patch)
 
     def fillet_stress(
         self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH

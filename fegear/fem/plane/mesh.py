@@ -34,6 +34,9 @@ class SectorMesh:
         How the exact boundary leaves the chord of each edge at its first and second vertex (x and y of both), if
         known: dx/dxi at its ends is the chord + bends[:, 0] and the chord - bends[:, 1]. Elements of order 3 and 4
         follow these cubic edges, which have no kinks; the quadratic ones through the middle nodes have.
+    tip : int
+        Vertex at the tip of a crack, -1 without one. The middle nodes of its edges lie at a quarter of them, so that
+        displacements hold the root of the distance from it, and the elements' determinants vanish there.
     """
 
     points: Array
@@ -43,17 +46,18 @@ class SectorMesh:
     origin: str = GENERATED
     seconds: float = field(default=0.0, compare=False)
     bends: Mapping[str, Array] = field(default_factory=dict)
+    tip: int = -1
 
     def __post_init__(self) -> None:
         """Freeze the arrays and refuse inverted elements."""
         self.points.setflags(write=False)
         self.triangles.setflags(write=False)
-        worst = float(self.jacobians.min())
-        if worst <= 0.0:
+        determinants = np.where(self.triangles == self.tip, np.inf, self.jacobians)  # at a crack's tip they vanish
+        if float(determinants.min()) <= 0.0:
             raise InputError(
                 "mesh",
                 self.origin,
-                f"has {int((self.jacobians.min(axis=0) <= 0).sum())} inverted elements",
+                f"has {int((determinants.min(axis=0) <= 0).sum())} inverted elements",
                 "refine the mesh at curved boundaries, or check the node order of the elements",
             )
 

@@ -8,13 +8,17 @@ import signal
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError, MissingLibraryError, lacks_memory
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.elements import check_cubic_edges
@@ -205,26 +209,51 @@ def mesh_inside(
     """
     started = time.perf_counter() if started is None else started
     polygon = np.hstack([chain.vertices[:, :-1] for chain in chains])
-    vertices, triangles = _fill(polygon, growth)
-    _refuse_flat(vertices, triangles, polygon.shape[1])
+    vertices, triangles, _ = fill(polygon, growth)
+    refuse_flat(vertices, triangles, polygon.shape[1])
+    runs, middles, bends = named_runs(chains)
+    points, six, edges = with_middle_nodes(vertices, triangles, runs, middles)
+    return SectorMesh(points, six, by_name(edges), teeth, GENERATED, time.perf_counter() - started, bends)
+
+
+def named_runs(chains: list[Chain]) -> tuple[dict[str, Index], dict[str, Array], dict[str, Array]]:
+    """Vertices and middle nodes of each chain of a closed boundary, and how the exact curves leave the edges' chords.
+
+    Parameters
+    ----------
+    chains : list of Chain
+        Several may have one name.
+
+    Returns
+    -------
+    runs : dict of str to ndarray of int, shape (n + 1,)
+        Vertices in order, of the chain ``name:i`` for the i-th of its name.
+    middles : dict of str to ndarray, shape (2, n)
+        Of the same chains.
+    bends : dict of str to ndarray, shape (2, 2, n)
+        By name: see `SectorMesh`.
+    """
     starts = np.cumsum([0] + [chain.vertices.shape[1] - 1 for chain in chains])
     total = int(starts[-1])
-    runs: dict[str, list[NDArray[np.int64]]] = {}
-    middles: dict[str, list[NDArray[np.float64]]] = {}
-    bends: dict[str, list[NDArray[np.float64]]] = {}
+    counted: Counter[str] = Counter()
+    runs: dict[str, Index] = {}
+    middles: dict[str, Array] = {}
+    bends: dict[str, list[Array]] = {}
     for chain, start in zip(chains, starts, strict=False):
-        n = chain.vertices.shape[1]
-        runs.setdefault(chain.name, []).append(np.arange(start, start + n) % total)
-        middles.setdefault(chain.name, []).append(chain.middles)
+        key = f"{chain.name}:{counted[chain.name]}"
+        counted[chain.name] += 1
+        runs[key] = np.arange(start, start + chain.vertices.shape[1]) % total
+        middles[key] = chain.middles
         bends.setdefault(chain.name, []).append(_bends(chain))
-    edges: dict[str, NDArray[np.int64]] = {}
-    flat = {f"{name}:{i}": run for name, parts in runs.items() for i, run in enumerate(parts)}
-    flat_middles = {f"{name}:{i}": m for name, parts in middles.items() for i, m in enumerate(parts)}
-    points, six, numbered = with_middle_nodes(vertices, triangles, flat, flat_middles)
-    for name, parts in runs.items():
-        edges[name] = np.hstack([numbered[f"{name}:{i}"] for i in range(len(parts))])
-    joined = {name: np.concatenate(parts, axis=2) for name, parts in bends.items()}
-    return SectorMesh(points, six, edges, teeth, GENERATED, time.perf_counter() - started, joined)
+    return runs, middles, {name: np.concatenate(parts, axis=2) for name, parts in bends.items()}
+
+
+def by_name(edges: dict[str, Index]) -> dict[str, Index]:
+    """Edges of chains ``name:i`` together by name."""
+    found: dict[str, list[Index]] = {}
+    for key, part in edges.items():
+        found.setdefault(key.rpartition(":")[0], []).append(part)
+    return {name: np.hstack(parts) for name, parts in found.items()}
 
 
 def _bends(chain: Chain) -> NDArray[np.float64]:
@@ -274,14 +303,62 @@ def _heard_below(stopped: list[BaseException]) -> Iterator[None]:
         sys.unraisablehook = before
 
 
-def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+@dataclass(frozen=True)
+class Slit:
+    """A line inside a polygon that edges of triangles follow, from one of the polygon's corners, and single vertices.
+
+    Parameters
+    ----------
+    corner : int
+        Number of the corner that it starts from.
+    line : ndarray, shape (2, n)
+        The vertices that follow [modules].
+    around : ndarray, shape (2, p)
+        Single vertices [modules].
+    """
+
+    corner: int
+    line: Array
+    around: Array
+
+
+def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tuple[Array, Index, Index]:
     """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes.
 
     Two processors whose mathematical functions differ in the last bit draw the same triangles.
+
+    Parameters
+    ----------
+    polygon : ndarray, shape (2, n)
+        Counterclockwise [modules].
+    growth : float or None
+        As for `mesh_inside`.
+    slit : Slit, optional
+
+    Returns
+    -------
+    vertices : ndarray, shape (2, N)
+        The polygon's first.
+    triangles : ndarray of int, shape (3, M)
+        Counterclockwise.
+    line : ndarray of int
+        Vertices along the slit, its corner first.
+
+    Raises
+    ------
+    FegearError
+        If gmsh fails.
     """
     n = polygon.shape[1]
     drawn, length = _on_a_grid(polygon)
-    x_middle, y_middle = 0.5 * (drawn + np.roll(drawn, -1, axis=1))
+    middle = 0.5 * (drawn + np.roll(drawn, -1, axis=1))
+    line = around = np.zeros((2, 0))
+    if slit is not None:
+        line, steps = _line_on_a_grid(np.column_stack([polygon[:, slit.corner], slit.line]))
+        around = _rounded(slit.around, _GRID * steps[-1])
+        between = 0.5 * (np.column_stack([drawn[:, slit.corner], line[:, :-1]]) + line)
+        middle, length = np.hstack([middle, between]), np.concatenate([length, steps])
+    x_middle, y_middle = middle
 
     stopped: list[BaseException] = []
 
@@ -292,15 +369,7 @@ def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[n
 
     with gmsh_session("fegear sector") as gmsh, _heard_below(stopped):
         try:
-            geo = gmsh.model.geo
-            for tag, (x, y) in enumerate(drawn.T, start=1):
-                geo.addPoint(x, y, 0.0, tag=tag)
-            for tag in range(1, n + 1):
-                geo.addLine(tag, tag % n + 1, tag)
-                geo.mesh.setTransfiniteCurve(tag, 2)
-            geo.addCurveLoop(list(range(1, n + 1)), 1)
-            geo.addPlaneSurface([1], 1)
-            geo.synchronize()
+            along = _draw(gmsh, drawn, None if slit is None else slit.corner, line, around)
             if growth is None:
                 gmsh.option.setNumber("Mesh.Algorithm", _FRONTAL)
                 gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
@@ -321,22 +390,60 @@ def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[n
     position[tags[order].astype(np.int64)] = np.arange(tags.size)
     vertices = coordinates.reshape(-1, 3)[order, :2].T.copy()
     vertices[:, :n] = polygon
+    numbers = position[np.array(along, dtype=np.int64)]
+    if slit is not None:
+        vertices[:, numbers[1:]] = slit.line
     triangles = position[connectivity[0].astype(np.int64)].reshape(-1, 3).T.copy()
-    flipped = _areas(vertices, triangles) < 0.0
+    flipped = areas(vertices, triangles) < 0.0
     triangles[1:, flipped] = triangles[:0:-1, flipped]
-    return vertices, triangles
+    return vertices, triangles, numbers
+
+
+def _draw(gmsh: Any, polygon: Array, corner: int | None, line: Array, around: Array) -> list[int]:
+    """Draw a polygon with a line from one of its corners and points inside: tags of the line's points."""
+    geo, n = gmsh.model.geo, polygon.shape[1]
+    for tag, (x, y) in enumerate(polygon.T, start=1):
+        geo.addPoint(x, y, 0.0, tag=tag)
+    for tag in range(1, n + 1):
+        geo.addLine(tag, tag % n + 1, tag)
+        geo.mesh.setTransfiniteCurve(tag, 2)
+    geo.addCurveLoop(list(range(1, n + 1)), 1)
+    geo.addPlaneSurface([1], 1)
+    along = [] if corner is None else [corner + 1, *(geo.addPoint(x, y, 0.0) for x, y in line.T)]
+    curves = [geo.addLine(*ends) for ends in pairwise(along)]
+    single = [geo.addPoint(x, y, 0.0) for x, y in around.T]
+    for curve in curves:
+        geo.mesh.setTransfiniteCurve(curve, 2)
+    geo.synchronize()
+    for dimension, embedded in ((1, curves), (0, single)):
+        if embedded:
+            gmsh.model.mesh.embed(dimension, embedded, 2, 1)
+    return along
 
 
 def _on_a_grid(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The polygon with every corner on a grid that suits its shorter edge, and the lengths of its edges then."""
     length = np.hypot(*(np.roll(polygon, -1, axis=1) - polygon))
-    grid = 2.0 ** np.floor(np.log2(_GRID * np.minimum(length, np.roll(length, 1))))
-    drawn = np.round(polygon / grid) * grid
+    drawn = _rounded(polygon, _GRID * np.minimum(length, np.roll(length, 1)))
     # Products, sums and roots are rounded alike everywhere, which np.hypot is not.
     return drawn, np.sqrt(((np.roll(drawn, -1, axis=1) - drawn) ** 2).sum(axis=0))
 
 
-def _refuse_flat(vertices: NDArray[np.float64], triangles: NDArray[np.int64], boundary: int) -> None:
+def _line_on_a_grid(line: Array) -> tuple[Array, Array]:
+    """As `_on_a_grid`, of an open line without its first vertex."""
+    length = np.hypot(*np.diff(line))
+    shorter = np.minimum(length, np.append(length[1:], np.inf))
+    drawn = _rounded(line[:, 1:], _GRID * shorter)
+    return drawn, np.sqrt((np.diff(np.column_stack([line[:, 0], drawn])) ** 2).sum(axis=0))
+
+
+def _rounded(points: Array, size: Array | float) -> Array:
+    """Points on grids whose widths are powers of two, no larger than the sizes given."""
+    grid = 2.0 ** np.floor(np.log2(size))
+    return np.asarray(np.round(points / grid) * grid)
+
+
+def refuse_flat(vertices: Array, triangles: Index, boundary: int) -> None:
     """Refuse flat triangles, but for those at boundary edges much shorter than their neighbours, which must be flat."""
     length = np.hypot(*(np.roll(vertices[:, :boundary], -1, axis=1) - vertices[:, :boundary]))
     before = np.roll(length, 1)
@@ -345,7 +452,7 @@ def _refuse_flat(vertices: NDArray[np.float64], triangles: NDArray[np.int64], bo
     triangles = triangles[:, ~forced[triangles].any(axis=0)]
     corners = [vertices[:, corner] for corner in triangles]
     sides = sum(((one - other) ** 2).sum(axis=0) for one, other in zip(corners, corners[1:] + corners[:1], strict=True))
-    flattest = float((2.0 * math.sqrt(3.0) * _areas(vertices, triangles) / sides).min(initial=1.0))
+    flattest = float((2.0 * math.sqrt(3.0) * areas(vertices, triangles) / sides).min(initial=1.0))
     if flattest < _FLATTEST:
         raise InputError(
             "mesh", GENERATED, f"has a triangle of quality {flattest:.2g} (1: equilateral, minimum {_FLATTEST:g})",
@@ -353,7 +460,7 @@ def _refuse_flat(vertices: NDArray[np.float64], triangles: NDArray[np.int64], bo
         )  # fmt: skip
 
 
-def _areas(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+def areas(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
     """Twice the area of each triangle, negative if its corners run clockwise."""
     a, b, c = (vertices[:, corner] for corner in triangles)
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

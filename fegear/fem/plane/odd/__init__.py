@@ -1,0 +1,1 @@
+"""Gears some of whose teeth differ from the others: a crack, another outline."""

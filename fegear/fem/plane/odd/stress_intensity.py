@@ -1,0 +1,117 @@
+"""Stress intensity factors of a crack by the interaction integral, as linear functionals of its sector's displacement.
+
+Over a ring r_1 < r < r_2 around the tip, with q falling smoothly from one to zero over it and the fields a of Williams'
+first terms for K_I = 1 or K_II = 1 (Stern, Becker and Dunham 1976; Moran and Shih 1987),
+
+    K = (E'/2) int [s_ij u^a_i,1 + s^a_ij u_i,1 - s_kl e^a_kl d_1j] q_,j dA,
+
+whose value does not depend on the ring as long as the faces within it are straight and free. K is g' u with the same g
+for every load: with that of all teeth it becomes rows like a compliance.
+
+Not by the opening of the tip's elements: natural quarter-point triangles vary too little with the angle, and miss K_I
+by 2.6 % with eight rays whatever their size.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.fem.plane.elasticity import lame
+from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.odd.cracked_sector import CrackedSector
+from fegear.geometry.gear import Plane
+
+#: Inner and outer radius of the ring, and of a second one that shows the error, as shares of the room around the tip.
+RINGS = ((0.3, 0.75), (0.22, 0.5))
+#: Degree of the quadrature: the auxiliary fields are no polynomials, and q has two kinks in its second derivative.
+_DEGREE = 19
+
+
+def interaction(
+    sector: CrackedSector, poisson_ratio: float, plane: Plane, order: int, ring: tuple[float, float] = RINGS[0]
+) -> Array:
+    """Functionals g of a cracked sector's displacement u with K_I = g_I' u and K_II = g_II' u; E = 1.
+
+    Parameters
+    ----------
+    sector : CrackedSector
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    order : {2, 3, 4}
+        Of the elements that the displacement is of.
+    ring : tuple of float
+        Inner and outer radius as shares of the room around the tip.
+
+    Returns
+    -------
+    ndarray, shape (size, 2)
+        [1/sqrt(module)]: K is in units of stress times the root of a module, stress in line load per module. K_I opens
+        the crack; K_II is positive where its left face, seen from the mouth, moves toward the tip.
+    """
+    from skfem import LinearForm
+
+    r1, r2 = (share * sector.room for share in ring)
+    elements = sector_elements(sector.mesh, order)
+    tip = sector.tip[:, None] - elements.tip[:, 0]
+    corners = np.hypot(*(elements.grid.p - tip))[elements.grid.t]
+    chosen = np.flatnonzero((corners.min(axis=0) < r2) & (corners.max(axis=0) > r1))
+    lam, mu = lame(poisson_ratio, plane)
+    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
+    kappa = 3.0 - 4.0 * poisson_ratio if plane == "strain" else (3.0 - poisson_ratio) / (1.0 + poisson_ratio)
+    local = np.array([sector.way, [-sector.way[1], sector.way[0]]])  # rows: along the crack, and to its left
+    basis = elements.vector_basis(chosen=chosen, degree=_DEGREE)
+
+    def of_mode(mode: int) -> Any:
+        def form(v: Any, w: Any) -> Array:
+            at = np.einsum("ac,cmq->amq", local, w.x - tip[:, :, None])
+            fall = _fall(at, r1, r2)
+            slope, stress = _williams(mode, at, mu, kappa)
+            gradient = np.einsum("ac,bd,cdmq->abmq", local, local, v.grad)  # d u_a / d x_b along and across
+            strain = 0.5 * (gradient + gradient.transpose(1, 0, 2, 3))
+            own = 2.0 * mu * strain
+            own[0, 0] += lam * (strain[0, 0] + strain[1, 1])
+            own[1, 1] += lam * (strain[0, 0] + strain[1, 1])
+            found = np.einsum("ijmq,imq,jmq->mq", own, slope, fall)
+            found += np.einsum("ijmq,imq,jmq->mq", stress, gradient[:, 0], fall)
+            return np.asarray(found - np.einsum("ijmq,ijmq->mq", stress, strain) * fall[0])
+
+        return LinearForm(form).assemble(basis)
+
+    return 0.5 * modulus * np.stack([of_mode(1), of_mode(2)], axis=1)
+
+
+def _fall(at: Array, r1: float, r2: float) -> Array:
+    """Gradient of q = 1 - 3 w^2 + 2 w^3 over the ring, zero off it, shape (2, ...)."""
+    r = np.hypot(*at)
+    w = np.clip((r - r1) / (r2 - r1), 0.0, 1.0)
+    return np.asarray(-6.0 * w * (1.0 - w) / (r2 - r1) * at / np.maximum(r, 1e-300))
+
+
+def _williams(mode: int, at: Array, mu: float, kappa: float) -> tuple[Array, Array]:
+    """Williams' first term with unit stress intensity, in components along the crack and to its left.
+
+    Returns
+    -------
+    slope : ndarray, shape (2, ...)
+        Derivative of the displacement along the crack.
+    stress : ndarray, shape (2, 2, ...)
+    """
+    r, theta = np.hypot(*at), np.arctan2(at[1], at[0])
+    c, s = np.cos(0.5 * theta), np.sin(0.5 * theta)
+    c3, s3 = np.cos(1.5 * theta), np.sin(1.5 * theta)
+    # u = sqrt(r / 2 pi) / (2 mu) g(theta), so that du/dx = (cos(theta) g / 2 - sin(theta) g') / sqrt(2 pi r) / (2 mu)
+    if mode == 1:
+        stress = np.array([[c * (1.0 - s * s3), s * c * c3], [s * c * c3, c * (1.0 + s * s3)]])
+        g = np.array([c, s]) * (kappa - np.cos(theta))
+        turn = 0.5 * np.array([-s, c]) * (kappa - np.cos(theta)) + np.array([c, s]) * np.sin(theta)
+    else:
+        stress = np.array([[-s * (2.0 + c * c3), c * (1.0 - s * s3)], [c * (1.0 - s * s3), s * c * c3]])
+        off = np.array([kappa + 2.0 + np.cos(theta), kappa - 2.0 + np.cos(theta)])
+        g = np.array([s, -c]) * off
+        turn = 0.5 * np.array([c, s]) * off - np.array([s, -c]) * np.sin(theta)
+    over = 1.0 / np.sqrt(2.0 * math.pi * r)
+    return over / (2.0 * mu) * (0.5 * np.cos(theta) * g - np.sin(theta) * turn), over * stress
