@@ -26,8 +26,9 @@ from fegear.fem.plane.odd.cracked_sector import CrackedSector
 from fegear.geometry.gear import Plane
 
 #: Inner and outer radius of the ring, and of a second one that shows the error, as shares of the room around the tip.
-RINGS = ((0.3, 0.75), (0.22, 0.5))
-#: Degree of the quadrature: the auxiliary fields are no polynomials, and q has two kinks in its second derivative.
+RINGS = ((0.2, 0.8), (0.15, 0.5))
+#: Degree of the quadrature: the auxiliary fields are no polynomials, and q has kinks in its second derivative. With
+#: kinks in its first (1 - 3 w^2 + 2 w^3) errors are five times as large.
 _DEGREE = 19
 
 
@@ -85,10 +86,10 @@ def interaction(
 
 
 def _fall(at: Array, r1: float, r2: float) -> Array:
-    """Gradient of q = 1 - 3 w^2 + 2 w^3 over the ring, zero off it, shape (2, ...)."""
+    """Gradient of q = 1 - 10 w^3 + 15 w^4 - 6 w^5 over the ring, zero off it, shape (2, ...)."""
     r = np.hypot(*at)
     w = np.clip((r - r1) / (r2 - r1), 0.0, 1.0)
-    return np.asarray(-6.0 * w * (1.0 - w) / (r2 - r1) * at / np.maximum(r, 1e-300))
+    return np.asarray(-30.0 * (w * (1.0 - w)) ** 2 / (r2 - r1) * at / np.maximum(r, 1e-300))
 
 
 def _williams(mode: int, at: Array, mu: float, kappa: float) -> tuple[Array, Array]:

@@ -1,0 +1,244 @@
+"""Cracked teeth in the ring: laws that hold to round-off, stress intensity in strips (Kaya and Erdogan), by energy."""
+
+import functools
+import math
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import spsolve
+
+from fegear.base.errors import InputError
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.influence import SIDES, solve_influence
+from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
+from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_tangent, straight_crack
+from fegear.fem.plane.odd.cracked_sector import CrackedSector, _line, _quartered, cracked_sector, opened
+from fegear.fem.plane.odd.odd_influence import OddTooth, solve_odd_influence
+from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
+from fegear.fem.plane.sector import Slit, fill, mesh_sector
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.trace import lagrange
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+
+NU = 0.3
+#: Edge crack of a share of a strip's width: K_I over stress times sqrt(pi a), in tension and in bending (A. C. Kaya and
+#: F. Erdogan, Q. Appl. Math. 45 (1987), 105-122, table 2).
+KAYA_ERDOGAN = {0.1: (1.1892, 1.0472), 0.3: (1.6599, 1.1241), 0.5: (2.8246, 1.4972), 0.7: (6.3549, 2.7252)}
+SETTINGS = settings_at(-3)
+TOOTH, BORE = Tooth(28, BasicRack(1.0, 1.25, 0.25)), 6.375
+PATCH = SETTINGS.patch_half_width
+
+
+def strip(share, tip_edge, *, quarter=True, edge=0.12, angle=90.0, rays=8):
+    """A strip of width one, its left side cracked at y = 0; its boundary counterclockwise from the upper left."""
+    y = np.linspace(3.0, -3.0, 2 * round(3.0 / edge) + 1)
+    x = np.linspace(0.0, 1.0, round(1.0 / edge) + 1)
+    left, bottom = np.stack([0.0 * y, y]), np.stack([x[1:], -3.0 + 0.0 * x[1:]])
+    right, top = np.stack([1.0 + 0.0 * y[1:], y[-2::-1]]), np.stack([x[-2:0:-1], 3.0 + 0.0 * x[1:-1]])
+    polygon, mouth = np.hstack([left, bottom, right, top]), y.size // 2
+    way = np.array([math.sin(math.radians(angle)), -math.cos(math.radians(angle))])
+    path = np.stack([np.zeros(2), share * way], axis=1)
+    line = _line(path, 0.5 * edge, tip_edge, edge)
+    turn = math.atan2(-way[1], -way[0]) + 2.0 * math.pi * np.arange(1, rays) / rays
+    around = path[:, 1:] + tip_edge * np.stack([np.cos(turn), np.sin(turn)])
+    vertices, triangles, numbers = fill(polygon, 0.4, Slit(mouth, line, around))
+    vertices, triangles, left_face = opened(vertices, triangles, numbers)
+    n = polygon.shape[1]
+    runs = {"before": np.append(np.arange(mouth), left_face[0]), "after": np.append(np.arange(mouth, n), 0)}
+    runs |= {"crack_left": left_face, "crack_right": numbers}
+    middles = {name: 0.5 * (vertices[:, run[1:]] + vertices[:, run[:-1]]) for name, run in runs.items()}
+    points, six, edges = with_middle_nodes(vertices, triangles, runs, middles)
+    tip = int(numbers[-1])
+    mesh = SectorMesh(_quartered(points, six, tip) if quarter else points, six, edges, 1, tip=tip if quarter else -1)
+    return CrackedSector(mesh, path[:, 1], way, min(path[0, 1], 1.0 - path[0, 1]), 0.0, False)
+
+
+def pulled(sector, order, stress):
+    """Displacement of a strip whose ends carry a stress over x."""
+    elasticity = assemble(sector.mesh, NU, "strain", order)
+    dofs, width = elasticity.element_dofs, elasticity.element_dofs.shape[1]
+    rows, columns = np.repeat(dofs, width, axis=1).ravel(), np.tile(dofs, (1, width)).ravel()
+    whole = csc_matrix((elasticity.stiffness.ravel(), (rows, columns)), shape=(elasticity.size,) * 2)
+    at, weight = np.polynomial.legendre.leggauss(6)
+    shape, loads = lagrange(order, 0.5 + 0.5 * at), np.zeros(elasticity.size)
+    for name in ("before", "after"):
+        for (first, second, _), unknowns in zip(
+            sector.mesh.edges[name].T, elasticity.edge_dofs[name].transpose(2, 0, 1), strict=True
+        ):
+            (x, y), (other, end) = sector.mesh.points[:, first], sector.mesh.points[:, second]
+            if abs(abs(y) - 3.0) < 1e-9 and abs(end - y) < 1e-9:
+                place = x + (other - x) * (0.5 + 0.5 * at)
+                loads[unknowns[1]] += np.sign(y) * shape @ (stress(place) * 0.5 * weight * abs(other - x))
+    corner = sector.mesh.points[:, : sector.mesh.vertex_count]
+    low, high = (int(np.hypot(corner[0] - 1.0, corner[1] - y).argmin()) for y in (-3.0, 3.0))
+    free = np.setdiff1d(np.arange(elasticity.size), [2 * low, 2 * low + 1, 2 * high])
+    moved = np.zeros(elasticity.size)
+    moved[free] = spsolve(whole[free][:, free], loads[free])
+    return moved, loads
+
+
+def intensity(sector, order, stress=np.ones_like, ring=RINGS[0]):
+    """K_I and K_II over sqrt(pi a)."""
+    length = float(np.hypot(*sector.tip))
+    return (
+        interaction(sector, NU, "strain", order, ring).T
+        @ pulled(sector, order, stress)[0]
+        / math.sqrt(math.pi * length)
+    )
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize("share", KAYA_ERDOGAN)
+@pytest.mark.parametrize("kind", ["tension", "bending"])
+def test_edge_crack_in_a_strip_has_the_published_stress_intensity(share, kind):
+    stress = np.ones_like if kind == "tension" else lambda x: 1.0 - 2.0 * x
+    found = intensity(strip(share, 0.1 * min(share, 1.0 - share)), 4, stress)
+    assert found[0] == pytest.approx(KAYA_ERDOGAN[share][kind == "bending"], rel=1e-3)
+    assert abs(found[1]) < 1e-3 * found[0]
+
+
+@pytest.mark.dear
+def test_quarter_points_take_the_error_of_the_tip_away():
+    """Without them it goes with the first power of the edges at the tip; with them the tip does not count."""
+    exact = KAYA_ERDOGAN[0.5][0]
+    edges = (0.1, 0.05, 0.025)
+    plain = [intensity(strip(0.5, edge, quarter=False), 4)[0] / exact - 1.0 for edge in edges]
+    order = np.log2(plain[0] / plain[1]), np.log2(plain[1] / plain[2])
+    assert all(0.7 < one < 1.3 for one in order)
+    assert all(abs(intensity(strip(0.5, edge), 4)[0] / exact - 1.0) < 0.1 * abs(plain[-1]) for edge in edges)
+
+
+@pytest.mark.dear
+def test_slanted_crack_gives_back_the_energy():
+    """K_I^2 + K_II^2 = E' dC/da / 2 of a strip pulled at its ends, and both rings of integration agree."""
+    work = []
+    for share in (0.496, 0.504):
+        moved, loads = pulled(strip(share, 0.04, angle=45.0), 4, np.ones_like)
+        work.append(loads @ moved)
+    release = 0.5 * (work[1] - work[0]) / 0.008 / (1.0 - NU**2) / (math.pi * 0.5)
+    found = [intensity(strip(0.5, 0.04, angle=45.0), 4, ring=ring) for ring in RINGS]
+    assert found[0][1] < -0.3  # the left face, above, moves toward the mouth
+    assert found[0] @ found[0] == pytest.approx(release, rel=1e-3)
+    assert found[1] == pytest.approx(found[0], rel=2e-3)
+
+
+@functools.cache
+def ordinary(teeth=28):
+    """Mesh and ring of gears whose teeth are all alike."""
+    tooth = Tooth(teeth, TOOTH.rack)
+    bore = 0.45 * teeth / 2.0
+    mesh = mesh_sector(tooth, bore, SETTINGS)
+    known = solve_influence(
+        tooth, mesh, NU, "strain", order=SETTINGS.order, reach=2, corner_distance=SETTINGS.corner_distance
+    )
+    return tooth, bore, mesh, known
+
+
+@functools.cache
+def cracked(depth, back=False, teeth=28, neighbour=0.0):
+    """The same gear, its tooth 0 cracked, and tooth 1 as well."""
+    tooth, bore, mesh, _ = ordinary(teeth)
+
+    def one(deep, in_back):
+        crack = straight_crack(
+            tooth, mouth_at_tangent(tooth, math.radians(30.0)), math.radians(70.0), depth=deep, back=in_back
+        )
+        return OddTooth(tooth, cracked_sector(tooth, bore, SETTINGS, crack))
+
+    odd = {0: one(depth, back)} | ({1: one(neighbour, back)} if neighbour else {})
+    return solve_odd_influence(tooth, mesh, odd, NU, "strain", SETTINGS, two_orders=True)
+
+
+@pytest.mark.parametrize("teeth", [28, 6, 5])
+def test_healthy_odd_sectors_are_the_plain_ring(teeth):
+    """Wherever an odd sector stands; with as few teeth as are told apart (5) there is no chain of others left."""
+    tooth, _, mesh, known = ordinary(teeth)
+    same = OddTooth(tooth, mesh)
+    found = solve_odd_influence(tooth, mesh, {0: same, 2: same}, NU, "strain", SETTINGS)
+    for j in range(-2, 3):
+        for k in range(max(-2, -2 - j), min(2, 2 - j) + 1):
+            scale = np.abs(known.compliance[0]).max()
+            assert np.abs(found.loaded[j].compliance[k] - known.compliance[k]).max() < 1e-12 * scale
+            for side in SIDES:
+                off = found.loaded[j].stress[k, side] - known.stress[k, side]
+                assert np.abs(off).max() < 1e-11 * np.abs(known.stress[0, side]).max()
+
+
+@pytest.mark.parametrize("neighbour", [0.0, 0.3])
+def test_reciprocity_is_left(neighbour):
+    """c_ij(p, q) = c_ji(q, p) whichever teeth are cracked, and no longer c_01 = c_10."""
+    found, radii = cracked(0.5, neighbour=neighbour), [13.4, 14.0, 14.8]
+    for i in range(-2, 3):
+        for j in range(-2, 3):
+            there, back = found.between(i, j, radii, radii, PATCH), found.between(j, i, radii, radii, PATCH)
+            assert there == pytest.approx(back.T, rel=1e-9)
+    assert np.abs(found.between(0, 1, radii, radii, PATCH) / found.between(1, 0, radii, radii, PATCH) - 1).max() > 0.01
+
+
+def test_teeth_are_counted_clockwise():
+    """The crack lies on the side of tooth 1: a load there presses on it, one on tooth -1 pulls it open."""
+    found = cracked(0.5)
+    (ahead, _), (behind, _) = (found.stress_intensity(0, j, [14.0], PATCH)[0] for j in (1, -1))
+    assert ahead[0] < 0.0 < behind[0]
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize(("depth", "back"), [(0.2, False), (0.9, False), (0.6, True)])
+def test_a_crack_gives_back_the_energy(depth, back):
+    """(K_p K_q) = E' / 2 dc_00(p, q) / da for every two places of the load, in the fillet of either flank."""
+    step, radii = 0.008 * depth, [13.4, 14.0, 14.8]
+    c = [cracked(depth + off, back).between(0, 0, radii, radii, PATCH) for off in (-step, step)]
+    k, error = cracked(depth, back).stress_intensity(0, 0, radii, PATCH)
+    released = 0.5 * (c[1] - c[0]) / (2.0 * step) / (1.0 - NU**2)
+    assert k.T @ k == pytest.approx(released, rel=2.5e-3)
+    assert error.max() < 5e-3 * np.hypot(*k).max()
+
+
+def test_a_crack_that_goes_to_nothing_leaves_the_ordinary_gear():
+    """The change of c_00 goes with the square of the depth."""
+    known, radii = ordinary()[3], [13.4, 14.0, 14.8]
+    change = [
+        cracked(depth).between(0, 0, radii, radii, PATCH) / known.neighbour(0, radii, radii, PATCH) - 1.0
+        for depth in (0.08, 0.04)
+    ]
+    assert np.log2(change[0] / change[1]) == pytest.approx(np.full((3, 3), 2.0), abs=0.35)
+
+
+def test_root_stress_is_looked_for_on_either_side_of_the_mouth():
+    """A deep crack unloads its own fillet and leaves those of the neighbours."""
+    found, known, radii = cracked(0.9), ordinary()[3], [13.8, 14.6]
+    healthy, _ = known.largest_root_stress(0, "tension", radii)
+    stress, place = found.largest_root_stress(0, 0, "tension", radii)
+    assert (stress > 0.0).all()
+    assert (stress < 0.5 * healthy).all()
+    assert ((place >= 0.0) & (place <= fillet_length(TOOTH))).all()
+    assert found.largest_root_stress(1, 1, "tension", radii)[0] == pytest.approx(healthy, rel=0.02)
+    points = found.fillet_stress(0, 0, "tension", radii)
+    for start, _, chosen in found._pieces(0, "tension"):
+        arc = found.loaded[0].fillets["tension"].arc[chosen]
+        inside = (place[:, None] >= arc[0] - 0.05) & (place[:, None] <= arc[-1] + 0.05)
+        assert start in (0.0, found.mouths[0][0])
+        assert (points[chosen].max(axis=0) <= 1.05 * stress).all() or inside.any()
+
+
+@pytest.mark.parametrize(
+    ("depth", "angle", "mouth"),
+    [(6.0, 70.0, 0.3), (0.001, 70.0, 0.3), (0.5, 180.0, 0.3), (0.5, -60.0, 0.3), (0.5, 70.0, 9.0)],
+)
+def test_cracks_that_are_none_are_refused(depth, angle, mouth):
+    """Out of the tooth, too short, along the fillet or out of it, and from no fillet."""
+    with pytest.raises(InputError, match=r"depth|mouth"):
+        cracked_sector(TOOTH, BORE, SETTINGS, straight_crack(TOOTH, mouth, math.radians(angle), depth=depth))
+
+
+def test_mouths_are_found_by_tangent_and_by_radius():
+    """Both name the same place; what the fillet has not is refused with what it has."""
+    arc = mouth_at_tangent(TOOTH, math.radians(30.0))
+    x, y = straight_crack(TOOTH, arc, math.radians(70.0), depth=0.5).path(TOOTH)[:, 0]
+    assert mouth_at_radius(TOOTH, math.hypot(x, y)) == pytest.approx(arc, abs=1e-5)
+    with pytest.raises(InputError, match="tangents, "):
+        mouth_at_tangent(TOOTH, math.radians(1.0))
+    with pytest.raises(InputError, match="radius of the fillet, "):
+        mouth_at_radius(TOOTH, 14.9)
