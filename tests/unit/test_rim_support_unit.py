@@ -12,8 +12,8 @@ from fegear.case.reading import read_scene
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.rim import rigid_motions
-from fegear.fem.plane.sector_sides import _matching_sides
 from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.sector_sides import _matching_sides
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.tooth_on_pins import over_the_teeth, tooth_on_pins
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
