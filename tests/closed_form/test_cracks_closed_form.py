@@ -157,13 +157,18 @@ def test_healthy_odd_sectors_are_the_plain_ring(teeth):
     tooth, _, mesh, known = ordinary(teeth)
     same = OddTooth(tooth, mesh)
     found = solve_odd_influence(tooth, mesh, {0: same, 2: same}, NU, "strain", SETTINGS)
-    for j in range(-2, 3):
-        for k in range(max(-2, -2 - j), min(2, 2 - j) + 1):
-            scale = np.abs(known.compliance[0]).max()
-            assert np.abs(found.loaded[j].compliance[k] - known.compliance[k]).max() < 1e-12 * scale
+    radii = [tooth.form_radius + share * (tooth.tip_radius - tooth.form_radius) for share in (0.1, 0.5, 0.9)]
+    scale, stress = known.neighbour(0, radii, radii, PATCH).max(), known.fillet_stress(0, "tension", radii).max()
+    for i in range(-2, 3):
+        assert (
+            np.abs(found.tooth(i).compliance[0] - known.compliance[0]).max() < 1e-12 * np.abs(known.compliance[0]).max()
+        )
+        for j in range(max(-2, i - 2), min(2, i + 2) + 1):
+            off = found.between(i, j, radii, radii, PATCH) - known.neighbour(i - j, radii, radii, PATCH)
+            assert np.abs(off).max() < 1e-12 * scale
             for side in SIDES:
-                off = found.loaded[j].stress[k, side] - known.stress[k, side]
-                assert np.abs(off).max() < 1e-11 * np.abs(known.stress[0, side]).max()
+                off = found.fillet_stress(i, j, side, radii) - known.fillet_stress(i - j, side, radii)
+                assert np.abs(off).max() < 1e-11 * stress
 
 
 @pytest.mark.parametrize("neighbour", [0.0, 0.3])
@@ -216,10 +221,10 @@ def test_root_stress_is_looked_for_on_either_side_of_the_mouth():
     assert ((place >= 0.0) & (place <= fillet_length(TOOTH))).all()
     assert found.largest_root_stress(1, 1, "tension", radii)[0] == pytest.approx(healthy, rel=0.02)
     points = found.fillet_stress(0, 0, "tension", radii)
-    for start, _, chosen in found._pieces(0, "tension"):
-        arc = found.loaded[0].fillets["tension"].arc[chosen]
+    for start, _, chosen in found.kind(0).pieces("tension"):
+        arc = found.kind(0).fillets["tension"].arc[chosen]
         inside = (place[:, None] >= arc[0] - 0.05) & (place[:, None] <= arc[-1] + 0.05)
-        assert start in (0.0, found.mouths[0][0])
+        assert start in (0.0, found.kind(0).mouth)
         assert (points[chosen].max(axis=0) <= 1.05 * stress).all() or inside.any()
 
 

@@ -1,7 +1,8 @@
 """Influence functions of a gear some of whose teeth differ: c_ij(p, q), root stress, and stress intensity as rows.
 
 The teeth have numbers, rising clockwise (toward the side that the load comes from); compliances are no function of
-i - j, and c_ij(p, q) = c_ji(q, p) alone is left of their symmetry.
+i - j, and c_ij(p, q) = c_ji(q, p) alone is left of their symmetry. Nothing is formed for all pairs of teeth: of each
+kind of sector is kept how its flank, fillets and crack follow its sides, and of the ring how the sides move.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,7 +25,7 @@ from fegear.fem.plane.odd.cracked_sector import CrackedSector
 from fegear.fem.plane.odd.odd_ring import OddRing, odd_ring
 from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, fillet_strain
-from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector
+from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector, ports_of
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
 
-#: How far below the flank a patch may reach into the fillet, but not down to a crack's mouth [modules]; the share of
+#: How far below the flank a patch may reach into the fillet [modules], and how near to a crack's mouth, as a share of
 #: the way there.
 _MARGIN, _ABOVE_MOUTH = 0.15, 0.97
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
@@ -63,44 +65,139 @@ class OddTooth:
 
 
 @dataclass(frozen=True)
-class OddInfluence:
-    """c_ij(p, q), root-stress and stress-intensity influence of one gear shape with odd teeth.
+class ToothKind:
+    """How flank, fillets and crack of one kind of sector follow its sides, and a load on its flank.
 
     Parameters
     ----------
-    teeth : int
-        z.
-    reach : int
-        R: teeth -R..R are known, among them the odd ones.
-    loaded : mapping of int to Influence
-        Of each of these teeth, loaded: its own flank and fillets, displacements of tooth i under ``compliance[i - j]``,
-        stress of its fillets under ``stress[i - j, side]``.
-    intensity : mapping of (int, int) to ndarray, shape (rings, 2, 2n)
-        K_I and K_II of the crack of tooth i per force on the run of tooth j, by two rings of integration.
-    mouths : mapping of int to (float, bool)
-        Where the cracks of teeth start: arc length up the fillet [modules], and whether that is the one of the flank
-        that is not loaded.
+    tooth : InvoluteTooth
+    mesh : SectorMesh
+    flank : LoadedFlank
+    fillets : mapping of {"tension", "compression"} to FilletStrain
+    flank_follows : ndarray, shape (2n, 2m)
+        Motion of the unknowns of the loaded run under that of sides A and B.
+    flank_own : ndarray, shape (2n, 2n)
+        The same under forces on itself, the sides held.
+    stress_follows, stress_own : mapping of side to ndarray, shape (points, 2m) and (points, 2n)
+        Tangential stress of the fillets likewise.
+    intensity_follows, intensity_own : ndarray, shape (rings, 2, 2m) and (rings, 2, 2n)
+        K_I and K_II of its crack likewise, by each ring of integration; of none without a crack.
+    mouth : float
+        Where its crack starts, arc length up the fillet [modules].
+    back : bool
+        Whether that is the fillet of the flank that is not loaded.
+    unknowns : int
+        Size of the sector's system.
+    """
+
+    tooth: InvoluteTooth
+    mesh: SectorMesh
+    flank: LoadedFlank
+    fillets: Mapping[Side, FilletStrain]
+    flank_follows: Array
+    flank_own: Array
+    stress_follows: Mapping[Side, Array]
+    stress_own: Mapping[Side, Array]
+    intensity_follows: Array
+    intensity_own: Array
+    mouth: float
+    back: bool
+    unknowns: int
+
+    @property
+    def cracked(self) -> bool:
+        """Whether it has a crack."""
+        return self.intensity_own.size > 0
+
+    def pieces(self, side: Side) -> list[tuple[float, FilletCurve, slice]]:
+        """Start, curve and points of the pieces of a fillet: two where a crack starts in it."""
+        fillet, flank = self.fillets[side], self.flank
+        ends = float(flank.roll_squared[0]), float(flank.roll_squared[-1])
+        whole = FilletCurve(side, fillet.arc, fillet.length, flank.base_radius, ends)
+        if not self.cracked or self.back != (side == "compression"):
+            return [(0.0, whole, slice(None))]
+        n = int(np.searchsorted(whole.arc, self.mouth))
+        return [
+            (0.0, replace(whole, arc=whole.arc[:n], length=self.mouth), slice(0, n)),
+            (
+                self.mouth,
+                replace(whole, arc=whole.arc[n:] - self.mouth, length=whole.length - self.mouth),
+                slice(n, None),
+            ),
+        ]
+
+
+@dataclass(frozen=True)
+class OddInfluence:
+    """c_ij(p, q), root-stress and stress-intensity influence of one gear shape with odd teeth; E = 1, module 1.
+
+    Parameters
+    ----------
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    corner_distance : float
+        As of `Influence`.
+    ordinary : ToothKind
+    odd : mapping of int to ToothKind
+        By the tooth's number, -reach to reach.
+    ring : OddRing
+        How the sectors' sides move.
     seconds : mapping of str to float
     lower : OddInfluence, optional
         The same on the same meshes with elements one order lower, which shows the error.
     """
 
-    teeth: int
-    reach: int
-    loaded: Mapping[int, Influence]
-    intensity: Mapping[tuple[int, int], Array]
-    mouths: Mapping[int, tuple[float, bool]]
+    poisson_ratio: float
+    plane: Plane
+    corner_distance: float
+    ordinary: ToothKind
+    odd: Mapping[int, ToothKind]
+    ring: OddRing
     seconds: Mapping[str, float] = field(compare=False)
     lower: OddInfluence | None = None
 
+    @property
+    def reach(self) -> int:
+        """R: teeth -R..R are known, among them the odd ones."""
+        return self.ring.reach
+
+    def kind(self, i: int) -> ToothKind:
+        """Of what kind a tooth is."""
+        return self.odd.get(i, self.ordinary)
+
+    @cached_property
+    def _teeth(self) -> dict[int, Influence]:
+        return {}
+
+    def tooth(self, i: int) -> Influence:
+        """A tooth under loads on itself, without neighbours."""
+        if i not in self._teeth:
+            kind = self.kind(i)
+            sides = self.ring.between(i, i)
+            compliance = kind.flank_own + kind.flank_follows @ sides @ kind.flank_follows.T
+            stress = {
+                (0, side): kind.stress_own[side] + kind.stress_follows[side] @ sides @ kind.flank_follows.T
+                for side in SIDES
+            }
+            self._teeth[i] = Influence(
+                kind.tooth, self.poisson_ratio, self.plane, kind.mesh, kind.flank, {0: compliance}, kind.fillets,
+                stress, self.corner_distance, 0, kind.unknowns, {},
+            )  # fmt: skip
+        return self._teeth[i]
+
     def own(self, i: int, radius: ArrayLike, patch: float, half_width: ArrayLike | None = None) -> Array:
         """c_ii(p, p): as `Influence.self_compliance`, shape (P,) [1/E]."""
-        return self.loaded[i].self_compliance(radius, patch, half_width)
+        return self.tooth(i).self_compliance(radius, patch, half_width)
+
+    def _sides(self, i: int, j: int, loads: Array) -> Array:
+        """Motion of the sides of sector i under loads on the flank of tooth j, shape (2 m, P)."""
+        return self.ring.between(i, j) @ (self.kind(j).flank_follows.T @ loads)
 
     def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float) -> Array:
         """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [1/E]."""
-        there, here = self.loaded[i], self.loaded[j]
-        return np.asarray(there.remote(radius_p, patch).T @ here.compliance[i - j] @ here.remote(radius_q, patch))
+        there, here = self.tooth(i).remote(radius_p, patch), self.tooth(j).remote(radius_q, patch)
+        found = (there.T @ self.kind(i).flank_follows) @ self._sides(i, j, here)
+        return found + there.T @ self.kind(i).flank_own @ here if i == j else found
 
     def fillet_stress(
         self, i: int, j: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
@@ -109,7 +206,10 @@ class OddInfluence:
 
         Beside the mouth of a crack a fillet is free of stress.
         """
-        return self.loaded[j].fillet_stress(i - j, side, radius_q, half_width)
+        if i == j:
+            return self.tooth(i).fillet_stress(0, side, radius_q, half_width)
+        loads = self.tooth(j).fillet_loads(radius_q, half_width)[0].T
+        return self.kind(i).stress_follows[side] @ self._sides(i, j, loads.toarray())
 
     def largest_root_stress(
         self, i: int, j: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
@@ -118,73 +218,44 @@ class OddInfluence:
 
         Of a fillet in which a crack starts, on either side of its mouth.
         """
-        here = self.loaded[j]
-        _, above, width = here.fillet_loads(radius_q, half_width)
+        _, above, width = self.tooth(j).fillet_loads(radius_q, half_width)
         if i != j or side == "compression":
             above = np.full(above.shape, np.inf)
         stress = self.fillet_stress(i, j, side, radius_q, half_width)
         sign = 1.0 if side == "tension" else -1.0
         best, place = np.full(above.shape, -np.inf), np.zeros(above.shape)
-        for start, curve, points in self._pieces(i, side):
+        for start, curve, points in self.kind(i).pieces(side):
             value, at = curve.largest_below(stress[points], above, width)
             better = sign * value > best
             best, place = np.where(better, sign * value, best), np.where(better, at + start, place)
         return sign * best, place
 
-    def _pieces(self, i: int, side: Side) -> list[tuple[float, FilletCurve, slice]]:
-        """Start, curve and points of the pieces of a fillet: two where a crack starts in it."""
-        whole = self.loaded[i].fillet_curve(side)
-        mouth, back = self.mouths.get(i, (0.0, False))
-        if i not in self.mouths or back != (side == "compression"):
-            return [(0.0, whole, slice(None))]
-        n = int(np.searchsorted(whole.arc, mouth))
-        return [
-            (0.0, replace(whole, arc=whole.arc[:n], length=mouth), slice(0, n)),
-            (mouth, replace(whole, arc=whole.arc[n:] - mouth, length=whole.length - mouth), slice(n, None)),
-        ]
+    def by_ring(self, i: int, j: int, radius_q: ArrayLike, patch: float) -> Array:
+        """K_I and K_II by each ring of integration, shape (rings, 2, Q)."""
+        kind = self.kind(i)
+        if not kind.cracked:
+            cracked = ", ".join(str(number) for number, one in self.odd.items() if one.cracked)
+            raise InputError("tooth", i, f"has no crack; cracked: {cracked or 'none'}")
+        loads = self.tooth(j).remote(radius_q, patch)
+        found = kind.intensity_follows @ self._sides(i, j, loads)
+        return np.asarray(found + kind.intensity_own @ loads if i == j else found)
 
     def stress_intensity(self, i: int, j: int, radius_q: ArrayLike, patch: float) -> tuple[Array, Array]:
         """K_I and K_II of the crack of tooth i per unit line load at q of tooth j, and their error, (2, Q) each.
 
-        In 1/sqrt(module). The error is what the elements' last order changes, and another ring of integration.
+        In 1/sqrt(module). The error is what the elements' last order changes, and another ring of integration; no
+        number without a solution of lower order.
 
         Raises
         ------
         InputError
             If the tooth has no crack.
         """
-        if (i, j) not in self.intensity:
-            raise InputError("tooth", i, f"has no crack; cracked: {', '.join(map(str, self.mouths)) or 'none'}")
-        loads = self.loaded[j].remote(radius_q, patch)
-        usual, other = (rows @ loads for rows in self.intensity[i, j])
-        error = np.abs(usual - other)
-        if self.lower is not None:
-            below = self.lower.intensity[i, j][0] @ self.lower.loaded[j].remote(radius_q, patch)
-            error = error + np.abs(usual - below)
-        return usual, error if self.lower is not None else np.full(error.shape, np.nan)
-
-
-class _Asked(NamedTuple):
-    """What a ring is solved for, whatever its elements."""
-
-    tooth: InvoluteTooth
-    mesh: SectorMesh
-    odd: Mapping[int, OddTooth]
-    poisson_ratio: float
-    plane: Plane
-    reach: int
-    corner_distance: float
-
-
-class _Sector(NamedTuple):
-    """One kind of sector, ready for the ring."""
-
-    part: BetweenSides
-    mesh: SectorMesh
-    tooth: InvoluteTooth
-    flank: LoadedFlank
-    fillets: dict[Side, FilletStrain]
-    rows: Array  # forces on the part's ports whose work is K_I, K_II: (rings, ports, 2)
+        usual, other = self.by_ring(i, j, radius_q, patch)
+        if self.lower is None:
+            return usual, np.full(usual.shape, np.nan)
+        below = self.lower.by_ring(i, j, radius_q, patch)[0]
+        return usual, np.abs(usual - other) + np.abs(usual - below)
 
 
 @tallied("tooth shapes")
@@ -212,7 +283,7 @@ def solve_odd_influence(
     poisson_ratio : float
     plane : {"strain", "stress"}
     settings : MeshSettings
-        Whose order and corner distance are taken, and who assembles.
+        Whose order, solver and corner distance are taken.
     reach : int
         R: teeth -R..R are known; twice this and one at most z.
     two_orders : bool
@@ -225,86 +296,71 @@ def solve_odd_influence(
     FegearError
         If a stiffness is not positive definite.
     """
-    what = _Asked(tooth, mesh, odd, poisson_ratio, plane, reach, settings.corner_distance)
-    meshes = [mesh, *(one.mesh for one in odd.values())]
+    ordinary = OddTooth(tooth, mesh)
+    every = [ordinary, *odd.values()]
     with one_thread():
-        if not two_orders:
-            solver = settings.solver
-            return _solve(what, [assemble(each, poisson_ratio, plane, settings.order, solver) for each in meshes])
-        pairs = [assemble_two_orders(each, poisson_ratio, plane, settings.order, settings.solver) for each in meshes]
-        higher, lower = (_solve(what, list(each)) for each in zip(*pairs, strict=True))
-        return replace(higher, lower=lower)
+        order, solver = settings.order, settings.solver
+        if two_orders:
+            pairs = [assemble_two_orders(one.mesh, poisson_ratio, plane, order, solver) for one in every]
+            orders = [list(each) for each in zip(*pairs, strict=True)]
+        else:
+            orders = [[assemble(one.mesh, poisson_ratio, plane, order, solver) for one in every]]
+        found = []
+        for elasticity in orders:
+            started = time.perf_counter()
+            (usual, part), *others = (
+                _kind(one, each, poisson_ratio, plane) for one, each in zip(every, elasticity, strict=True)
+            )
+            kinds = {number: kind for number, (kind, _) in zip(odd, others, strict=True)}
+            parts = {number: each for number, (_, each) in zip(odd, others, strict=True)}
+            condensed = time.perf_counter()
+            ring = odd_ring(part, parts, tooth.teeth, reach)
+            seconds = {
+                "mesh": sum(one.mesh.seconds for one in every),
+                "condensation": condensed - started,
+                "ring": time.perf_counter() - condensed,
+            }
+            found.append(OddInfluence(poisson_ratio, plane, settings.corner_distance, usual, kinds, ring, seconds))
+    return replace(found[0], lower=found[1]) if two_orders else found[0]
 
 
-def _solve(what: _Asked, elasticity: list[SectorElasticity]) -> OddInfluence:
-    started = time.perf_counter()
-    usual = _sector(what, what.tooth, what.mesh, elasticity[0])
-    kinds = {
-        number: _sector(what, one.tooth, one.sector, found)
-        for (number, one), found in zip(what.odd.items(), elasticity[1:], strict=True)
-    }
-    condensed = time.perf_counter()
-    parts = {number: kind.part for number, kind in kinds.items()}
-    ring = odd_ring(usual.part, parts, what.tooth.teeth, what.reach)
-    closed = time.perf_counter()
-    every = range(-what.reach, what.reach + 1)
-    loaded = {j: _loaded(what, ring, kinds, usual, j) for j in every}
-    intensity = {
-        (i, j): np.stack([
-            ring.respond(j, kinds.get(j, usual).flank.dofs, i, kind.part.sector.kept, rows).T for rows in kind.rows
-        ])
-        for i, kind in kinds.items() if kind.rows.size
-        for j in every
-    }  # fmt: skip
-    mouths = {
-        number: (one.sector.mouth, one.sector.back)
-        for number, one in what.odd.items()
-        if isinstance(one.sector, CrackedSector)
-    }
-    seconds = {
-        "mesh": what.mesh.seconds + sum(kind.mesh.seconds for kind in kinds.values()),
-        "condensation": condensed - started,
-        "ring": closed - condensed,
-        "influence": time.perf_counter() - closed,
-    }
-    return OddInfluence(what.tooth.teeth, what.reach, loaded, intensity, mouths, seconds)
-
-
-def _sector(
-    what: _Asked, tooth: InvoluteTooth, sector: SectorMesh | CrackedSector, elasticity: SectorElasticity
-) -> _Sector:
-    mesh = sector.mesh if isinstance(sector, CrackedSector) else sector
-    margin = _MARGIN
+def _kind(
+    odd: OddTooth, elasticity: SectorElasticity, poisson_ratio: float, plane: Plane
+) -> tuple[ToothKind, BetweenSides]:
+    """Condense a sector, and gather what of it is loaded and looked at; its condensed part for the ring."""
+    tooth, mesh, cracked = odd.tooth, odd.mesh, isinstance(odd.sector, CrackedSector)
     fillets = {side: fillet_strain(mesh, elasticity, name, tooth.side) for side, name in _FILLETS.items()}
-    if isinstance(sector, CrackedSector) and not sector.back:
-        margin = min(margin, _ABOVE_MOUTH * (fillets["tension"].length - sector.mouth))
+    margin, mouth, back = _MARGIN, 0.0, False
+    if isinstance(odd.sector, CrackedSector):
+        mouth, back = odd.sector.mouth, odd.sector.back
+        margin = margin if back else min(margin, _ABOVE_MOUTH * (fillets["tension"].length - mouth))
     flank = loaded_flank(mesh, elasticity, tooth, margin)
-    ports = np.concatenate([flank.dofs, *(fillets[side].dofs for side in SIDES)])
-    cracked = isinstance(sector, CrackedSector)
-    condensed, side, turn, _ = condensed_sector(mesh, elasticity, np.unique(ports), expandable=cracked)
-    part = between_sides(condensed, side, turn)
-    rows = np.zeros((0, 0, 0))
-    if isinstance(sector, CrackedSector):
-        order = elasticity.order
-        each = [interaction(sector, what.poisson_ratio, what.plane, order, ring) for ring in RINGS]
-        rows = np.stack(np.hsplit(condensed.collect(np.hstack(each)), len(RINGS)))
-    return _Sector(part, mesh, tooth, flank, fillets, rows)
-
-
-def _loaded(what: _Asked, ring: OddRing, kinds: Mapping[int, _Sector], usual: _Sector, j: int) -> Influence:
-    here = kinds.get(j, usual)
-    modulus = 1.0 / (1.0 - what.poisson_ratio**2) if what.plane == "strain" else 1.0
-    compliance: dict[int, Array] = {}
-    stress: dict[tuple[int, Side], Array] = {}
-    for i in range(-what.reach, what.reach + 1):
-        there = kinds.get(i, usual)
-        watch = np.concatenate([there.flank.dofs, *(there.fillets[side].dofs for side in SIDES)])
-        moved = ring.respond(i, watch, j, here.flank.dofs)
-        n, t = there.flank.dofs.size, there.fillets["tension"].dofs.size
-        compliance[i - j] = np.ascontiguousarray(moved[:n])
-        stress[i - j, "tension"] = modulus * (there.fillets["tension"].strain @ moved[n : n + t])
-        stress[i - j, "compression"] = modulus * (there.fillets["compression"].strain @ moved[n + t :])
-    return Influence(
-        here.tooth, what.poisson_ratio, what.plane, here.mesh, here.flank, compliance, here.fillets, stress,
-        what.corner_distance, what.reach, here.part.sector.size, {},
-    )  # fmt: skip
+    ports = np.unique(np.concatenate([flank.dofs, *(fillets[side].dofs for side in SIDES)]))
+    condensed, side_size, turn, _ = condensed_sector(mesh, elasticity, ports, expandable=cracked)
+    part = between_sides(condensed, side_size, turn)
+    follow = np.hstack([part.follow_a, part.follow_b])
+    run = ports_of(condensed, flank.dofs)
+    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
+    rows = {side: ports_of(condensed, fillet.dofs) for side, fillet in fillets.items()}
+    intensity_follows, intensity_own = np.zeros((0, 2, follow.shape[1])), np.zeros((0, 2, run.size))
+    if isinstance(odd.sector, CrackedSector):
+        each = [interaction(odd.sector, poisson_ratio, plane, elasticity.order, ring) for ring in RINGS]
+        forces = condensed.collect(np.hstack(each)).T
+        intensity_follows = (forces @ follow).reshape(len(RINGS), 2, -1)
+        intensity_own = (forces @ part.own[:, run]).reshape(len(RINGS), 2, -1)
+    kind = ToothKind(
+        tooth=tooth,
+        mesh=mesh,
+        flank=flank,
+        fillets=fillets,
+        flank_follows=follow[run],
+        flank_own=part.own[np.ix_(run, run)],
+        stress_follows={side: modulus * (fillets[side].strain @ follow[rows[side]]) for side in SIDES},
+        stress_own={side: modulus * (fillets[side].strain @ part.own[np.ix_(rows[side], run)]) for side in SIDES},
+        intensity_follows=intensity_follows,
+        intensity_own=intensity_own,
+        mouth=mouth,
+        back=back,
+        unknowns=condensed.size,
+    )
+    return kind, part

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.fem.plane.chain import chain_of, factored
 from fegear.fem.plane.ring import closed_stiffness
-from fegear.fem.plane.sector_sides import BetweenSides, ports_of
+from fegear.fem.plane.sector_sides import BetweenSides
 
 
 @dataclass(frozen=True)
@@ -48,34 +48,10 @@ class OddRing:
         """Of what kind a sector is."""
         return self.odd.get(sector, self.ordinary)
 
-    def respond(self, watched: int, watch: Index, loaded: int, load: Index, forces: Array | None = None) -> Array:
-        """Displacements of ports of one sector under forces on ports of another.
-
-        Parameters
-        ----------
-        watched, loaded : int
-            Numbers of the sectors.
-        watch, load : ndarray of int, shape (q,) and (n,)
-            Their unknowns, each in its sector's own frame.
-        forces : ndarray, shape (n, P), optional
-            By default a unit force on each in turn.
-
-        Returns
-        -------
-        ndarray, shape (q, P)
-        """
-        there, here = self.part(watched), self.part(loaded)
-        rows, columns = ports_of(there.sector, watch), ports_of(here.sector, load)
-        drive = np.stack([here.follow_a[columns].T, here.follow_b[columns].T])
-        if forces is not None:
-            drive = drive @ forces
-        i, j, m = watched + self.reach, loaded + self.reach, drive.shape[1]
-        sides = self.motion[i : i + 2, :, j : j + 2].reshape(2 * m, 2 * m) @ drive.reshape(2 * m, -1)
-        found = np.hstack([there.follow_a[rows], there.follow_b[rows]]) @ sides
-        if watched == loaded:
-            own = there.own[rows[:, None], columns]
-            found += own if forces is None else own @ forces
-        return np.asarray(found)
+    def between(self, watched: int, loaded: int) -> Array:
+        """Motion of the sides A and B of one sector under forces on those of another, shape (2 m, 2 m)."""
+        i, j, m = watched + self.reach, loaded + self.reach, self.motion.shape[1]
+        return self.motion[i : i + 2, :, j : j + 2].reshape(2 * m, 2 * m)
 
 
 def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int, reach: int) -> OddRing:

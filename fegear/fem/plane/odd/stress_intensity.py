@@ -15,7 +15,6 @@ by 2.6 % with eight rays whatever their size.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -66,23 +65,25 @@ def interaction(
     local = np.array([sector.way, [-sector.way[1], sector.way[0]]])  # rows: along the crack, and to its left
     basis = elements.vector_basis(chosen=chosen, degree=_DEGREE)
 
-    def of_mode(mode: int) -> Any:
-        def form(v: Any, w: Any) -> Array:
-            at = np.einsum("ac,cmq->amq", local, w.x - tip[:, :, None])
-            fall = _fall(at, r1, r2)
-            slope, stress = _williams(mode, at, mu, kappa)
-            gradient = np.einsum("ac,bd,cdmq->abmq", local, local, v.grad)  # d u_a / d x_b along and across
-            strain = 0.5 * (gradient + gradient.transpose(1, 0, 2, 3))
-            own = 2.0 * mu * strain
-            own[0, 0] += lam * (strain[0, 0] + strain[1, 1])
-            own[1, 1] += lam * (strain[0, 0] + strain[1, 1])
-            found = np.einsum("ijmq,imq,jmq->mq", own, slope, fall)
-            found += np.einsum("ijmq,imq,jmq->mq", stress, gradient[:, 0], fall)
-            return np.asarray(found - np.einsum("ijmq,ijmq->mq", stress, strain) * fall[0])
+    at = np.einsum("ac,cmq->amq", local, np.asarray(basis.global_coordinates()) - tip[:, :, None])
+    found = []
+    for mode in (1, 2):
+        weight = np.einsum("ac,bd,abmq->cdmq", local, local, _weights(mode, at, (r1, r2), lam, mu, kappa))
+        found.append(LinearForm(lambda v, _w, by=weight: (by * v.grad).sum(axis=(0, 1))).assemble(basis))
+    return 0.5 * modulus * np.stack(found, axis=1)
 
-        return LinearForm(form).assemble(basis)
 
-    return 0.5 * modulus * np.stack([of_mode(1), of_mode(2)], axis=1)
+def _weights(mode: int, at: Array, ring: tuple[float, float], lam: float, mu: float, kappa: float) -> Array:
+    """By what a displacement's gradient du_a/dx_b, along the crack and to its left, enters: shape (2, 2, ...)."""
+    fall = _fall(at, *ring)
+    slope, stress = _williams(mode, at, mu, kappa)
+    # s_ij u^a_i,1 q_,j of the strain, by Hooke's law; s^a_ij u_i,1 q_,j; s^a_ij e_ij q_,1.
+    product = slope[:, None] * fall[None]
+    found = mu * (product + product.transpose(1, 0, 2, 3)) - stress * fall[0]
+    found[0, 0] += lam * (product[0, 0] + product[1, 1])
+    found[1, 1] += lam * (product[0, 0] + product[1, 1])
+    found[:, 0] += np.einsum("ijmq,jmq->imq", stress, fall)
+    return np.asarray(found)
 
 
 def _fall(at: Array, r1: float, r2: float) -> Array:
