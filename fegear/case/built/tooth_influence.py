@@ -95,6 +95,24 @@ def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
     return GearToSolve(scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None, accuracy.solver)
 
 
+def check_plane_gear(scene: Scene, name: str) -> None:
+    """Refuse a bore, or the outer circle of a ring gear, that no plane gear is solved with.
+
+    Raises
+    ------
+    RangeError
+        Under its key in the case.
+    """
+    from fegear.fem.plane.bore import check_bore
+
+    gear = scene.gears[name]
+    if scene.case.gear[name].tooth_mesh is None:
+        try:
+            check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
+        except RangeError as error:
+            raise at(f"gear.{name}", error) from None
+
+
 def solve_influence_functions(
     asked: GearToSolve, cache: SolutionCache | None = None, progress: Callable[[str], None] | None = None
 ) -> GearInfluence:

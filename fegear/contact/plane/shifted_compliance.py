@@ -104,18 +104,20 @@ class ShiftedCompliance:
 
 
 def shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
-    """The source with its loaded tooth softer by the estimated error."""
+    """The source with its loaded tooth softer by the estimated error, its neighbours by what they have of it."""
     known = base.influence
     low, high = _flank(base)
     radii = np.linspace(low, high, _POINTS)
-    return ShiftedCompliance(base, radii, known.self_error(radii, base.reference_half_width(radii)), farther=_TIP)
+    error = known.self_error(radii, base.reference_half_width(radii))
+    return ShiftedCompliance(base, radii, error, known.common_errors()[0], farther=_TIP)
 
 
 def neighbours_shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
-    """The source with its neighbours softer by their estimated error."""
+    """The source with its neighbours softer by their estimated error, its loaded tooth by what it has of it."""
     few = np.linspace(*_flank(base), 4)
     errors = (float(np.nanmax(base.influence.neighbour_error(k, few, few))) for k in range(1, base.reach + 1))
-    return ShiftedCompliance(base, few, np.zeros_like(few), max(errors, default=0.0))
+    common = base.influence.common_errors()[1] if base.reach else 0.0
+    return ShiftedCompliance(base, few, np.full_like(few, common), max(errors, default=0.0))
 
 
 def _flank(base: FiniteElementCompliance) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.errors import RangeError
+from fegear.fem.plane.bore import check_bore
 from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.curves import Curve, arc_length
 from fegear.geometry.involute_tooth import InvoluteTooth
@@ -34,12 +34,6 @@ _FEWEST_FILLET_EDGES = 4
 _SHORT_FILLET, _SHORT_FILLET_EDGES, _USUAL_FRACTION = 0.1, 8, 0.2
 #: Edges where flank and a short fillet meet go with its length, down to this share of the usual ones.
 _SHORTEST_JOINT = 0.03
-#: Bores that can be meshed. Nearer the centre the whole gear turns about its bore so freely, with the inverse square of
-#: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
-#: without number.
-_SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
-#: Outer radius of the thickest ring over its root radius: beyond, nothing changes but the number of elements.
-_LARGEST_RING = 10.0
 #: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
 _WIDEST_BORE_EDGE = 0.15
 #: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
@@ -242,58 +236,6 @@ def sector_boundary(
 
 def _reversed(chain: Chain) -> Chain:
     return Chain(chain.name, chain.vertices[:, ::-1], chain.middles[:, ::-1], -chain.tangents[:, ::-1])
-
-
-def check_bore(tooth: InvoluteTooth, bore_radius: float, module: float | None = None) -> None:
-    """Refuse bores so near the centre or the outline that elements cannot resolve what is left.
-
-    Parameters
-    ----------
-    tooth : InvoluteTooth
-    bore_radius : float
-        [modules].
-    module : float, optional
-        [m]; if given, the refusal is in millimetres.
-
-    Raises
-    ------
-    RangeError
-    """
-    root = tooth.root_radius
-    unit, name = (1.0, "modules") if module is None else (1e3 * module, "mm")
-    if tooth.internal:
-        _check_rim(root, bore_radius, unit, name)
-        return
-    lowest, highest = _SMALLEST_BORE * root, root - _THINNEST_RIM
-    if lowest <= bore_radius <= highest:
-        return
-    near = "the centre" if bore_radius < lowest else f"the root circle of radius {root * unit:.6g} {name}"
-    # rounded inward, so that what is reported is accepted
-    step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
-    raise RangeError(
-        "bore_radius",
-        f"{bore_radius * unit:.9g} {name}",
-        f"is too close to {near} for the FE mesh",
-        f"choose between {1.001 * lowest * unit:.4g} and {math.floor(highest * unit / step) * step:.6g} {name} "
-        "(radius at which the gear body is fixed to shaft or hub)",
-    )
-
-
-def _check_rim(root: float, outer: float, unit: float, name: str) -> None:
-    """Refuse the outer circle of a ring gear that is no rim's."""
-    lowest, highest = root + _THINNEST_RIM, _LARGEST_RING * root
-    if lowest <= outer <= highest:
-        return
-    rule = "is too close to" if outer < lowest else "is too far outside"
-    # rounded inward, so that what is reported is accepted
-    step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
-    raise RangeError(
-        "outer_radius",
-        f"{outer * unit:.9g} {name}",
-        f"{rule} the root circle of radius {root * unit:.6g} {name} for the FE mesh",
-        f"choose between {math.ceil(lowest * unit / step) * step:.6g} and "
-        f"{math.floor(highest * unit / step) * step:.6g} {name} (radius at which the ring is fixed)",
-    )
 
 
 def _from_the_side(fillet: Chain, tooth: InvoluteTooth) -> Chain:

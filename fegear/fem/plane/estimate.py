@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.plain import read_only
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
-from fegear.fem.plane.influence import SIDES, Influence, Side
+from fegear.fem.plane.influence import MOSTLY_TURNED, SIDES, Influence, Side
 
 #: What errors are estimated of.
 QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
@@ -44,6 +44,10 @@ _COMPRESSED = 1.15
 _NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _SMOOTH_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 1.4, 0.9
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
+#: A gear on a small bore turns as a whole by far more than its teeth give way, and of all teeth two solutions differ by
+#: the same: by the mean over the flanks of both neighbours less so many times its scatter. That is no load's error. It
+#: is looked at where that is most of what gives way.
+_SCATTERS = 3.0
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
@@ -122,8 +126,28 @@ class Estimate:
             errors[f"root_{side}"] = error / _stress_scale(value)
         return read_only({key: float(np.max(values)) for key, values in errors.items()})
 
+    @cached_property
+    def common_errors(self) -> tuple[float, float]:
+        """What of the errors of c_0, and of neighbours, all teeth have in common: the gear turns as a whole."""
+        return self._self_share * abs(self._turned), self._neighbour_share * abs(self._turned)
+
+    @cached_property
+    def _turned(self) -> float:
+        """By how much all teeth of the other solution give way less; nothing where that is no more than scatter."""
+        if not self.fine.reach:
+            return 0.0
+        r = self._samples[:_SAMPLES]
+        beside = np.stack([self.fine.neighbour(k, r, r, self.patch) for k in (1, -1)])
+        own = self.fine.self_compliance(r, self.patch, np.asarray(REFERENCE_HALF_WIDTH))
+        if beside.mean() < MOSTLY_TURNED * own.mean():
+            return 0.0
+        off = beside - np.stack([self.coarse.neighbour(k, r, r, self.patch) for k in (1, -1)])
+        mean = float(off.mean())
+        return float(np.copysign(max(abs(mean) - _SCATTERS * float(off.std()), 0.0), mean))
+
     def _self_difference(self, value: Array, radius: Array, half_width: Array) -> Array:
-        return np.abs(value - self.coarse.self_compliance(radius, self.coarse_patch, half_width))
+        coarse = self.coarse.self_compliance(radius, self.coarse_patch, half_width)
+        return np.abs(value - coarse - self._turned)
 
     @cached_property
     def _self_at_samples(self) -> tuple[Array, Array]:
@@ -134,7 +158,7 @@ class Estimate:
 
     def _self_estimate(self, difference: Array) -> Array:
         usual = _root_mean_square(self._self_at_samples[1][:_SAMPLES])
-        return self._self_share * np.maximum(difference, _USUAL * usual)
+        return self._self_share * np.maximum(difference, _USUAL * usual) + self.common_errors[0]
 
     def place_error(self, value: Array, other: Array) -> Array:
         """Error of the stress at places of a fillet under loads at several positions, shape (places, P).
@@ -159,7 +183,7 @@ class Estimate:
     def _neighbour_difference(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         value = self.fine.neighbour(k, p, q, self.patch)
         of_width = np.abs(value - self.fine.neighbour(k, p, q, 0.5 * self.patch))
-        of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch))
+        of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch) - self._turned)
         return value, _WIDTH_SHARE * of_width + self._neighbour_share * of_order
 
     @property
@@ -176,7 +200,7 @@ class Estimate:
 
     def _neighbour_estimate(self, k: int, difference: Array) -> Array:
         usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
-        return np.asarray(np.maximum(difference, _USUAL_NEIGHBOUR * usual))
+        return np.asarray(np.maximum(difference, _USUAL_NEIGHBOUR * usual)) + self.common_errors[1]
 
     def _stress_difference(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         value, place = self.fine.largest_root_stress(k, side, radius, half_width)

@@ -219,6 +219,11 @@ class GearInfluence:
         """Estimated error of `neighbour` [m^2/N], shape (P, Q)."""
         return self.neighbour_with_error(k, radius_p, radius_q)[1]
 
+    def common_errors(self) -> tuple[float, float]:
+        """What of `self_error` and `neighbour_error` all teeth have in common: rotation of the gear [m^2/N]."""
+        own, beside = (0.0, 0.0) if self.estimate is None else self.estimate.common_errors
+        return own / self.gear.material.young_modulus, beside / self.gear.material.young_modulus
+
     @functools.cached_property
     def tabulated(self) -> dict[str, Any]:
         """What has been tabulated of it, by name: for every load and relief the same, and kept as long as it is."""

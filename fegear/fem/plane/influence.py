@@ -39,6 +39,8 @@ _NARROWER = 0.6
 #: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
 #: goes with the square of that share, which is taken out, and then with higher powers of it.
 _ROOM_SHARE = 0.7
+#: Where neighbours give way by so much of what the loaded tooth does, most of it is the gear that turns on its bore.
+MOSTLY_TURNED = 0.5
 #: From how far beside the tip on a true contact keeps to Hertz's pressure [modules]: there the mating flank stiffens as
 #: fast as this one softens.
 _BESIDE_TIP = 0.15
@@ -154,7 +156,12 @@ class Influence:
         kept: tuple[object, Array] | None = self._last.get("remote")
         if kept is not None and kept[0] == key:
             return kept[1]
-        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
+        found = self._remote_at(np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float))), patch)
+        found.flags.writeable = False
+        self._last["remote"] = key, found
+        return found
+
+    def _remote_at(self, arc: Array, patch: float) -> Array:
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
         low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
         # Two pressures in such a mixture that the second moment vanishes: a concentrated load, seen from afar.
@@ -162,10 +169,7 @@ class Influence:
         narrow = np.maximum(_NARROWER * wide, 0.5 * POINT)
         loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
         share = -(narrow**2) / (wide**2 - narrow**2)
-        found = np.asarray(share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :])
-        found.flags.writeable = False
-        self._last["remote"] = key, found
-        return found
+        return np.asarray(share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :])
 
     def fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
@@ -285,11 +289,32 @@ class Influence:
         narrow = _NARROWER * wide
         places, widths = np.concatenate([arc, arc]), np.concatenate([wide, narrow])
         loads = self.flank.patches(places, widths)
-        mean = np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)
+        if self._far is None:
+            mean = np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)
+        else:
+            remote = self._remote_at(arc, patch)
+            mean = np.einsum("ip,ip->p", loads, (self.compliance[0] - self._far) @ loads)
+            mean += np.tile(np.einsum("ip,ip->p", remote, self._far @ remote), 2)
         bend = self.curvature_slope * _MEAN * np.tile(self._curvature(arc), 2) * widths
         both = mean + self.log_slope * (0.25 + np.log(widths)) - bend
         by_wide, by_narrow = both[: arc.size], both[arc.size :]
         return np.asarray(by_narrow + (by_wide - by_narrow) * (width**2 - narrow**2) / (wide**2 - narrow**2))
+
+    @cached_property
+    def _far(self) -> Array | None:
+        """What the loaded tooth has in common with its neighbours, where that is most of what gives way; else None.
+
+        On a small bore the gear turns as a whole by up to a million times what its teeth deflect. A pressure beside the
+        flank's start reaches past it, where its arm about the axis is another: there that counts for loads in their
+        exact place, as a neighbour feels them, or the difference, which shares the load between teeth, is lost.
+        """
+        if not self.reach:
+            return None
+        flank = self.flank
+        middle = np.array([0.5 * (flank.flank_start + flank.flank_end)])
+        load = flank.patches(middle, np.array([_ROOM_SHARE * 0.5 * (flank.flank_end - flank.flank_start)]))[:, 0]
+        own, beside = (float(load @ self.compliance[k] @ load) for k in (0, 1))
+        return 0.5 * (self.compliance[1] + self.compliance[1].T) if beside > MOSTLY_TURNED * own else None
 
     @property
     def curvature_slope(self) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, Mask
 from fegear.base.plain import pack, read_only, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
-from fegear.fem.plane.boundary import check_bore
+from fegear.fem.plane.bore import check_bore
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart

@@ -23,6 +23,7 @@ from fegear.case.built.solid_influence import (
 )
 from fegear.case.built.tooth_influence import (
     GearToSolve,
+    check_plane_gear,
     gear_to_solve,
     mesh_settings,
     solution_remarks,
@@ -152,6 +153,7 @@ GEAR_SOLUTION = Stage(
     inputs=gear_to_solve,
     compute=_solve,
     present=_present,
+    check=check_plane_gear,
     cites=citing(*RING),
     forecast=_forecast,
 )
