@@ -160,7 +160,7 @@ class Record:
         path, tree = mutant.path, ast.parse((ROOT / mutant.path).read_bytes())
         inner, outer = _statements(tree, mutant.line)
         if path.startswith(COMPILED):
-            found = self.executed(CALLERS, _function_lines(CALLERS))
+            found = self.executed(CALLERS, _function_lines(CALLERS)) | self.executed(path, _function_lines(path))
         elif isinstance(outer[-1], ast.FunctionDef):
             known = inner & set(self.contexts(path))  # of a line that is new: the function's
             found = self.executed(path, known or set(range(outer[-1].lineno, outer[-1].end_lineno + 1)))
