@@ -35,6 +35,7 @@ def test_a_root_is_where_the_polynomial_falls_through_zero(seed, sign):
     steep = polynomial.polymul([1.0, *chance.uniform(0.1, 2.0, 2)], [root, -1.0])
     found = _root(sign * steep, 0.0, 1.0, sign)
     assert found == pytest.approx(root, rel=1e-13)
+    assert sign * value_at(sign * steep, found) <= 0.0  # not a last digit before it: what closes there is closed
 
 
 def wanted(row, h, sign, moment):

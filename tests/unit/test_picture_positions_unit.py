@@ -1,0 +1,19 @@
+"""Roll positions that a moving picture of the stress in mesh needs."""
+
+import numpy as np
+
+from fegear.results.pair.stress_in_mesh import picture_positions
+
+
+def test_both_sides_of_every_jump_the_ends_and_the_one_asked_for_are_kept():
+    roll = np.array([0.0, 1e-7, 0.001, 0.002, 0.003, 0.3, 0.3 + 1e-7, 0.301, 0.9, 0.9 + 1e-7])
+    assert picture_positions(roll, 1.0, 0.002).tolist() == [0, 1, 3, 5, 6, 8, 9]
+    assert picture_positions(roll, 1.0, 9.0).tolist() == [0, 1, 5, 6, 8, 9]
+
+
+def test_even_positions_are_thinned_to_the_step():
+    roll = np.linspace(0.0, 1.0, 1001)
+    chosen = picture_positions(roll, 1.0, -1.0)
+    assert (chosen[0], chosen[-1]) == (0, 1000)
+    gaps = np.diff(chosen)
+    assert gaps[:-1].min() == gaps[:-1].max() > 1
