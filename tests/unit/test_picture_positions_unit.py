@@ -16,4 +16,4 @@ def test_even_positions_are_thinned_to_the_step():
     chosen = picture_positions(roll, 1.0, -1.0)
     assert (chosen[0], chosen[-1]) == (0, 1000)
     gaps = np.diff(chosen)
-    assert gaps[:-1].min() == gaps[:-1].max() > 1
+    assert set(gaps[:-1]) == {19, 20}  # 0.019 of a pitch, or one more where that rounds up
