@@ -13,13 +13,13 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.printed import percent
-from fegear.base.shown import shown
+from fegear.base.shown import declared, shown, shown_as
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, PHASED_HARMONICS, set_pair
 from fegear.dynamics.planetary.kinematics import axial_forces
 from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
 from fegear.dynamics.planetary.phases import phasing
-from fegear.dynamics.planetary.planet_loads import force_on, planet_loads
+from fegear.dynamics.planetary.planet_loads import PlanetLoads, force_on, planet_loads
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.dynamics.planetary.set_cycle import MeshedSet, mean_force, set_cycle
 from fegear.engine.citation import Citation, citing
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.phases import Phasing
-    from fegear.dynamics.planetary.planet_loads import PlanetLoads
     from fegear.dynamics.planetary.planet_set import Central
     from fegear.dynamics.planetary.set_cycle import MeshTeeth, SetCycle
     from fegear.dynamics.train.excitation import MeshExcitation
@@ -215,7 +214,7 @@ class PlanetCycle:
     """Load of one planet over the mesh cycle, and its error where the teeth have one; shape (M,)."""
 
     error: Array | None
-    s: Array = shown("", "mesh position, in base pitches")
+    s: Array = shown_as(declared(PlanetLoads, "s"))
     load: Array = shown("N", "mesh force of this planet, along the line of action")
 
     @property

@@ -29,11 +29,14 @@ from fegear.results.planetary.planet_load_sharing import meshed_set, needs_meshe
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_set import Central
+    from fegear.dynamics.planetary.set_modes import SetModes
     from fegear.dynamics.planetary.set_response import ForcedResponse, LinearSet
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
@@ -137,17 +140,6 @@ class Body:
 
 
 @dataclass(frozen=True)
-class StrainEnergy:
-    """Where the strain energy of the modes that move sits, modes of one frequency once; shape (modes,)."""
-
-    labels: tuple[str, ...]
-    mode: NDArray[np.intp] = shown("", "modes that are drawn")
-    sun_mesh: Array = shown("", "strain energy share of the sun meshes")
-    ring_mesh: Array = shown("", "strain energy share of the ring meshes")
-    elsewhere: Array = shown("", "strain energy share of pins and bearings")
-
-
-@dataclass(frozen=True)
 class ShownModes:
     """Natural modes and bodies as they are shown."""
 
@@ -164,14 +156,11 @@ class ShownModes:
         return {str(k): Mode(float(off), kind, float(hz)) for k, (hz, off, kind) in enumerate(every) if hz > 0.0}
 
     @property
-    def energy(self) -> StrainEnergy:
-        """Of the modes that are drawn."""
-        data = self.linear.modes
-        other = np.append(True, np.diff(data.frequency) > 1e-8 * data.frequency[-1])
-        own = np.flatnonzero((data.frequency > 0.0) & other)
-        labels = tuple(f"{data.frequency[k] * 1e-3:.3g}\n{data.kind[k][0].upper()}" for k in own)
-        sun, ring = data.sun_mesh, data.ring_mesh
-        return StrainEnergy(labels, np.arange(own.size), sun[own], ring[own], (1.0 - sun - ring)[own])
+    def drawn(self) -> NDArray[np.intp]:
+        """Modes that move, of those of one frequency the first."""
+        frequency = self.linear.modes.frequency
+        other = np.append(True, np.diff(frequency) > 1e-8 * frequency[-1])
+        return np.flatnonzero((frequency > 0.0) & other)
 
 
 def _shown_modes(linear: LinearSet, inputs: VibrationInputs) -> ShownModes:
@@ -183,6 +172,22 @@ def _shown_modes(linear: LinearSet, inputs: VibrationInputs) -> ShownModes:
 def _kinds(seen: Seen) -> str:
     """How many modes of each kind there are."""
     return ", ".join(f"{count} of type {kind}" for kind, count in Counter(seen.data.linear.modes.kind).items())
+
+
+def _types(seen: Seen) -> Axis:
+    """Frequencies of the modes that are drawn, and a letter for their types."""
+    data = seen.data.linear.modes
+    labels = (f"{data.frequency[k] * 1e-3:.3g}\n{data.kind[k][0].upper()}" for k in seen.data.drawn)
+    return Axis("natural frequency [kHz] and type", categories=tuple(labels))
+
+
+def _energy(k: int, label: str, share: Callable[[SetModes], Array]) -> Line:
+    """Bars of the share of the strain energy that sits in one kind of springs."""
+    return Line(
+        "linear.modes.sun_mesh", label, f"series:{k}", x="mode", kind="bars",
+        si=lambda seen: share(seen.data.linear.modes)[seen.data.drawn],
+        x_si=lambda seen: np.arange(seen.data.drawn.size),
+    )  # fmt: skip
 
 
 _MODES = Sheet(
@@ -211,17 +216,15 @@ _MODES = Sheet(
             "M: mixed mode.",
             (
                 Over(
-                    lambda seen: Axis("natural frequency [kHz] and type", categories=seen.data.energy.labels),
-                    tuple(
-                        Line(quantity, label, f"series:{k}", x="mode", kind="bars")
-                        for k, (quantity, label) in enumerate((
-                            ("sun_mesh", "sun meshes"), ("ring_mesh", "ring meshes"), ("elsewhere", "pins and bearings")
-                        ))
+                    _types,
+                    (
+                        _energy(0, "sun meshes", lambda modes: modes.sun_mesh),
+                        _energy(1, "ring meshes", lambda modes: modes.ring_mesh),
+                        _energy(2, "pins and bearings", lambda modes: 1.0 - modes.sun_mesh - modes.ring_mesh),
                     ),
                     Axis("strain energy share", limits=(0.0, 1.0)), panel={"stacked": True},
                 ),
             ),
-            of="energy",
         ),
     ),
     remarks=(
