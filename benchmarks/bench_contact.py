@@ -16,10 +16,10 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import relief_chart
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
+from fegear.geometry.external_tooth import Tooth
 gears = [Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25)), 3e-3, b, 10e-3) for z, b in ((23, 0.015), (57, 0.04))]
 sources = [finite_element_compliance(solve_gear(g, reach=2, estimate_error=False)) for g in gears]
 e = Engagement(PairCompliance(GearPair(*gears), *sources))

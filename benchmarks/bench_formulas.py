@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fegear.formulas.sources import SOURCES, root_stress_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def usual() -> Gear:

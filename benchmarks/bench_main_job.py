@@ -18,14 +18,14 @@ import pytest
 
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.loaded_gear import loaded_gear
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import level_for, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.whole_gear import whole_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.plane_mesh_files import write_inp
 
 CASE = Path(__file__).parents[1] / "cases" / "lin_table1.toml"

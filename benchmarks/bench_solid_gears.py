@@ -15,7 +15,7 @@ import numpy as np
 from fegear.base.one_thread import one_thread
 from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.settings import solid_settings
-from fegear.geometry.tooth import Tooth
+from fegear.geometry.external_tooth import Tooth
 
 GEARS = [(28, 4.0), (28, 8.0), (28, 16.0), (17, 8.0), (60, 8.0), (150, 8.0)]
 

@@ -19,13 +19,13 @@ import numpy as np
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.root_stress_history import root_stress_history
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MODULE = 3.175e-3
 LOAD = 350.0  # N on 1 mm of face

@@ -23,10 +23,10 @@ from fegear.fem.solid.settings import solid_settings
 from fegear.fem.solid.solution import solve_solid
 from fegear.formulas.agma.agma908 import bending_factor
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, virtual_contact_ratio
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 if TYPE_CHECKING:
     from fegear.contact.wide.lines import ContactLines

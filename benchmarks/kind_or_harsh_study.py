@@ -29,9 +29,9 @@ from fegear.engine.figure.items import Curve, Mark, Zone
 from fegear.engine.figure.panel import Panel
 from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.draw_png import draw_pictures
 from fegear.results.gear.root_stress_spread import fe_error, sentences, spread, spread_figure
 

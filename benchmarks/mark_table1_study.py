@@ -36,8 +36,8 @@ from skfem.models.elasticity import linear_elasticity
 import fegear
 from fegear.case.reading import read_scene
 from fegear.fem.plane.elasticity import lame
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.whole_gear import whole_gear
 
 if TYPE_CHECKING:

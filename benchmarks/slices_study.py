@@ -23,10 +23,10 @@ from fegear.engine.figure.panel import Panel
 from fegear.fem.solid.settings import solid_settings
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.draw_png import draw_pictures
 
 if TYPE_CHECKING:

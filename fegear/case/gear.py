@@ -29,11 +29,11 @@ from fegear.case.part import (
 from fegear.case.relief import BiasPart, LeadPart, MeasuredPart, ReliefPart, SpacingErrorsPart, TopographyPart
 from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.over_balls import over_balls
 from fegear.geometry.plausible import refuse_material
-from fegear.geometry.tooth import Tooth
 
 #: Names of the geometry layer that a case file calls otherwise.
 _KEYS = {

@@ -78,7 +78,8 @@ _SUFFIXES = (".rexs", ".rexsj", ".rexsz", ".zip", ".xml", ".json")
 #: Kinds of fegear itself; the first reads what no other kind claims by its suffix.
 IMPORTERS: Mapping[str, Importer] = MappingProxyType({
     "rexs": Importer(
-        (), "REXS 1.0 to 1.7: XML, JSON or archive", "fegear.exchange.rexs.gearbox:read_case", ("load_case", "spectrum")
+        (), "REXS 1.0 to 1.7: XML, JSON or archive", "fegear.exchange.rexs.model_to_case:read_case",
+        ("load_case", "spectrum"),
     ),
 })  # fmt: skip
 

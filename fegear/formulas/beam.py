@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.formulas.root_section import LoadLine
     from fegear.geometry.curves import Curve
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.external_tooth import Tooth
 
 #: Nodes per smooth piece; 32 leave 1e-12 of every integral even under sharp fillets (tests hold it to that).
 NODES = 32

@@ -31,8 +31,8 @@ from fegear.formulas.cornell_heywood import RootSection, critical_angle, lever
 from fegear.formulas.hertz import Plane
 from fegear.formulas.outcome import ComplianceSource, ToothCompliance
 from fegear.formulas.root_section import fillet_parameter, load_line, tangent_range
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 
 #: Tangent angle of the fillet at which Cornell builds the beam in [rad].
 FOUNDATION_TANGENT = math.radians(75.0)

@@ -28,7 +28,7 @@ from fegear.formulas.root_section import (
     sharpest_fillet_radius,
     tangent_range,
 )
-from fegear.geometry.tooth import Tooth
+from fegear.geometry.external_tooth import Tooth
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
 from fegear.formulas.root_section import lewis_section, sharpest_fillet_radius
-from fegear.geometry.tooth import Tooth
+from fegear.geometry.external_tooth import Tooth
 
 #: Pressure angle [deg]: constant, exponent of t/r, exponent of t/h.
 CONSTANTS = {14.5: (0.22, 0.20, 0.40), 20.0: (0.18, 0.15, 0.45)}

@@ -23,7 +23,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
 from fegear.formulas.root_section import fillet_point, fillet_radii, load_line
-from fegear.geometry.tooth import Tooth
+from fegear.geometry.external_tooth import Tooth
 
 #: Of the polynomial through the stress beside its largest value, over a 64th of the fillet.
 _DEGREE = 8

@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError, FegearError, InputError, RangeError
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 
 T = TypeVar("T")
 

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.geometry.curves import Trochoid
-from fegear.geometry.tooth import Tooth
+from fegear.geometry.external_tooth import Tooth
 
 #: A fillet sharper than this [modules] is a corner.
 SHARPEST = 1e-6

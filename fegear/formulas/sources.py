@@ -24,8 +24,8 @@ from fegear.formulas import cornell_heywood, dolan_broghamer, hertz, heywood, po
 from fegear.formulas.agma import agma908
 from fegear.formulas.iso6336 import part3_root_stress
 from fegear.formulas.outcome import ComplianceSource, Outcome, RootStress, RootStressSource, attempt
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 SOURCES: dict[str, ComplianceSource] = {
     s.name: s for s in (cornell_compliance.SOURCE, weber_banaschek.SOURCE, potential_energy.SOURCE)
@@ -46,7 +46,7 @@ def source(name: str) -> ComplianceSource:
 
 
 @dataclass(frozen=True, slots=True)
-class PairCompliance(ReadOnlyArrays):
+class PairFormulaCompliance(ReadOnlyArrays):
     """Deflection of one tooth pair over contact positions, shape (N,), per unit face width.
 
     Parameters
@@ -81,7 +81,9 @@ class PairCompliance(ReadOnlyArrays):
         return 1.0 / self.total
 
 
-def pair_compliance(source: ComplianceSource, pair: GearPair, x: ArrayLike, line_load: ArrayLike) -> PairCompliance:
+def pair_compliance(
+    source: ComplianceSource, pair: GearPair, x: ArrayLike, line_load: ArrayLike
+) -> PairFormulaCompliance:
     """Compliance of one tooth pair at contact positions x [m] under `line_load` > 0 [N/m] along the line of action.
 
     Raises
@@ -101,7 +103,7 @@ def pair_compliance(source: ComplianceSource, pair: GearPair, x: ArrayLike, line
     half_width = hertz.line_contact(w, curvature, modulus).half_width
     contact = (source.contact(a, radii[0], w, half_width) + source.contact(b, radii[1], w, half_width)) / w
     driver, driven = (np.array(source.tooth(g, r).total) for g, r in zip((a, b), radii, strict=True))
-    return PairCompliance(position.copy(), w.copy(), driver, driven, contact, half_width)
+    return PairFormulaCompliance(position.copy(), w.copy(), driver, driven, contact, half_width)
 
 
 ROOT_STRESS_SOURCES: dict[str, RootStressSource] = {

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.tip_interference import interference
-from fegear.geometry.tooth import Tooth
 
 #: Least normal tooth thickness at the tip circle in modules; case-hardened teeth want 0.4.
 LEAST_TIP_THICKNESS = 0.2

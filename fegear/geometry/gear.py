@@ -9,12 +9,12 @@ from typing import Literal
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.shown import shown, shows
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.mass import MassProperties, mass_properties
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 from fegear.geometry.rim_support import RimSupport
-from fegear.geometry.tooth import Tooth
 
 Plane = Literal["strain", "stress"]
 Hand = Literal["left", "right", "spur"]

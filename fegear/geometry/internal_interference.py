@@ -15,10 +15,10 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, leaving_margin
 from fegear.geometry.involute import inv
 from fegear.geometry.involute_tooth import InvoluteTooth
-from fegear.geometry.tooth import Tooth
 
 #: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet, and of a
 #: tip's chamfer or rounding.

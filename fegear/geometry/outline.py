@@ -20,11 +20,11 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.geometry.curves import Arc, Drawn, Involute, Line
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.relief import Relief
-from fegear.geometry.tooth import Tooth
 
 _LARGEST_COUNT = 1 << 14
 

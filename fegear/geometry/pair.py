@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.base.shown import shown, shows
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
-from fegear.geometry.tooth import Tooth
 
 if TYPE_CHECKING:
     from fegear.geometry.internal_interference import InternalCheck

@@ -35,10 +35,10 @@ def _plane_pair(corner: bool) -> Engagement:
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.maker import load_plane
     from fegear.fem.plane.solution import solve_gear
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     tooth, module = Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3
     gear = Gear(tooth, module, tooth.root_radius * module / 2.0, 1e-3)
@@ -198,8 +198,8 @@ def _solid(case: str) -> tuple[Any, dict[str, Any]]:
     from fegear.fem.solid.bands import bands
     from fegear.fem.solid.settings import SolidSettings
     from fegear.fem.solid.solution import solve_solid
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     tooth, half = Tooth(10, BasicRack(1.0, 1.25, 0.25), 0.55), 2.0
     twist = math.tan(math.radians(kept("solid_calculix")[case]["helix_angle"])) / tooth.pitch_radius
@@ -265,9 +265,9 @@ def _on_a_web(which: str) -> tuple[Any, list[Any]]:
 
 
 def _web_gear(which: str) -> tuple[Any, Any]:
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear_body import GearBody, WebHoles
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     web = (-0.5, 0.5) if which in ("middle", "holes") else (-1.5, -0.5)
     lean = math.tan(math.radians(20.0)) if which == "inclined" else 0.0
@@ -361,10 +361,10 @@ _PLACES = {"two whole lines": 0.25, "a line that ends at the tip": 0.02}
 def _flanks() -> tuple[GearPair, dict[Member, Any]]:
     from fegear.fem.solid.settings import solid_settings
     from fegear.fem.solid.solution import solve_solid
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear, Material
     from fegear.geometry.pair import MEMBERS, GearPair
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     tooth = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.0, helix_angle=math.radians(12.0))
     bore = 0.5 * tooth.root_radius * 1e-3

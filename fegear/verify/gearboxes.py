@@ -78,8 +78,8 @@ _DIAMETERS = {"in": 0.022, "mid": 0.025, "out": 0.028}
 
 
 def _helical(teeth: int, hand: Literal["left", "right"]) -> Gear:
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear, Material
-    from fegear.geometry.tooth import Tooth
 
     return Gear(Tooth(teeth, helix_angle=math.radians(15.0)), 3e-3, 11e-3, 20e-3, Material(E, NU), hand=hand)
 
@@ -241,10 +241,10 @@ def friction_loss() -> Iterator[Compared]:
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.friction import friction_over_path
     from fegear.dynamics.train.gear_train import TrainMesh
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear
     from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
     from fegear.geometry.pair import GearPair
-    from fegear.geometry.tooth import Tooth
 
     pinion: Gear = Gear(Tooth(25), 2e-3, 15e-3, 20e-3)
     wheel: Gear = Gear(Tooth(60), 2e-3, 40e-3, 20e-3)

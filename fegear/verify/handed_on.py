@@ -101,7 +101,7 @@ def rexs() -> Iterator[Compared]:
     import tomllib
 
     from fegear.case.reading import build_scene
-    from fegear.exchange.rexs.gearbox import case_of
+    from fegear.exchange.rexs.model_to_case import case_of
     from fegear.exchange.rexs.reading import model_of
     from fegear.exchange.rexs.written_gearbox import model_text
 

@@ -60,8 +60,8 @@ def internal_teeth_rolled() -> Iterator[Compared]:
 @ROWS.add("external teeth as cut", "own", "the rack's tip circle rolled in small steps, without an equation of meshing")
 def fillets_rolled() -> Iterator[Compared]:
     """Depth of the trace of the tip circle at the fillet's points of four gears, in modules."""
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     for z, shift in ((12, 0.4), (20, 0.0), (43, 0.25), (90, -0.3)):
         tooth = Tooth(z, BasicRack(1.0, 1.25, 0.25), shift)
@@ -226,8 +226,8 @@ def tooth_beam() -> Iterator[Compared]:
 
     from fegear.formulas import beam
     from fegear.formulas.root_section import load_line
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     for z in (10, 28, 120):
         tooth = Tooth(z, BasicRack(1.0, 1.25, 0.25), tip_radius=z / 2 + 0.95)

@@ -16,9 +16,9 @@ from scipy.optimize import brentq
 
 from fegear.base.arrays import Array
 from fegear.dynamics.planetary.planet_set import PlanetarySet
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 from fegear.geometry.outline import tooth_outline
-from fegear.geometry.tooth import Tooth
 
 Flank = tuple[Array, Array]
 

@@ -53,10 +53,10 @@ def _rating_rows() -> list[Row]:
 
 def _pair(z1: int, z2: int, helix: float = 0.0, face: float = 1.5 * INCH) -> GearPair:
     """Gears of AGMA's tables: 20 degrees, h_ao 1.25, r_ao .25, thinning .024, ten teeth per inch."""
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear, Material
     from fegear.geometry.pair import GearPair
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     # E that makes Z_E the 2300 sqrt(psi) of Shigley, with nu = .3.
     steel = Material(young_modulus=2300.0**2 * PSI * 2.0 * math.pi * 0.91, poisson_ratio=0.3)
@@ -150,9 +150,9 @@ def iso6336_6_annex_c() -> Iterator[Compared]:
 
 
 def _spur(z: int, shift: float = 0.0, module: float = 1e-3) -> Gear:
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     return Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25), shift), module, 0.2 * z * module)
 
@@ -172,10 +172,10 @@ def pins_and_span() -> Iterator[Compared]:
 @ROWS.add("geometry of a planetary set", "printed", "KISSsoft 03/2017 report on the NREL 5 MW gearbox, stage 2")
 def planetary_set_18_36_93() -> Iterator[Compared]:
     """Working angle and contact ratio of planet and ring, tip circle of the ring."""
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear
     from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
     from fegear.geometry.pair import GearPair
-    from fegear.geometry.tooth import Tooth
 
     planet, ring = (
         Tooth(36, profile_shift=0.5039, tip_radius=815.66 / 42),
@@ -299,8 +299,8 @@ def _fzg(
     teeth: tuple[int, int], module: float, shifts: tuple[float, float], tips: tuple[float, float], helix: float = 0.0,
     face: float = 14e-3,
 ) -> GearPair:  # fmt: skip
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     rack, gears = BasicRack.named("A", math.radians(20.0)), []
     hands: tuple[Hand, Hand] = ("right", "left") if helix else ("spur", "spur")

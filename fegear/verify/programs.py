@@ -33,8 +33,8 @@ def _ring_of_60() -> tuple[Estimate, dict[str, Any], Array]:
 
     from fegear.fem.plane.estimate import Estimate
     from fegear.fem.plane.influence import solve_influence
-    from fegear.fem.plane.sector import mesh_sector
     from fegear.fem.plane.settings import settings_at
+    from fegear.fem.plane.tooth_meshing import mesh_sector
     from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 
     known = kept("ring_prototype")["case"]
@@ -202,10 +202,10 @@ def din3990_root_form() -> Iterator[Compared]:
 def ross_potential_energy() -> Iterator[Compared]:
     """Contact ratio and contact stiffness; mesh stiffness within 5 %, since the codes draw the root on their own."""
     from fegear.formulas.sources import pair_compliance, source
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear, Material
     from fegear.geometry.pair import GearPair
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     tooth = Tooth(62, BasicRack(1.0, 1.25, 0.38))
     gear: Gear = Gear(tooth, 2e-3, 17.5e-3, 20e-3, Material(206e9, 0.3, 7810.0), "stress")

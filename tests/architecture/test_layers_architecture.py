@@ -47,7 +47,7 @@ LAYERS = {
 
 #: Where each heavy library may be imported.
 DOORS = {
-    "gmsh": ["fegear.fem.plane.sector"],
+    "gmsh": ["fegear.fem.plane.tooth_meshing"],
     "skfem": [
         "fegear.fem.forms",
         "fegear.fem.plane.curved_map",
@@ -168,21 +168,21 @@ def test_results_know_no_pictures(imports):
 @pytest.mark.parametrize(
     ("importer", "source", "fault"),
     [
-        ("fegear.geometry.tooth", "def f():\n    from fegear.fem import ring", "layer"),
-        ("fegear.fem.plane.ring", "import fegear.formulas.hertz", "layer"),
+        ("fegear.geometry.external_tooth", "def f():\n    from fegear.fem import ring", "layer"),
+        ("fegear.fem.plane.ring_closure", "import fegear.formulas.hertz", "layer"),
         (
             "fegear.engine.plan",
             "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fegear import output",
             "layer",
         ),
-        ("fegear.fem.plane.ring", "import gmsh", "door"),
+        ("fegear.fem.plane.ring_closure", "import gmsh", "door"),
         ("fegear.contact.sharing", "def f():\n    import matplotlib.pyplot as plt", "door"),
         ("fegear.contact.sharing", "import importlib\nimportlib.import_module('pyvista')", "door"),
-        ("fegear.geometry.tooth", "from .. import cli", "layer"),
+        ("fegear.geometry.external_tooth", "from .. import cli", "layer"),
     ],
 )
 def test_the_walk_finds_what_it_must_find(importer, source, fault):
-    known = {"fegear.fem", "fegear.fem.plane.ring", "fegear.formulas.hertz", "fegear.output", "fegear.cli"}
+    known = {"fegear.fem", "fegear.fem.plane.ring_closure", "fegear.formulas.hertz", "fegear.output", "fegear.cli"}
     found = source_tree.imports_of(importer, source, known, is_package=False)
     assert (layer_faults(found) if fault == "layer" else door_faults(found)) != []
 

@@ -25,10 +25,10 @@ from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, rate_spur
 from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]

@@ -16,9 +16,9 @@ from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas import hertz
 from fegear.formulas.root_section import load_line
 from fegear.formulas.sources import SOURCES, root_stress_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 M = 3.175e-3
 PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.34225, 0.22972), thickness_allowance=0.04203926)

@@ -14,7 +14,7 @@ from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of
 from fegear.results.catalogue import STAGES
 

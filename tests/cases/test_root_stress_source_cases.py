@@ -17,8 +17,8 @@ from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 

@@ -9,8 +9,8 @@ from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.geometry.checks import tip_thickness
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 STUB = {"addendum": 0.6, "dedendum": 1.25, "tip_radius": 0.25}

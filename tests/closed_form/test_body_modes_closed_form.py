@@ -20,8 +20,8 @@ from scipy.special import iv, jv, kv, yv
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.solid import body_modes as module
 from fegear.fem.solid.settings import SolidSettings
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TEETH, INNER, OUTER, NU = 24, 2.5, 5.0, 0.3
 THIN = 0.05

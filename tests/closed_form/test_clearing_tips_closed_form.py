@@ -9,9 +9,9 @@ import pytest
 
 import fegear
 from fegear.base.errors import InputError
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_interference import clearing_tips, internal_checks
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
-from fegear.geometry.tooth import Tooth
 
 
 def polygons():

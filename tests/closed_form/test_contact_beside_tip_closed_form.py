@@ -8,12 +8,12 @@ import pytest
 from scipy.optimize import nnls
 
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.table import stiffness_table
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import lagrange
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
-from fegear.geometry.tooth import Tooth
 
 #: Parts of an edge on which the pressure is linear: fewer than its nodes, so that each is felt by itself.
 _PARTS = 2

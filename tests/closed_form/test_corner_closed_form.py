@@ -13,8 +13,8 @@ from fegear.fem.plane.contact_width import corner_angles, wedge_slope
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
-from fegear.geometry.tooth import Tooth
 
 
 @given(st.floats(0.3, 3.1))

@@ -15,11 +15,11 @@ from fegear.base.errors import InputError
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.gear_field import _nodal_stress
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
-from fegear.fem.plane.ring import close_ring
-from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.settings import LEVEL_RATIO, MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 _spec = importlib.util.spec_from_file_location(
     "textbook_elements", Path(__file__).parents[1] / "other_codes" / "textbook_elements.py"

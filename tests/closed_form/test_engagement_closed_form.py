@@ -14,11 +14,11 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.meshing import Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import contact_changes, pair_stiffness, revolution, transmission_error
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief, roll_of_radius, tip_relief
-from fegear.geometry.tooth import Tooth
 
 
 def gear(z, x=0.0, addendum=1.0, **tooth):

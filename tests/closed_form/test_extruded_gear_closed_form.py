@@ -8,12 +8,12 @@ import pytest
 
 from fegear.base.errors import InputError, RangeError
 from fegear.fem.plane.gear_section import gear_section, paired, uneven_section
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.extruded import extruded, graded_stations, pressed_band, serendipity
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.solid_mesh_files import pressed_gear, write_solid_inp, write_solid_vtu
 
 TOOTH = Tooth(10, BasicRack(1.0, 1.25, 0.25), 0.55)

@@ -11,10 +11,10 @@ from fegear.formulas.hardened_case import HardenedCase, depth_of, lang_hardness,
 from fegear.formulas.hertz import stresses_below
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, exposure, half_width, mean_shear
 from fegear.formulas.iso6336.part5_materials import crushing_depth, recommended
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def flamant(x, z, steps=20000):

@@ -17,10 +17,10 @@ from fegear.design.flanks.topography import (
     topography,
 )
 from fegear.design.loading import LoadingFunction, Ramp
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MODULE, WIDTH = 3e-3, 9e-3
 

@@ -15,10 +15,10 @@ from fegear.dynamics.train.friction import benedict_kelley, buckingham, friction
 from fegear.dynamics.train.gear_train import TrainMesh, a_drives
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Mesh
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 INCH, POUND = 0.0254, 4.4482216152605
 BASE, ANGLE = 0.04177, math.radians(20.0)

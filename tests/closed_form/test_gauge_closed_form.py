@@ -10,9 +10,9 @@ from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet, Grid, grid_wei
 from fegear.fem.plane.root_stress import smooth_curve
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 #: Gauss points of 12 uneven edges.
 _EDGES = np.cumsum(np.concatenate([[0.0], 0.05 + 0.02 * np.sin(np.arange(12))]))

@@ -18,10 +18,10 @@ from fegear.fem.solid.extruded import extruded
 from fegear.fem.solid.influence import contact_line
 from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.fem.solid.solution import section_mesh, solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.1)
 WIDTH, BORE, NU = 4.0, 3.0, 0.3

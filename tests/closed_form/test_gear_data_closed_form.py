@@ -10,6 +10,7 @@ from matplotlib.path import Path
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.reading import build_scene
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.gear_data import measured
 from fegear.geometry.inspection import span
@@ -17,7 +18,6 @@ from fegear.geometry.outline import gear_outline
 from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import GearPair, active_profile, path_points, specific_sliding
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.gear.drawing import in_mesh
 from fegear.results.gear.geometry import drawing_of, pair_table, unmeasured_remarks
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from fegear.fem.revolved_body import RevolvedBody, condensed
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gear_on_shaft import GearOnShaft

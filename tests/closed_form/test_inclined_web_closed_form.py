@@ -20,10 +20,10 @@ from fegear.fem.solid.field import solid_field
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.body_along import body_along
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(18, BasicRack(1.0, 1.25, 0.25), 0.1)
 WIDTH, BORE, NU = 2.4, 3.0, 0.3

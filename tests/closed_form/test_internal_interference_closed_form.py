@@ -17,10 +17,10 @@ from scipy.optimize import brentq
 
 from fegear.base.errors import GeometryError
 from fegear.dynamics.planetary.planet_set import PlanetarySet, even_angles
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_interference import TipCorner, internal_checks, radial_room
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.involute import inv, pressure_angle_of_inv
-from fegear.geometry.tooth import Tooth
 
 ALPHA = math.radians(20.0)
 #: Pairs near each limit, in the ordinary run and in the long one.

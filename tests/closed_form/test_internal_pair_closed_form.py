@@ -22,11 +22,11 @@ from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import minimum_excitation
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.outline import tooth_outline
 from fegear.geometry.pair import GearPair, active_profile, specific_sliding
-from fegear.geometry.tooth import Tooth
 
 MODULE = 4e-3
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import GeometryError
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
-from fegear.geometry.tooth import Tooth
 from fegear.verify.own import random_internal_teeth
 from fegear.verify.rolled import nearest
 

@@ -8,9 +8,9 @@ import pytest
 from fegear.base.errors import FegearError, RangeError
 from fegear.formulas.iso6336.part3_internal import outline_root_form, ring_root_form, ring_tooth
 from fegear.formulas.iso6336.part3_root_stress import rack_tooth, root_form
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.outline import tooth_outline
-from fegear.geometry.tooth import Tooth
 
 
 def test_external_teeth_have_the_form_of_the_racks_formulas():

@@ -13,10 +13,10 @@ from fegear.formulas.iso6336.part1_stiffness import stiffness
 from fegear.formulas.iso6336.part3_internal import ring_root_form, ring_tooth
 from fegear.formulas.iso6336.part3_root_stress import ring_rim_factor
 from fegear.formulas.iso6336.part5_materials import crushing_depth
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 
 def random_pairs(count, seed, helix=0.0):

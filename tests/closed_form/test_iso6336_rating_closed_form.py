@@ -11,10 +11,10 @@ from fegear.formulas.iso6336 import part1_face_load as misalignment
 from fegear.formulas.iso6336 import part2_pitting as contact
 from fegear.formulas.iso6336.pair_geometry import of_pair
 from fegear.formulas.iso6336.part1_face_load import PinionShaft
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def gear(z: int, beta: float = 0.0, hand: str = "spur", x: float = 0.0) -> Gear:

@@ -18,11 +18,11 @@ from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.fem.solid.influence import contact_line, solid_influence
 from fegear.fem.solid.settings import solid_settings
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.geometry.tooth import Tooth
 
 MODULE = 2e-3
 

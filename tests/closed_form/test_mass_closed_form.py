@@ -9,12 +9,12 @@ import pytest
 from solids import of_gear, of_teeth
 
 from fegear.base.errors import FegearError
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.mass import section_moments
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def _edge(rng):

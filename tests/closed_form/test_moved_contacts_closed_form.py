@@ -7,9 +7,9 @@ import pytest
 from numpy.polynomial import chebyshev
 from scipy.optimize import fsolve
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 from tests.helpers.moved_contacts import flank_gap, moved_less
 
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.gear.drawing import moving_pair
 
 

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from fegear.base.errors import GeometryError
 from fegear.case.gear import RackPart
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.formulas.iso6336 import part3_root_stress as iso
 from fegear.formulas.root_section import section_at_tangent
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 DEG = math.pi / 180.0
 

@@ -19,11 +19,11 @@ from fegear.design.minimum_excitation import minimum_excitation, relief_nodes, r
 from fegear.design.oil_film import Coated, OilFilm
 from fegear.design.quick_sharing import quick_sharing
 from fegear.design.relief_bench import bench
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import TabulatedRelief
-from fegear.geometry.tooth import Tooth
 
 MODULE, FACE, SOFT = 3e-3, 10e-3, (4e-11, 6e-11)
 EACH = sum(SOFT) / FACE  # of a pair of teeth [m/N]

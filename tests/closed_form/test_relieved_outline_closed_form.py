@@ -12,12 +12,12 @@ from scipy.interpolate import BSpline
 
 from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.fem.plane.sector import gmsh_session
+from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import relieved_outline
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import CombinedRelief, EndRelief, TabulatedRelief
-from fegear.geometry.tooth import Tooth
 from fegear.output.dxf import write_dxf
 from fegear.output.export import export_gears
 

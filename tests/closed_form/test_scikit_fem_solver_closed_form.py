@@ -15,15 +15,15 @@ from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.scikit_fem_solver import between_kept
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.rim_support import RimSupport
-from fegear.geometry.tooth import Tooth
 
 #: Of the largest value of a kind.
 SAME = 1e-10

@@ -20,10 +20,10 @@ import numpy as np
 import pytest
 
 from fegear.formulas.iso6336.part1_face_load import PinionShaft, shaft_deformation
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gearbox import CAUSES, Gearbox

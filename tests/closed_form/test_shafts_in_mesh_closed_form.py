@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gearbox import CAUSES, Gearbox

@@ -15,8 +15,8 @@ from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slice_laws import LAWS, SliceLaws
 from fegear.fem.solid.slices import plane_compliance, plane_section, solve_slices
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(23, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.6 * TOOTH.root_radius

@@ -25,8 +25,8 @@ from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import face_functions
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.7 * TOOTH.root_radius

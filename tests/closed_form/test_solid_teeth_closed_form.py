@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 
 from fegear.base.errors import RangeError
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import lagrange
 from fegear.fem.solid.bands import bands, hats, loads_of
 from fegear.fem.solid.dissection import _smallest
@@ -20,9 +20,9 @@ from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import flank_nodes, solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.7 * TOOTH.root_radius

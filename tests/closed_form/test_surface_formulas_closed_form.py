@@ -22,10 +22,10 @@ from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_microp
 from fegear.formulas.iso6336.part22_micropitting import fzg_type_a, fzg_type_c
 from fegear.formulas.iso6336.rated import LoadFactors, RatedSurface
 from fegear.formulas.lubricant import Oil
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = reduced_modulus((206e9, 206e9), (0.3, 0.3))
 OIL = Oil(220e-6, 19e-6)

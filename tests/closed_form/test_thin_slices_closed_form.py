@@ -14,11 +14,11 @@ from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solve_thin_slices
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 RING = InternalTooth(42, PinionCutter(20, 0.1, 1.25, tip_radius=0.2), profile_shift=-0.2, tip_radius=20.4)
 STEEL = Material(206.8e9, 0.3, 7850.0)

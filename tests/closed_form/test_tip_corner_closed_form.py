@@ -11,10 +11,10 @@ from scipy.optimize import brentq
 
 from fegear.contact.plane.corner import CornerContact
 from fegear.contact.plane.edge_law import edge_law
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def pair_of(z1, z2, x1=0.0, x2=0.0, rounding=0.0):

@@ -17,9 +17,9 @@ from fegear.formulas import cornell as cornell_compliance
 from fegear.formulas import potential_energy as sainsot
 from fegear.formulas.root_section import load_line
 from fegear.formulas.sources import SOURCES, source
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 RACK = BasicRack(1.0, 1.25, 0.25)
 

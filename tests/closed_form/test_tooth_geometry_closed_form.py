@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import arc_length
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.inspection import span, span_teeth
 from fegear.geometry.involute import polar_angle, roll_of_polar_angle
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tip_interference import interference
-from fegear.geometry.tooth import Tooth
 
 racks = st.sampled_from(
     [

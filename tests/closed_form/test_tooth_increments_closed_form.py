@@ -27,11 +27,11 @@ from fegear.dynamics.train.mesh_excitation import mesh_excitation, tooth_pair_at
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.tooth_force import dynamic_error, tooth_force
 from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train, mesh_damping
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
-from fegear.geometry.tooth import Tooth
 
 
 # ---- the tangent of load sharing -------------------------------------------------------------------------------------

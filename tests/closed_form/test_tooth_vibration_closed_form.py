@@ -14,9 +14,9 @@ from fegear.design.loading import LoadingFunction, Ramp, tooth_response
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.tooth_vibration import lowest_frequency, tooth_frequency
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 

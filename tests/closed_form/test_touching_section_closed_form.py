@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fegear.formulas.root_section import lewis_section, load_line, touching_section
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def narrowest(tooth, apex):

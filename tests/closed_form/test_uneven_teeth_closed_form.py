@@ -20,10 +20,10 @@ from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.dynamics.train.tooth_force import dynamic_error
 from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3, 25.4e-3)
 PAIR = GearPair(GEAR, GEAR)

@@ -13,6 +13,7 @@ from fegear.contact.unloaded.tooth_contact import mesh_cycle
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.rigid_flanks import beside_the_lines, touching_gaps, unloaded_error
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.flank_modification import LeadCrowning
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.helicoid import InvoluteHelicoid
@@ -20,7 +21,6 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH = 3e-3, 20e-3

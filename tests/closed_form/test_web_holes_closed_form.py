@@ -19,9 +19,9 @@ from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import section_mesh, solve_solid
 from fegear.fem.solid.tooth_over_holes import as_if_all_were, tooth_over_holes
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH, BORE, FACE = Tooth(12, BasicRack(1.0, 1.25, 0.25), 0.3), 1.2, 1.0
 PITCH = 2.0 * math.pi / TOOTH.teeth

@@ -15,12 +15,12 @@ from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.formulas.flash_temperature import flank_speeds
 from fegear.formulas.friction import computed
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.geometry.tooth import Tooth
 
 M, FACE, STEEL = 3e-3, 9e-3, Material(206.8e9, 0.3)
 COARSE = SolidSettings().scaled(1.8)

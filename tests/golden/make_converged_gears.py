@@ -10,8 +10,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 from make_random_gears import converged
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 RACKS = {"0.25": BasicRack(1.0, 1.25, 0.25), "0.38": BasicRack.named("A"), "full": BasicRack.full_fillet()}
 #: teeth, profile shift, rack tip radius, bore over root radius

@@ -12,8 +12,8 @@ from dataclasses import replace
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 WIDTH, RADIUS = 2.0, 13.9

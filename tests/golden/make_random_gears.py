@@ -14,10 +14,10 @@ import numpy as np
 
 from fegear.base.errors import FegearError
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 #: Fourth order on edges a third to a sixth of the default's; narrow pressures, so that nothing is extrapolated far.
 FINE = MeshSettings(

@@ -17,8 +17,8 @@ from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slice_laws import LAWS, Spread
 from fegear.fem.solid.slices import flank_shapes, plane_compliance, plane_section, solve_slices
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 NU, SHAPES, STATIONS = 0.3, 5, 9
 #: Teeth, helix angle [deg], width [modules], bore over root radius, profile shift.

@@ -25,8 +25,8 @@ from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.influence import contact_line
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 OUT = Path(__file__).parent / "solid_gears.json"
 USUAL = {"x": 0.0, "beta": 0.0, "nu": 0.3}

@@ -17,8 +17,8 @@ import numpy as np
 from whole_gear_by_scikit_fem import whole_gear
 
 from fegear.geometry.curves import arc_length
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 HERE = Path(__file__).parent
 USUAL = {"x": 0.0, "tip": 0.25, "angle": 20.0, "addendum": 1.0, "dedendum": 1.25, "nu": 0.3, "plane": "strain"}

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 GEARS = json.loads(Path(__file__).with_name("converged_gears.json").read_text())
 RACKS = {"0.25": BasicRack(1.0, 1.25, 0.25), "0.38": BasicRack.named("A"), "full": BasicRack.full_fillet()}

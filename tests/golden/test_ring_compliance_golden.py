@@ -8,13 +8,13 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MODULE = 3.175e-3
 

@@ -15,8 +15,8 @@ import pytest
 from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.scikit_fem_alone import solve_alone
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.verify.kept import kept
 

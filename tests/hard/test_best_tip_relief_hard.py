@@ -27,12 +27,12 @@ from fegear.design.tip_relief.search import _even
 from fegear.design.tip_relief.trials import Trials
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import roll_of_radius
-from fegear.geometry.tooth import Tooth
 
 
 def engaged(z1, z2, module=3e-3, addendum=1.0, shift=0.0, hertz="linear", line_load=3e5):

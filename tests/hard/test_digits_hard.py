@@ -10,9 +10,9 @@ from fegear.contact.fourier import panels
 from fegear.contact.plane.mark_series import reciprocal_series
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 pytestmark = pytest.mark.last_bit
 

@@ -10,10 +10,10 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solve_thin_slices
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH = 3e-3, 18e-3

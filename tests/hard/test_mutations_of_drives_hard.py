@@ -23,7 +23,7 @@ from fegear.case.reading import build_scene, parse_document
 from fegear.engine.plan import make_plan
 from fegear.engine.plan_in_words import plan_lines
 from fegear.engine.run import run_plan
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import read_model
 from fegear.results.catalogue import STAGES
 

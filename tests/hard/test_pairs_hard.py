@@ -15,11 +15,11 @@ from fegear.contact.plane.meshing import Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import pair_stiffness, revolution, transmission_error
 from fegear.design.loading import LoadingFunction, Ramp, sinusoidal_factor
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief, tip_relief
-from fegear.geometry.tooth import Tooth
 
 pytestmark = pytest.mark.last_bit
 

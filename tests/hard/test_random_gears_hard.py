@@ -13,9 +13,9 @@ from fegear.base.errors import GeometryError, RangeError
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.formulas.sources import source
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 #: Coarse, for laws that hold on any mesh.
 COARSE = MeshSettings().scaled(3.0)

@@ -15,11 +15,11 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def engaged(z1=28, z2=28, module=3.175e-3, rack=None, shift=0.0, face=6.35e-3):

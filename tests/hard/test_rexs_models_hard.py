@@ -18,7 +18,7 @@ from fegear.base.errors import FegearError, InputError
 from fegear.case.reading import build_scene
 from fegear.commands.import_model import import_, refuse_unplanned
 from fegear.engine.plan import make_plan
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of, read_model
 from fegear.results.catalogue import STAGES
 

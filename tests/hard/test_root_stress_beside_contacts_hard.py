@@ -7,9 +7,9 @@ import pytest
 
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 #: Fillets from .01 to .9 modules long, of radii down to .002 modules.
 TEETH = {

@@ -12,9 +12,9 @@ import pytest
 import fegear
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 HALF_WIDTH = 0.02
 TOLERANCES = (1e-2, 1e-3, 1e-2, 1e-3, 1e-4)

@@ -12,10 +12,10 @@ from fegear.fem.solid.influence import _SHARES as SHARES
 from fegear.fem.solid.influence import SolidInfluence, solid_influence
 from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 pytestmark = pytest.mark.last_bit
 

@@ -13,8 +13,8 @@ from fegear.fem.solid.bands import hats
 from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 pytestmark = pytest.mark.last_bit
 

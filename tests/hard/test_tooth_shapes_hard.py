@@ -10,9 +10,9 @@ from fegear.base.errors import FegearError, GeometryError, InputError, RangeErro
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 #: Twice the default edges: what is compared here is shapes, not meshes.
 FAST = MeshSettings().scaled(2.0)

@@ -2,9 +2,9 @@
 
 import math
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def helical_gear(teeth, module, pressure_angle, helix_angle, face_width, hand, tip_radius=math.nan, **more) -> Gear:

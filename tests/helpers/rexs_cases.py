@@ -10,7 +10,7 @@ from rexs_models import in_json, part
 
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of
 from fegear.exchange.rexs.written_gearbox import model_text
 from fegear.results.catalogue import STAGES

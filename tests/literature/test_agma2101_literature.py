@@ -22,10 +22,10 @@ from fegear.formulas.agma.agma908 import (
     shortest_contact_lines,
 )
 from fegear.formulas.agma.agma2101 import AllowableStress, allowable_stress
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.verify.kept import kept
 
 INCH, PSI, LBF, FPM = 0.0254, 6894.757, 4.4482216, 0.00508

@@ -8,10 +8,10 @@ import pytest
 from fegear.base.errors import RangeError
 from fegear.formulas import dolan_broghamer, heywood
 from fegear.formulas.agma import agma908
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 RACK = BasicRack(1.0, 1.25, 0.25)
 

@@ -14,10 +14,10 @@ import pytest
 from fegear.formulas import hertz
 from fegear.formulas.iso6336 import part1_stiffness
 from fegear.formulas.sources import SOURCES, pair_compliance
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 ROLL = np.array([0.2208, 0.2609, 0.3238, 0.3747, 0.4237, 0.4645, 0.4909, 0.5059])
 LOAD = np.array([93.05, 1018.0, 1615.0, 1615.0, 1615.0, 1077.0, 467.5, 121.7])

@@ -12,8 +12,8 @@ from fegear.base.errors import RangeError
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.cornell import section_lengths
 from fegear.formulas.root_section import fillet_point, load_line
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 # z = 28, 8 teeth per inch of diameter, 20 deg: R_b = 1.75 in cos(20 deg); all lengths in cm
 R_B = 1.75 * 2.54 * math.cos(math.radians(20.0))

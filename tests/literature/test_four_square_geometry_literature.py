@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MODULE = 25.4e-3 / 8
 

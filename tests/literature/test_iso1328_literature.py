@@ -7,9 +7,9 @@ import pytest
 
 from fegear.base.errors import RangeError
 from fegear.formulas.iso1328 import flank_tolerances, rounded, tolerances_of
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 UM = 1e-6
 NAMES = (

@@ -9,10 +9,10 @@ from fegear.formulas.iso6336 import part1_stiffness as stiff
 from fegear.formulas.iso6336 import part3_internal as internal
 from fegear.formulas.iso6336 import part3_root_stress as root
 from fegear.formulas.root_section import section_at_tangent
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 def contact_ratio_of_tr_30() -> float:

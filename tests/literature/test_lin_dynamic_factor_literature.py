@@ -18,10 +18,10 @@ from fegear.dynamics.train.charts import FourInertia, chart_point, linear_tip_re
 from fegear.dynamics.train.excitation import MeshExcitation, effective_error
 from fegear.dynamics.train.train import disc_inertia
 from fegear.formulas.sources import pair_compliance, source
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 FORCE, FACE, RPM = 8890.0, 0.0254, math.pi / 30
 SPEEDS = np.arange(2000.0, 16001.0, 250.0) * RPM

@@ -21,11 +21,11 @@ from fegear.contact.plane.transmission_error import pair_stiffness, revolution, 
 from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import minimum_excitation
 from fegear.formulas.sources import pair_compliance, source
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import normalised_tip_relief
-from fegear.geometry.tooth import Tooth
 
 DATA, CASES = Path(__file__).parents[1] / "data", Path(__file__).parents[2] / "cases"
 ALPHA = math.radians(20.0)

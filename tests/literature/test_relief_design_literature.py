@@ -23,10 +23,10 @@ from fegear.design.root_stress_loading import Allowed, design_stress, least_root
 from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 CASES = Path(__file__).parents[2] / "cases"
 RELIEF = CASES / "data" / "mark_minimum_excitation_relief.csv"

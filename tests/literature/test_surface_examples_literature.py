@@ -17,10 +17,10 @@ from fegear.formulas.friction import Surface
 from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
 from fegear.formulas.iso6336.rated import LoadFactors, RatedSurface
 from fegear.formulas.lubricant import Oil
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.workbench.run import run
 
 OIL = Oil(220e-6, 19e-6, 890.0)

@@ -24,10 +24,10 @@ import solid_by_calculix as calculix
 from fegear.fem.plane import gear_section
 from fegear.fem.plane.body import with_body
 from fegear.fem.solid.extruded import extruded, pressed_band
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.solid_mesh_files import write_solid_inp
 
 FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "gear_body_calculix.json"

@@ -22,12 +22,12 @@ import solid_by_calculix as calculix
 from fegear.fem.plane import gear_section as plane
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.holed_ring import holed_ring
-from fegear.fem.plane.sector import mesh_inside
+from fegear.fem.plane.tooth_meshing import mesh_inside
 from fegear.fem.solid.extruded import extruded, pressed_band
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.outline import turned
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 FILE = Path(__file__).parents[2] / "fegear" / "verify" / "data" / "web_holes_calculix.json"
 TOOTH, BORE, FACE = Tooth(16, BasicRack(1.0, 1.25, 0.25), 0.2), 2.0, 4.0

@@ -13,13 +13,13 @@ from scipy.sparse.linalg import splu
 
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.gear_section import gear_section
-from fegear.fem.plane.sector import mesh_inside
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_inside
 from fegear.fem.solid.extruded import extruded, planes_of
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MM = 1e3
 TEETH, HELIX, FACE, MODULE = 18, math.radians(12.0), 3e-3, 1e-3

@@ -17,8 +17,8 @@ from fegear.case.reading import read_scene
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.gear_section import gear_section
 from fegear.fem.plane.root_stress import extreme
-from fegear.fem.plane.sector import mesh_inside
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_inside
 from fegear.fem.solid.extruded import extruded
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -16,11 +16,11 @@ from scipy.interpolate import CubicSpline
 from fegear.fem.plane.gear_section import uneven_section
 from fegear.fem.plane.root_stress import extreme
 from fegear.fem.solid.extruded import extruded, pressed_band
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.solid_mesh_files import write_solid_inp
 
 TEETH, SHIFT, BORE, FACE = 10, 0.55, 2.5, 4.0

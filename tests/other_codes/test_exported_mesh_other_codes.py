@@ -13,13 +13,13 @@ import pytest
 
 from fegear.fem.plane.gear_field import gear_field
 from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.whole_gear import whole_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.plane_mesh_files import write_field, write_inp, write_msh
 
 GEAR = Gear(Tooth(17, BasicRack(1.0, 1.25, 0.25), profile_shift=0.2), 3.175e-3, 9e-3, 25.4e-3)

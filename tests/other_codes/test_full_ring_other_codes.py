@@ -12,13 +12,13 @@ from scipy.sparse.linalg import splu
 
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.elements import sector_elements
-from fegear.fem.plane.ring import close_ring
-from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import loaded_flank
 from fegear.fem.plane.whole_gear import whole_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 _spec = importlib.util.spec_from_file_location("textbook_elements", Path(__file__).with_name("textbook_elements.py"))
 textbook = importlib.util.module_from_spec(_spec)

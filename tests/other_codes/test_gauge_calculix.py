@@ -12,9 +12,9 @@ from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet, Grid
 from fegear.fem.plane.loaded_gear import loaded_gear
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.plane_mesh_files import write_inp
 
 GEAR = Gear(Tooth(17, BasicRack(1.0, 1.25, 0.25), profile_shift=0.2), 3.175e-3, 9e-3, 20e-3)

@@ -17,8 +17,8 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from fegear.fem.plane.gear_section import gear_section
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.extruded import extruded, pressed_band
 from fegear.fem.solid.influence import solid_influence

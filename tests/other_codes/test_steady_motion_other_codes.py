@@ -375,10 +375,10 @@ def test_one_growing_speed_is_a_row_of_a_sweep():
 def cornell_discs():
     """Two 28-tooth gears as discs with bores, Cornell's compliances, 2000 N: damping ratio 0.02, no shafts."""
     from fegear.formulas.sources import pair_compliance, source
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.gear import Gear, Material
     from fegear.geometry.pair import GearPair
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     material = Material(206.8e9, 0.3, 7850.0)
     gear = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.3, math.radians(20.0))), 3.175e-3, 0.0111, 0.0254, material, "strain")

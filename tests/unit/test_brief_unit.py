@@ -9,9 +9,9 @@ from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.brief import Brief, brief
 from fegear.contact.load import load
 from fegear.contact.pair_spec import PairSpec
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 from fegear.workbench.run import run
 
 GEAR = {"teeth": 23, "module": "3 mm", "face_width": "20 mm", "bore_radius": "15 mm"}

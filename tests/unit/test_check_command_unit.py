@@ -8,7 +8,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.cli import app
-from fegear.fem.plane import ring
+from fegear.fem.plane import ring_closure
 from fegear.studies import check
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -42,8 +42,8 @@ def said(capsys, *arguments):
 def test_the_whole_gear_by_scikit_fem_agrees_within_the_stated_errors(case, capsys, monkeypatch):
     """Neither ring nor condensation of fegear takes part in what it is compared with."""
     solved = []
-    close = ring._coupling
-    monkeypatch.setattr(ring, "_coupling", lambda *given: solved.append(1) or close(*given))
+    close = ring_closure._coupling
+    monkeypatch.setattr(ring_closure, "_coupling", lambda *given: solved.append(1) or close(*given))
     code, out, _ = said(capsys, case, "--json", "--positions", "2")
     found = json.loads(out)
     rows = found["gears"]["a"]["compared"]
@@ -88,8 +88,8 @@ def test_a_small_gear_by_scikit_fem_alone_gives_what_it_gave():
     """Six teeth on few edges: 2 % from the condensed ring, but to the last digits what was accepted."""
     from fegear.fem.plane.scikit_fem_alone import solve_alone
     from fegear.fem.plane.settings import settings_at
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     tooth = Tooth(6, BasicRack(1.0, 1.25, 0.25), 0.4)
     radius = np.sqrt(np.linspace(tooth.form_radius**2, tooth.involute_tip_radius**2, 6)[2:5:2])
@@ -107,8 +107,8 @@ def test_each_number_of_the_whole_gear_moves_with_what_it_depends_on():
     """A softer body, a load nearer the tip: directions that both solutions must show."""
     from fegear.fem.plane.scikit_fem_alone import solve_alone
     from fegear.fem.plane.settings import settings_at
+    from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.rack import BasicRack
-    from fegear.geometry.tooth import Tooth
 
     tooth = Tooth(8, BasicRack(1.0, 1.25, 0.25), 0.4)
     radius = np.sqrt(np.linspace(tooth.form_radius**2, tooth.involute_tip_radius**2, 6)[2:5:2])

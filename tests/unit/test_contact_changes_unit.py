@@ -12,9 +12,9 @@ from fegear.dynamics.motion.kernel.polynomials import first_crossing
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.train.charts import FourInertia, speed_chart
 from fegear.dynamics.train.mesh_excitation import mesh_excitation
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 
 def crossing(start, slope, h, sign, moment):

@@ -10,9 +10,9 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.cutting_planes import least_in_box
 from fegear.design.tip_relief.trials import Trials
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 RNG = np.random.default_rng(7)
 BASE, SLOPE = RNG.normal(size=(6, 50)), RNG.normal(size=(6, 4, 50)) * np.array([0.1, 0.5, 1.0, 2.0])[:, None]

@@ -16,10 +16,10 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, Points, Stems
 from fegear.engine.figure.panel import Panel
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.output.draw_plotly.layout import plotly_json
 from fegear.output.draw_png.sheet import Sheet
 from fegear.results.gear.drawing import Drawing, pair_figure, path_marks, roll_marks

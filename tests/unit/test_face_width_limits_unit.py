@@ -7,8 +7,8 @@ import pytest
 
 from fegear.base.errors import RangeError
 from fegear.fem.solid.settings import SolidSettings, check_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.pair.load_distribution import limit_remarks
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))

@@ -30,13 +30,13 @@ from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.bands import hats
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.flank_modification import LeadCrowning
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 COARSE = SolidSettings().scaled(1.7)

@@ -8,13 +8,13 @@ import pytest
 from fegear.base.errors import GeometryError, InputError
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.flank_modification import Bias, HelixSlope, LeadCrowning, LeadEndRelief, LeadTable, Topography
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH = 3e-3, 24e-3

@@ -22,11 +22,11 @@ from fegear.contact.wide.spots import missed_of_spots
 from fegear.contact.wide.tip_edges import usual_gap
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible_flanks import heavy_load
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 COARSE = SolidSettings().scaled(1.7)

@@ -9,10 +9,10 @@ from fegear.contact.wide.along_lines import _loads_below, load_below, swept_mean
 from fegear.contact.wide.lines import contact_lines, shortest_line
 from fegear.contact.wide.roll_points import _shared, line_breaks, roll_points
 from fegear.contact.wide.transmission_error import curve_through, from_half
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 

@@ -13,10 +13,10 @@ from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.design.flanks.trials import FlankTrials
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import LooseBearing, stiff
 from fegear.shafts.gearbox import Gearbox

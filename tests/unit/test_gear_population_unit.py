@@ -8,9 +8,9 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.contact.compared.formula_reach import NEAR, reach, sentence
 from fegear.contact.compared.population import LOADS, drawn_gears, share_error, unevenness
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.gear.root_stress_spread import WORDS, bounds_in_words, spread
 from fegear.results.gear.root_stress_study import StudyRows
 

@@ -16,10 +16,10 @@ from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.fem.plane.imported_mesh import read_sector_mesh
 from fegear.fem.plane.outline_motion import _outline, half_plane_dent
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.outline import tool_in_space, tooth_outline
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 from fegear.results.gear.drawing import placed_in_mesh
 from fegear.window.on_gears import gears_in_mesh, on_the_gears, wanted_on_gears

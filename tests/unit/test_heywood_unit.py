@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fegear.formulas.heywood import tooth_root_stress
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 
 @pytest.mark.parametrize("radius", [14.2, 14.6, 14.9])

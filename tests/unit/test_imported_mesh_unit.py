@@ -13,9 +13,9 @@ from fegear.base.errors import InputError
 from fegear.fem.plane.imported_mesh import check_triangles, read_sector_mesh
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MESHES = Path(__file__).parents[2] / "meshes"
 

@@ -11,9 +11,9 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 SOFTER = 1e-6
 

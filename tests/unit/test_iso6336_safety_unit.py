@@ -11,10 +11,10 @@ from fegear.formulas.iso6336.pair_geometry import PairGeometry, of_pair
 from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
 from fegear.formulas.iso6336.safety import rate_pair
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = Strength("Eh", 1500e6, 500e6)
 FINE = Quality(5, 7e-6, 8e-6, 8e-6, 4e-6, 16e-6)

@@ -11,10 +11,10 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.largest_on_pair import largest_on_pair
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.pair_history import pair_history
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import UNMODIFIED, EndRelief
-from fegear.geometry.tooth import Tooth
 
 LOAD = 4000.0
 

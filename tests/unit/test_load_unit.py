@@ -18,10 +18,10 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.relief_spec import CrowningSpec, ReliefSpec, RootReliefSpec, TipReliefSpec
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.loaded_flanks import LOADED_FLANKS
 

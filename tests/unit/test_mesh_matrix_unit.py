@@ -21,10 +21,10 @@ from fegear.contact.wide.roll_points import roll_points
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH, LOAD = 3e-3, 9e-3, 2000.0

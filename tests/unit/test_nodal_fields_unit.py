@@ -7,8 +7,8 @@ import pytest
 
 from fegear.fem.plane.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.plane.settings import MeshSettings
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 
 LINE_LOAD = 2e5
 

@@ -11,10 +11,10 @@ from fegear.formulas import potential_energy, weber_banaschek
 from fegear.formulas.beam import NODES
 from fegear.formulas.outcome import attempt
 from fegear.formulas.sources import SOURCES, pair_compliance, root_stress_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 NODES_FREE = {m.SOURCE.name: m.tooth_compliance for m in (cornell_compliance, weber_banaschek, potential_energy)}
 RACK = BasicRack(1.0, 1.25, 0.25)

@@ -9,11 +9,11 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.flanks import welbourn_amount
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.pair_history import pair_history
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief
-from fegear.geometry.tooth import Tooth
 
 
 def pair(addendum=1.0, z=28):

@@ -9,8 +9,8 @@ from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import SolidSolution
 from fegear.fem.solid.table import _root, bands_of_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 RANDOM = np.random.default_rng(7)
 

@@ -20,12 +20,12 @@ from fegear.case.reading import apply_override, build_scene
 from fegear.case.train import ShaftPart
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible_flanks import deepest_relief, refuse_deep_relief
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import roll_of_radius, tip_relief
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 CASE = {

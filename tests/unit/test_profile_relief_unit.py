@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -19,7 +20,6 @@ from fegear.geometry.relief import (
     root_relief,
     tip_relief,
 )
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 GEAR = Gear(TOOTH, 3.175e-3, 0.02, 6.35e-3)

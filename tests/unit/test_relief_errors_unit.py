@@ -8,9 +8,9 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction
 from fegear.design.relief_design import DesignTask, design_relief
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
-from fegear.geometry.tooth import Tooth
 
 
 def test_compliances_without_an_error_still_leave_the_last_digits():

@@ -18,7 +18,7 @@ import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene, read_scene
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of
 from fegear.exchange.rexs.written_gearbox import model_text
 

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of, read_model
 from fegear.exchange.rexs.written_gearbox import model_text
 

@@ -17,8 +17,8 @@ from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.exchange.case_tables import text
-from fegear.exchange.rexs.gearbox import case_of
 from fegear.exchange.rexs.model import Attribute
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of
 from fegear.exchange.rexs.said import _in_si
 from fegear.exchange.rexs.written_gearbox import model_text

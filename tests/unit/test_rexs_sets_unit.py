@@ -13,7 +13,7 @@ from rexs_cases import case, imported, more, put, same, text_of, there_and_back
 from rexs_models import in_json, link, part, planetary_set, ring_stage
 
 from fegear.base.errors import InputError
-from fegear.exchange.rexs.gearbox import case_of
+from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of
 
 #: Uneven places that the 18 + 66 teeth allow: 0, 30 and 56 of 84 steps.

@@ -13,11 +13,11 @@ from fegear.contact.plane.roll_grids import _KEPT, _STATES, RollGrids
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.stress_rows import StressRows
 from fegear.contact.plane.transmission_error import pair_stiffness, quick_transmission_errors, transmission_error
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import CombinedRelief, tip_relief
-from fegear.geometry.tooth import Tooth
 
 PAIR = GearPair(*(Gear(Tooth(z, BasicRack(1.0, 1.25, 0.2), 0.0), 2e-3, 4e-3, 1e-2) for z in (21, 34)))
 

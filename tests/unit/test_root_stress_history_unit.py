@@ -11,10 +11,10 @@ from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 MODULE, WIDTH, LOAD = 3e-3, 0.02, 4000.0
 

@@ -11,11 +11,11 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.boundary import Chain, sector_boundary
-from fegear.fem.plane.sector import mesh_inside, mesh_sector
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.tooth_meshing import mesh_inside, mesh_sector
 from fegear.fem.solid.settings import solid_settings
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 USUAL = BasicRack(1.0, 1.25, 0.25, math.radians(20.0))
 SHARP = BasicRack(1.0, 1.25, 0.0, math.radians(20.0))
@@ -182,7 +182,7 @@ def test_a_request_to_stop_that_arrives_below_gmsh_is_not_lost(monkeypatch, capf
             raise KeyboardInterrupt
 
     wanted = drawn("z 8")
-    monkeypatch.setattr("fegear.fem.plane.sector.np", Interrupted())
+    monkeypatch.setattr("fegear.fem.plane.tooth_meshing.np", Interrupted())
     with pytest.raises(KeyboardInterrupt):
         drawn("z 8")
     monkeypatch.undo()

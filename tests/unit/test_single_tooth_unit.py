@@ -7,10 +7,10 @@ import pytest
 
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.single_tooth import positions, summed_harmonics
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3e-3, 0.02, 1e-2)
 

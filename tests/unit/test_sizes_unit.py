@@ -8,13 +8,13 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
 from fegear.fem.plane.influence import Influence
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import FINEST_LEVEL, MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.studies.sweep import Axis, sweep_case
 
 CASE = {

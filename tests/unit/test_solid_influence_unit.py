@@ -12,8 +12,8 @@ from fegear.fem.solid.bands import hats
 from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.settings import SolidSettings, solid_settings, whole
 from fegear.fem.solid.table import BandNumbers, RootStressOfBands
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(19, BasicRack(1.0, 1.25, 0.25), profile_shift=0.1)
 TAU = math.tan(math.radians(15.0)) / 9.5

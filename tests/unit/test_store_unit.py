@@ -19,9 +19,9 @@ from fegear.base.solution_cache import Account, Codec, SolutionCache, cache_on_d
 from fegear.base.store import Store, cache_folder
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 COARSE = MeshSettings().scaled(2.0)
 
@@ -262,9 +262,9 @@ def test_what_a_stretch_of_work_uses_again_itself_is_not_counted_as_recalled():
 def test_a_closed_pipe_is_an_error_after_meshing_too():
     program = (
         "import os\n"
-        "from fegear.fem.plane.sector import mesh_sector\n"
+        "from fegear.fem.plane.tooth_meshing import mesh_sector\n"
         "from fegear.fem.plane.settings import MeshSettings\n"
-        "from fegear.geometry.tooth import Tooth\n"
+        "from fegear.geometry.external_tooth import Tooth\n"
         "mesh_sector(Tooth(20), 5.0, MeshSettings().scaled(3.0))\n"
         "reader, writer = os.pipe()\n"
         "os.close(reader)\n"

@@ -23,9 +23,9 @@ from fegear.fem.plane.estimate import (
 from fegear.fem.plane.root_stress import FilletCurve
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 ORDER = 4
 

@@ -25,10 +25,10 @@ from fegear.design.root_stress_loading import design_stress
 from fegear.dynamics.train.mesh_excitation import mesh_excitation
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 Z = 11, 13
 PAIR = GearPair(*(Gear(Tooth(z, BasicRack(1.0, 1.25, 0.2), 0.3), 2e-3, 4e-3, 1e-2) for z in Z))

@@ -13,9 +13,9 @@ from fegear.case.reading import build_scene
 from fegear.contact.compared.rated_gears import rated_spur_pair
 from fegear.fem.solid.settings import solid_settings
 from fegear.formulas.iso6336.part3_pair import RatingChoice
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.tooth import Tooth
 from fegear.results.gear.crosscheck_iso import iso_inputs
 from fegear.results.gear.solved_gear import _present_solid
 

@@ -21,10 +21,10 @@ from fegear.contact.wide.tip_edges import edge_reach, usual_gap
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE = 3e-3

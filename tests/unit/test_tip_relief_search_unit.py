@@ -24,10 +24,10 @@ from fegear.design.tip_relief.search import (
     search,
 )
 from fegear.design.tip_relief.trials import Trials, Tried
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 LOAD = 9000.0
 UNIT = np.array([20e-6, 1.0, 20e-6, 1.0])

@@ -24,10 +24,10 @@ from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 from fegear.results.relief.tolerance_benches import set_up
 from fegear.results.relief.tolerance_robustness import TOLERANCE_ROBUSTNESS

@@ -17,9 +17,9 @@ from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import level_for, solve_gear, solve_to_tolerance
 from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 

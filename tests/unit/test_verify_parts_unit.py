@@ -9,10 +9,10 @@ import pytest
 
 from fegear.contact.wide.lines import contact_lines
 from fegear.dynamics.planetary.phases import mesh_phases
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from fegear.verify import calculix, own
 from fegear.verify.gearboxes import _Springs
 from fegear.verify.kept import kept

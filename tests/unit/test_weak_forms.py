@@ -13,11 +13,11 @@ from skfem import Basis, BilinearForm, ElementVector, MappingAffine, MappingIsop
 from fegear.fem import forms
 from fegear.fem.plane import elasticity
 from fegear.fem.plane.elements import _element, sector_elements
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.section import make_section
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 NU, TAU = 0.3, 0.05
 ORDERS = (2, 3, 4)

@@ -12,9 +12,9 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.case.built.solid_influence import solid_support_remarks
 from fegear.case.reading import build_scene
 from fegear.engine.sheet.seen import Seen
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.mass import mass_properties
-from fegear.geometry.tooth import Tooth
 from fegear.output.solid_mesh_files import pressed_gear
 from fegear.results.gear import body_modes
 from fegear.results.gear.teeth_over_holes import HOLES_FIGURE, HOLES_TABLE

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 import fegear
 from fegear.base.errors import InputError, RangeError
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.tooth_on_pins import tooth_on_pins
 from fegear.fem.solid.bands import bands, loads_of
 from fegear.fem.solid.dissection import condense_solid
@@ -21,10 +21,10 @@ from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solve_slices
 from fegear.fem.solid.solution import flank_nodes, section_mesh, solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.rim_support import RimSupport
-from fegear.geometry.tooth import Tooth
 
 NU, TEETH, WIDTH = 0.3, 24, 2.0
 TOOTH = InternalTooth(TEETH, PinionCutter(12, 0.0, 1.2, tip_radius=0.2), profile_shift=0.0, tip_radius=11.5)

@@ -10,17 +10,17 @@ from fegear.base.errors import RangeError
 from fegear.case.built.solid_influence import check_solid_gear
 from fegear.case.reading import read_scene
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.face import face_functions, function_counts, solid_unknowns
 from fegear.fem.solid.rim import solid_rim
 from fegear.fem.solid.section import make_section
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import flank_nodes, section_mesh, solve_solid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.rim_support import RimSupport
-from fegear.geometry.tooth import Tooth
 
 NU, WIDTH = 0.3, 3.0
 RING = InternalTooth(36, PinionCutter(20, tip_radius=0.25), profile_shift=-0.1, tip_radius=17.3)

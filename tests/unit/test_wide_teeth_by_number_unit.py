@@ -13,10 +13,10 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import ThinLines, solve_thin_slices
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 LOAD = 4000.0
 #: How much softer teeth are than the others.

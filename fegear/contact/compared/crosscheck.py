@@ -21,9 +21,9 @@ from fegear.formulas import hertz
 from fegear.formulas.outcome import ComplianceSource, attempt
 from fegear.formulas.root_section import load_line
 from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES, pair_compliance
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.geometry.tooth import Tooth
 
 _REASON = "reason if the formula gives no value"
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 
 #: Loads on every gear, one in each of as many equal parts of the range of load positions.
 LOADS = 8

@@ -15,8 +15,8 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.contact.compared.crosscheck import RootStressAnswers, root_stress_answers
 from fegear.contact.compared.population import Population
 from fegear.fem.plane.settings import MeshSettings
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
-from fegear.geometry.tooth import Tooth
 
 #: Half-width of the band that counts as agreement: what Cornell's abstract claims.
 BAND = 0.05

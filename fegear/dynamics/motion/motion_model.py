@@ -277,7 +277,7 @@ LONG = 32
 
 @dataclass(frozen=True)
 class Packed:
-    """A model as the arrays of `kernel.steps.travel`, in its own units: time 1/w_max, a length and a force of the mesh.
+    """A model as arrays of `kernel.integration.travel`, in its own units: time 1/w_max, length and force of the mesh.
 
     Attributes
     ----------

@@ -10,7 +10,7 @@ from fegear.base.arrays import Array
 from fegear.fem.plane.elasticity import assemble, lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.trace import loaded_flank
 from fegear.geometry.gear import Plane
 from fegear.geometry.involute_tooth import InvoluteTooth

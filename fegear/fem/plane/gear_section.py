@@ -12,8 +12,8 @@ from fegear.base.errors import InputError
 from fegear.fem.plane.body import with_body
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.sector import mesh_inside
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_inside
 from fegear.fem.plane.whole_gear import SIDES
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth

@@ -15,7 +15,7 @@ from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
 from fegear.fem.plane.elasticity import SectorElasticity, assemble, assemble_two_orders
 from fegear.fem.plane.rim import PinForces, supported_response
-from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 

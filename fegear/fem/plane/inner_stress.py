@@ -14,7 +14,7 @@ from fegear.fem.plane.elasticity import assemble, lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.ring_closure import close_ring
 
 #: Places of the contact along the flank, evenly over its arc length: closer to each other than the pressure is wide.
 _PLACES = 21

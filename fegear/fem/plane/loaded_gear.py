@@ -10,8 +10,8 @@ from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.fem.plane.gear_field import GearField, gear_field
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.whole_gear import WholeGear, whole_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import turned

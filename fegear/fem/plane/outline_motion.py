@@ -13,7 +13,7 @@ from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.rim import supported_response
-from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.ring_closure import close_ring
 
 #: Boundaries of a sector that are no outline of a tooth.
 _INNER = ("side_a", "side_b", "bore")

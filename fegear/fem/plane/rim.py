@@ -1,6 +1,6 @@
 """A ring gear on pins or in a spline: the ring that nothing holds, and the forces that its supports put on it.
 
-The sectors' sides close to a ring as ever (`ring`); only its rigid motions, harmonics 0 and 1, are left without a
+Sectors' sides close to a ring as ever (`ring_closure`); only its rigid motions, harmonics 0 and 1, are left without a
 stiffness. They get one, which gives a generalised inverse G of the whole ring's stiffness K. With R the rigid motions
 and W the tractions that are as even as these motions over the outer circle,
 
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
-from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.trace import lagrange, lagrange_slope
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from fegear.fem.plane.elasticity import SectorElasticity
     from fegear.fem.plane.mesh import SectorMesh
-    from fegear.fem.plane.ring import Ring
+    from fegear.fem.plane.ring_closure import Ring
     from fegear.geometry.rim_support import RimSupport
 
 _GAUSS = np.polynomial.legendre.leggauss(12)

@@ -1,7 +1,7 @@
 """The whole gear by scikit-fem alone, which `fegear check` compares the condensed ring with.
 
 All teeth are meshed, assembled from vector-valued elements, condensed at the bore and factored at once: nothing is
-shared with `ring` and `condensation`, and of the mesh only the sectors. Tooth 0 has edges half as long, and still
+shared with `ring_closure` and `condensation`, of the mesh only the sectors. Tooth 0 has edges half as long, and still
 shorter ones below the pressures, which are as wide as the contacts themselves: none is widened, no corner gets a wedge.
 """
 
@@ -36,8 +36,8 @@ from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.root_stress import CLEARANCE, search_end
-from fegear.fem.plane.sector import mesh_inside, mesh_sector
 from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.fem.plane.tooth_meshing import mesh_inside, mesh_sector
 from fegear.geometry.gear import Plane
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.outline import turned

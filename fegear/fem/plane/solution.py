@@ -22,7 +22,6 @@ from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.rim import PinForces
 from fegear.fem.plane.root_stress import FilletStrain
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import (
     FINEST_LEVEL,
     LEVEL_RATIO,
@@ -32,6 +31,7 @@ from fegear.fem.plane.settings import (
     level_for,
     settings_at,
 )
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane
 from fegear.geometry.involute_tooth import InvoluteTooth

@@ -11,7 +11,7 @@
 
     solid_influence(..., settings=solid_settings(3e-3), held=(-1.0, 2.0), cache=SolutionCache(...))
 
-- `section` is the transverse section (`fegear.geometry.tooth.Tooth`), its lengths in its own modules, tooth 0 on the y
+- `section` is the transverse section (`geometry.external_tooth.Tooth`), lengths in its modules, tooth 0 on the y
   axis, loaded flank at x > 0, tooth k = +1 clockwise. z runs along the axis out of that drawing, 0 in the middle of the
   face; `tau` = tan(beta) / r is the twist per module, positive for a right hand: the section at z is turned
   counterclockwise by tau z.

@@ -13,7 +13,7 @@ from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.gear_section import Section as PlaneSection
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.ring import closed_ring
+from fegear.fem.plane.ring_closure import closed_ring
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of, with_stations

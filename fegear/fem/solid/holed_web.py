@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from fegear.fem.plane.body import RING
 from fegear.fem.plane.holed_ring import holed_ring
-from fegear.fem.plane.ring import harmonic_stiffness
+from fegear.fem.plane.ring_closure import harmonic_stiffness
 from fegear.fem.plane.trace import lagrange
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions
@@ -37,7 +37,7 @@ from fegear.fem.solid.unknowns import unknowns
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.ring import Ring
+    from fegear.fem.plane.ring_closure import Ring
     from fegear.fem.solid.section import Section
     from fegear.fem.solid.unknowns import Unknowns
     from fegear.geometry.gear_body import GearBody, WebHoles

@@ -23,12 +23,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
-from fegear.fem.plane.ring import closed_ring, harmonic_stiffness
+from fegear.fem.plane.ring_closure import closed_ring, harmonic_stiffness
 from fegear.fem.plane.trace import lagrange, lagrange_slope
 
 if TYPE_CHECKING:
     from fegear.fem.plane.condensation import Condensed
-    from fegear.fem.plane.ring import RigidSides, Ring
+    from fegear.fem.plane.ring_closure import RigidSides, Ring
     from fegear.fem.solid.face import FaceFunctions
     from fegear.fem.solid.section import Section
     from fegear.fem.solid.unknowns import Unknowns

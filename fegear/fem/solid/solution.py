@@ -17,10 +17,10 @@ from fegear.base.tally import tallied
 from fegear.fem.plane.body import RING, with_body
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.ring import closed_ring
+from fegear.fem.plane.ring_closure import closed_ring
 from fegear.fem.plane.root_stress import extreme, search_end
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 from fegear.fem.solid.bands import Bands, bands, loads_of
 from fegear.fem.solid.contact import PressedLines

@@ -20,7 +20,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
-from fegear.fem.plane.sector import gmsh_session
+from fegear.fem.plane.tooth_meshing import gmsh_session
 from fegear.geometry.curves import Drawn
 from fegear.geometry.gear import Gear
 from fegear.geometry.spline import DEGREE, Spline, enclosed_area, fitted, smooth_pieces, spline_of

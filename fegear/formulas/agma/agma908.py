@@ -29,9 +29,9 @@ from fegear.formulas.root_section import (
     touching_section,
 )
 from fegear.geometry.curves import Trochoid
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair, Member
-from fegear.geometry.tooth import Tooth
 
 #: Axial contact ratios so far from 1 are taken for the two sides of the jump of J.
 _BESIDE_ONE = 1e-9

@@ -28,10 +28,10 @@ from fegear.formulas.friction import Surface, contact_ratios, law_load, mean_fri
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 from fegear.formulas.iso6336.rated import RatedSurface
 from fegear.formulas.lubricant import Oil
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 #: B_M of the test gears: density, specific heat, conductivity of the steel of Table 2 (Formula 82) [N/(m s^0.5 K)].
 _TEST_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)

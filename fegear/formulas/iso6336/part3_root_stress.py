@@ -15,8 +15,8 @@ from typing import Literal
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.formulas.outcome import RootStress, RootStressSource
 from fegear.formulas.root_section import refuse_helix
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.pair import GearPair, Member
-from fegear.geometry.tooth import Tooth
 
 #: Editions of ISO 6336-3; that of 2019 shares the load of several teeth (f_epsilon) and has another Y_beta.
 Edition = Literal[2006, 2019]

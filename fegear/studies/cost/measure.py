@@ -23,7 +23,7 @@ from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence, solve_influence
-from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.pair import MEMBERS, Member

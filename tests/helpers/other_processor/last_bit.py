@@ -73,7 +73,7 @@ def _loads(place):
 
 #: Where noise enters: module, name in it, and what of a call is noisy.
 PLACES = {
-    "fegear.fem.plane.sector": {"fill": _first},
+    "fegear.fem.plane.tooth_meshing": {"fill": _first},
     "fegear.fem.plane.elasticity": {"_stiffness": _result},
     "fegear.fem.solid.dissection": {"_smallest": _results},
     "fegear.contact.plane.pair_compliance": {"PairCompliance.matrices": _field("compliance")},

@@ -24,7 +24,7 @@ from typing import Any
 
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import install
-from fegear.dynamics.motion.kernel import collocation, polynomials, series, steps
+from fegear.dynamics.motion.kernel import collocation, integration, polynomials, series
 from fegear.dynamics.motion.kernel.arrays import (
     DONE,
     TOO_MANY_STEPS,
@@ -43,7 +43,7 @@ __all__ = [
 
 _LONG = "Compiling the equations of motion: about half a minute, once (done in advance by the set-up)."
 #: Modules whose functions call each other as machine code.
-COMPILED = (polynomials, series, collocation, steps)
+COMPILED = (polynomials, series, collocation, integration)
 
 
 def source_digest(folder: Path = Path(__file__).parent) -> str:
@@ -53,7 +53,7 @@ def source_digest(folder: Path = Path(__file__).parent) -> str:
 
 @cache
 def compiled() -> Callable[..., Any]:
-    """`steps.travel` as machine code, compiled at first use and kept on disk for the next process.
+    """`integration.travel` as machine code, compiled at first use and kept on disk for the next process.
 
     Raises
     ------
@@ -66,12 +66,12 @@ def compiled() -> Callable[..., Any]:
         raise MissingLibraryError(f"{install('motion')}.") from None
     digest = source_digest()
     made: dict[object, Callable[..., Any]] = {
-        function: machine_code(function, digest, _LONG if function is steps.travel else "")
+        function: machine_code(function, digest, _LONG if function is integration.travel else "")
         for module in COMPILED
         for _, function in inspect.getmembers(module, inspect.isfunction)
         if function.__module__ == module.__name__
     }
-    travel = made[steps.travel]
+    travel = made[integration.travel]
     # Each is called through the names by which modules imported it.
     for module in COMPILED:
         functions = inspect.getmembers(module, inspect.isfunction)
