@@ -16,11 +16,11 @@ from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_
 from fegear.fem.plane.odd.cracked_sector import CrackedSector, _line, _quartered, cracked_sector, opened
 from fegear.fem.plane.odd.odd_influence import OddTooth, solve_odd_influence
 from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
-from fegear.fem.plane.sector import Slit, fill, mesh_sector
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.tooth_meshing import Slit, fill, mesh_sector
 from fegear.fem.plane.trace import lagrange
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 NU = 0.3
 #: Edge crack of a share of a strip's width: K_I over stress times sqrt(pi a), in tension and in bending (A. C. Kaya and

@@ -10,10 +10,10 @@ import pytest
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import OddTooth, solve_odd_influence
-from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 from tests.helpers.cracked_gear import Solved, cracked_gear
 
 #: Teeth, basic rack, profile shift coefficient, bore [modules], tangent of the mouth and angle of the crack [deg], and

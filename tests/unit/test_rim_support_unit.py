@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from fegear.fem.plane.tooth_meshing import mesh_sector
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
@@ -15,6 +14,7 @@ from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.sector_sides import _matching_sides
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.tooth_on_pins import over_the_teeth, tooth_on_pins
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rim_support import RimSupport

@@ -13,8 +13,8 @@ from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error,
 from fegear.engine.plan import make_plan
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
-from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 TOOTH = Tooth(28)

@@ -23,8 +23,8 @@ from fegear.fem.plane.boundary import Chain, fillet_chain, front_sizes, sector_b
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.odd.crack import SHORTEST, Crack, fillet_length
-from fegear.fem.plane.sector import Slit, by_name, fill, named_runs, refuse_flat
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.tooth_meshing import Slit, by_name, fill, named_runs, refuse_flat
 from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Names of the crack's faces, left and right as seen from its mouth.

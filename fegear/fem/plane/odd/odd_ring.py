@@ -19,7 +19,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.fem.plane.chain import chain_of, factored
-from fegear.fem.plane.ring import closed_stiffness
+from fegear.fem.plane.ring_closure import closed_stiffness
 from fegear.fem.plane.sector_sides import BetweenSides
 
 
