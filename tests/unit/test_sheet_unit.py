@@ -429,3 +429,17 @@ def test_a_repetition_names_the_quantity() -> None:
     assert [(one.name, one.unit) for one in table.columns] == [("own_x", "mm"), ("own_deflection", "um")]
     (value,) = Number("{key}", of=lambda _: SWING, each=lambda _: {"largest": 1}).values(SEEN)
     assert (value.name, value.value) == ("I.largest", pytest.approx(6.0))
+
+
+def test_panels_are_repeated_together_and_a_line_names_its_quantity() -> None:
+    one, other = Over("x", (Line("{one.word}", x="x"),), "largest", title="{key}"), Over("x", ("largest",))
+    named = {"a": replace(SWING, word="deflection"), "b": replace(SWING, word="lacking")}
+    each = Each(lambda _: named, one, other, when=lambda seen: seen.key != "c")
+    (figure,) = Chart("f", "F", "C", (each,), of="swing").figures(SEEN)
+    assert [panel.title for panel in figure.panels] == ["a", "", "b", ""]
+    assert [len(panel.items) for panel in figure.panels] == [1, 1, 0, 1]  # of b the quantity is None: no curve
+    (curve,) = figure.panels[0].items
+    assert isinstance(curve, Curve)
+    np.testing.assert_allclose(curve.y, [2.0, 6.0])
+    none = Each(lambda _: named, one, when=lambda _: False)
+    assert next(Chart("f", "F", "C", (none, other), of="swing").figures(SEEN)).panels[0].title == ""

@@ -139,7 +139,8 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     return ReliefChartData(pair, chart, optimise_tip_relief(e, loads, asked.shape, inputs.metric), delta)
 
 
-def _meaning_of_unit(seen: Seen) -> str:
+def unit_in_words(seen: Seen) -> str:
+    """What the unit of the amounts of a pair is."""
     from fegear.design.charts import meaning_of_unit
 
     return meaning_of_unit(seen.data.pair.pair)
@@ -157,7 +158,7 @@ _CHART_SHEET = Sheet(
         ),
     ),
     values=(
-        Number("delta", meaning=_meaning_of_unit),
+        Number("delta", meaning=unit_in_words),
         Number("unit_length", exact, "chart"),
         Number("amounts", of="chart", si=lambda seen: seen.data.chart.best()[0], name="best_amount", meaning=_BEST),
         Number("lengths", of="chart", si=lambda seen: seen.data.chart.best()[1], name="best_length", meaning=_BEST),
@@ -173,7 +174,7 @@ _CHART_SHEET = Sheet(
             lambda seen: seen.said(
                 "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
                 "with minimum A_e for each amount. Dotted: "
-            ) + f"{_meaning_of_unit(seen)} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
+            ) + f"{unit_in_words(seen)} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
             (
                 Over(
                     "chart.lengths",

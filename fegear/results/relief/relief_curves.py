@@ -19,6 +19,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.relief.relief import design_part, relief_stage
+from fegear.results.relief.relief_chart import unit_in_words
 
 if TYPE_CHECKING:
     from fegear.case.design import ChartPart
@@ -111,12 +112,6 @@ def _curve(engagement: Engagement, load: float, *relief: float) -> ReliefCurve:
     return ReliefCurve(history, transmission_error(engagement, load, _HARMONICS), *relief)
 
 
-def _meaning_of_unit(seen: Seen) -> str:
-    from fegear.design.charts import meaning_of_unit
-
-    return meaning_of_unit(seen.data.pair.pair)
-
-
 def _told(seen: Seen) -> str:
     """The relief of a curve in the legend."""
     one: ReliefCurve = seen.one
@@ -167,7 +162,7 @@ _SHEET = Sheet(
             of="curves",
         ),
     ),
-    values=(Number("delta", meaning=_meaning_of_unit),),
+    values=(Number("delta", meaning=unit_in_words),),
     figures=(
         Chart(
             "relief_curves_{name}", "Reliefs of pair {name}",
