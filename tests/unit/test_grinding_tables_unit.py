@@ -41,6 +41,9 @@ def test_a_chart_of_straight_lines_has_their_corners_and_no_other_point():
     relief = CombinedRelief((EndRelief(2e-5, 0.45, 0.6), EndRelief(1e-5, 0.2, 0.1)))
     assert chart_points(relief, 0.1, 0.6, 1e-7) == pytest.approx([0.1, 0.2, 0.45, 0.6])
     assert chart_points(CombinedRelief(), 0.1, 0.6, 1e-7) == pytest.approx([0.1, 0.6])
+    # Lines that may miss nothing have every place that is tried as a point, the only one between two others, too.
+    every = chart_points(Crowning(5e-6, 0.1, 0.6), 0.1, 0.6, 0.0)
+    assert np.diff(every).max() < 1.01 * 0.5 / 2000.0
 
 
 CASE = {

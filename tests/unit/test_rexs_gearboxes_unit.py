@@ -167,15 +167,20 @@ def bearing(
     return parts, links
 
 
-def held_by(*bearings: tuple) -> dict:
-    """Seats of the first shaft, on these bearings in place of its own."""
+def on_bearings(*bearings: tuple) -> dict:
+    """A model whose first shaft runs on these bearings in place of its own."""
     tree = two_stages()
     parts = [one for one in tree["components"] if one["id"] not in (51, 52)]
     links = [one for one in tree["relations"] if all(ref["id"] not in (51, 52) for ref in one["refs"])]
     for one in bearings:
         made = bearing(*one)
         parts, links = [*parts, *made[0]], [*links, *made[1]]
-    return case({**tree, "components": parts, "relations": links})
+    return {**tree, "components": parts, "relations": links}
+
+
+def held_by(*bearings: tuple) -> dict:
+    """The case of that model."""
+    return case(on_bearings(*bearings))
 
 
 def test_tapered_bearings_face_the_ways_that_they_hold() -> None:
@@ -183,6 +188,13 @@ def test_tapered_bearings_face_the_ways_that_they_hold() -> None:
     seats = found["shaft"]["shaft_3"]["bearings"]
     assert [one.get("reversed", False) for one in seats] == [True, False]
     assert "fixed" not in found["bearing"][seats[0]["bearing"]]
+
+
+def test_a_contact_angle_that_has_no_direction_is_said_to_be_assumed() -> None:
+    told = text_of(on_bearings((81, 10.0, "both_directions", ("",)), (82, 110.0, "positive", ("positive",))))
+    told = " ".join(told.replace("\n#", " ").split())
+    assert "81: direction of the contact angle not specified; +u assumed" in told
+    assert "82: direction of the contact angle" not in told
 
 
 def test_rows_are_bearings_in_one_place_that_share_the_rating() -> None:
