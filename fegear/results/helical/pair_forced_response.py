@@ -285,8 +285,8 @@ def _drawn_sizes(forces: PairForces) -> Array:
 
 def _components(where: str, meaning: str) -> Each:
     """Forces and moments of mesh and bearings."""
-    words = {"name": "{one.name}", "meaning": meaning}
-    return Each(where, Cell("force", **words), Cell("moment", **words))
+    cells = (Cell(quantity, name="{one.name}", meaning=meaning) for quantity in ("force", "moment"))
+    return Each(where, *cells)
 
 
 _SHEET = Sheet(

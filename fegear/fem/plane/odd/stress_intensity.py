@@ -71,7 +71,7 @@ def interaction(
             [((weight * one.grad).sum(axis=(0, 1)) * basis.dx).sum(axis=1) for (one,) in basis.basis]
         )
         found.append(np.bincount(basis.element_dofs.ravel(), of_function.ravel(), basis.N))
-    return 0.5 * modulus * np.stack(found, axis=1)
+    return np.asarray(0.5 * modulus * np.stack(found, axis=1), dtype=float)
 
 
 def _weights(mode: int, at: Array, ring: tuple[float, float], lam: float, mu: float, kappa: float) -> Array:
