@@ -45,6 +45,29 @@ def plain(value: float) -> str:
     return f"{value:.{_DIGITS}g}"
 
 
+def figures(value: float, digits: int = 3, signed: bool = False) -> str:
+    """A rounded number of a sentence, large ones without a power of ten.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+        Significant ones.
+    signed : bool
+        Write the sign of a positive number as well.
+
+    Returns
+    -------
+    str
+        ``"-1380"``, ``"12.3"``, ``"0.00456"``.
+    """
+    if math.isfinite(value) and abs(value) < _WHOLE:
+        value = float(f"{value:.{digits}g}")
+        if abs(value) >= 10.0**digits:
+            return f"{value:{'+' if signed else ''}.0f}"
+    return f"{value:{'+' if signed else ''}.{digits}g}"
+
+
 def with_its_error(value: float, error: float) -> str:
     """Value and error, both to the error's second significant digit: ``"7.6187 +- 0.0034"``.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.printed import figures
 from fegear.geometry.plausible_flanks import DEEPEST_RELIEF, deepest_relief
 
 if TYPE_CHECKING:
@@ -68,8 +69,8 @@ def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
         load *= 0.9
     raise RangeError(
         "design.load", f"{worst.load:.6g} N", rule,
-        f"reduce the load: with the full path of contact as design length the limit is {load:.3g} N "
-        f"({load / worst.compliance.face_width * 1e-3:.3g} N/mm)",
+        f"reduce the load: with the full path of contact as design length the limit is {figures(load)} N "
+        f"({figures(load / worst.compliance.face_width * 1e-3)} N/mm)",
     )  # fmt: skip
 
 

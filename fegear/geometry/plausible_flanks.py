@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import figures
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -158,13 +159,14 @@ def heavy_load(pair: GearPair, load: float, pressure: float = 0.0) -> str:
     if stiff <= _METAL:
         return ""
     if _load_share(pair, load) > _HEAVY_LOAD:
+        mean = figures(line_load / pair.driver.module * 1e-6, 4)
         return (
-            f"line load {line_load * 1e-3:.4g} N/mm: F/(b m) = {line_load / pair.driver.module * 1e-6:.4g} MPa, root "
+            f"line load {figures(line_load * 1e-3, 4)} N/mm: F/(b m) = {mean} MPa, root "
             "stress about three times that, above the strength of any metal. Check load and face_width."
         )
     if pressure > _HEAVY_PRESSURE * stiff:
         return (
-            f"maximum Hertzian pressure {pressure * 1e-6:.4g} MPa at {load:.4g} N exceeds the yield limit of the "
-            "hardest steels. Check load, crowning and misalignment."
+            f"maximum Hertzian pressure {figures(pressure * 1e-6, 4)} MPa at {figures(load, 4)} N exceeds the yield "
+            "limit of the hardest steels. Check load, crowning and misalignment."
         )
     return ""

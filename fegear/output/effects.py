@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import fegear
+from fegear.base.printed import figures
 from fegear.case.reading import Scene
 from fegear.engine.figure.figure import Figure
 from fegear.engine.table import Column, Table
@@ -235,13 +236,12 @@ def sentence(found: Switched) -> str:
     most = found.largest_change()
     if most is not None:
         a, b = most.both
-        return f"{found.effect}: largest change in {a.name}: {a.value:.5g} -> {b.value:.5g} {a.unit}; {cost}.".replace(
-            " ;", ";"
-        )
+        values = f"{figures(a.value, 5)} -> {figures(b.value, 5)} {a.unit}".rstrip()
+        return f"{found.effect}: largest change in {a.name}: {values}; {cost}."
     unresolved = [pair for pair in found.changes() if pair.change != 0.0]
     if not unresolved:
         return f"{found.effect}: no value changes; {cost}."
     most = max(unresolved, key=lambda pair: abs(pair.share))
-    change = f"{most.change:+.3g} {most.both[0].unit}".rstrip()
+    change = f"{figures(most.change, signed=True)} {most.both[0].unit}".rstrip()
     not_resolved = f"{most.name}: {change}, not resolved ({stated_errors(most)})"
     return f"{found.effect}: no change above the estimated error; {not_resolved}; {cost}."

@@ -137,7 +137,7 @@ def test_absurd_sizes_are_refused_before_solving(override, words):
 def test_a_load_that_no_metal_carries_is_remarked_on():
     scene, _ = plan("pair.I.load=100 kN")
     (remark,) = [remark for remark in pair_notes(scene, pair_spec(scene, "I")) if "metal" in remark]
-    assert remark.startswith("Pair I: line load 1e+04 N/mm: F/(b m) = 3333 MPa")
+    assert remark.startswith("Pair I: line load 10000 N/mm: F/(b m) = 3333 MPa")
     soft, _ = plan("pair.I.load=1 kN", "gear.a.material.young_modulus=2.5 GPa")  # a plastic at .013 of its modulus
     assert not any("metal" in remark for remark in pair_notes(soft, pair_spec(soft, "I")))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.effects import AT_REST, CORNER_CONTACT, EFFECTS
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent
 from fegear.base.tally import note
 from fegear.case.effects import EffectsPart
 from fegear.contact.loaded_teeth import Answer, Change, Neglected
@@ -131,7 +131,7 @@ def neglected_in_design(
                 if abs(size) > tolerance * largest:
                     share = percent(abs(size) / largest)
                     where = f"{share} of its maximum, at x = {x[at] * 1e3:.4g} mm"
-                    sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
+                    sizes.append(f"the {member}'s relief by {figures(size * 1e6, signed=True)} um ({where})")
         if effect == CORNER_CONTACT.name and ground is not None:
             shape, best = ground
             other_best = grindable(other, load, shape, task.metric)
@@ -167,5 +167,6 @@ def _size(change: Change, nominal: float) -> str:
         change.answer, f"the {change.answer}"
     )
     where = "" if np.isnan(change.x) else f", at x = {change.x * 1e3:.4g} mm"
-    load = "" if change.load == nominal else f" under {change.load:.5g} N"
-    return f"{what} by {change.size * factor:+.3g}{unit} ({percent(change.share)} of {scale}{where}{load})"
+    load = "" if change.load == nominal else f" under {figures(change.load, 5)} N"
+    size = figures(change.size * factor, signed=True)
+    return f"{what} by {size}{unit} ({percent(change.share)} of {scale}{where}{load})"

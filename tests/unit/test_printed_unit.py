@@ -1,0 +1,22 @@
+"""Numbers in sentences: rounded, and large ones without a power of ten."""
+
+import math
+
+import pytest
+
+from fegear.base.printed import figures
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (-1383.2, 3, "-1380"), (12.345, 3, "12.3"), (0.0045678, 3, "0.00457"), (999.6, 3, "1000"),
+        (30_000.0, 4, "30000"), (0.0, 3, "0"), (123_456_789.0, 5, "123460000"), (5.4321e12, 3, "5.43e+12"),
+        (math.inf, 3, "inf"),
+    ],
+)  # fmt: skip
+def test_a_number_of_a_sentence_is_rounded(value, digits, text):
+    """A change of load was "-1.38e+03 N", a pressure "1e+04 MPa"."""
+    assert figures(value, digits) == text
+    if value > 0.0:
+        assert figures(value, digits, signed=True) == f"+{text}"
