@@ -115,9 +115,9 @@ def _bands(seen: Seen) -> str:
     reach = float(max(t.before.max(), t.after.max())) * 1e3
     width = f"{t.pressed_half_width.min() * 1e3:.4g} to {t.pressed_half_width.max() * 1e3:.4g}"
     return (
-        f"Gear {seen.name} over its face: each force presses on a band of the contact line, falling linearly along the "
-        f"face over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
-        f"half-width; neighbours and root stress are for a pressure of {width} mm half-width up the flank."
+        f"Gear {seen.name} over its face: each load patch is triangular along the contact line, {reach:.4g} mm to "
+        "either side (shorter at the face ends). c_self is for the contact half-width; neighbours and root stress are "
+        f"for a pressure half-width of {width} mm."
     )
 
 

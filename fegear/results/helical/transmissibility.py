@@ -141,10 +141,10 @@ def _two_parameters(seen: Seen) -> tuple[str, ...]:
     change = np.where(flexible, data.full / np.where(flexible, own, 1.0) - 1.0, 0.0)
     worst = int(np.argmax(np.abs(change)))
     sentence = (
-        f"Pair {seen.name}: one kappa for both gears lets them tilt about the pitch axis. With the whole mesh "
-        "stiffness matrix, each tilting about its own axis, natural frequencies move by up to "
-        f"{percent(change[worst], signed=True)} (mode {worst + 1}, {own[worst] / (2.0 * math.pi):.5g} Hz); the table "
-        "has them."
+        f"Pair {seen.name}: the model tilts both gears about the pitch axis (one kappa). With the full mesh "
+        "stiffness matrix (tilting about the own axes) natural frequencies change by up to "
+        f"{percent(change[worst], signed=True)} (mode {worst + 1}, {own[worst] / (2.0 * math.pi):.5g} Hz); see the "
+        "table."
     )
     return (sentence,)
 

@@ -132,7 +132,7 @@ def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
         return ()
     i = int(fewest.argmin())
     remark = (
-        f"Pair {name}: at {found.load[i]:.4g} N only {fewest[i]} points are in contact at a roll position, too few "
+        f"Pair {name}: at {found.load[i]:.4g} N as few as {fewest[i]} points carry load at a roll position, too few "
         "to resolve the load distribution. Increase load_distribution.panels."
     )
     return (remark,)

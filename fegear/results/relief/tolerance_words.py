@@ -93,5 +93,5 @@ def _held_against_nominal(found: ToleranceShown, percent: float) -> str:
         f"tip reliefs optimised for it, {there * 1e6:.4g} um with the nominal optimum"
     )
     if here < there:
-        return f"{verdict}; it is lower in {sure * 100.0:.0f} % of resampled sets."
+        return f"{verdict}; it is lower in {sure * 100.0:.0f} % of bootstrap samples."
     return f"{verdict}: no significant difference (or increase robustness.reliefs.draws)."
