@@ -159,14 +159,14 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(
-            "Pair {name}: mu = {d.means.mu:.4g} and kappa = {d.means.kappa:.4g}; contact lines of uniform stiffness, the "
-            "usual assumption of the two-parameter model, would give {d.means.mu_even:.4g} and "
+            "Pair {name}: mu = {d.means.mu:.4g} and kappa = {d.means.kappa:.4g}; contact lines of uniform stiffness, "
+            "the usual assumption of the two-parameter model, would give {d.means.mu_even:.4g} and "
             "{d.means.kappa_even:.4g}."
         ),
         Remark(
-            "Pair {name}: kappa is for tilting about the pitch axis. For tilting about its own axis, with the moment of "
-            "the axial force, it is {d.means.kappa_driver:.4g} for the driver and {d.means.kappa_driven:.4g} for the "
-            "driven gear (table of the mean matrix).",
+            "Pair {name}: kappa is for tilting about the pitch axis. For tilting about its own axis, with the moment "
+            "of the axial force, it is {d.means.kappa_driver:.4g} for the driver and "
+            "{d.means.kappa_driven:.4g} for the driven gear (table of the mean matrix).",
             when="means.two_kappas",
         ),
     ),
