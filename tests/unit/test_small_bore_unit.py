@@ -15,6 +15,7 @@ from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
 from fegear.results.catalogue import STAGES
 
 TOOTH = Tooth(28)
@@ -65,6 +66,19 @@ def test_what_all_teeth_err_by_alike_is_no_error_of_how_they_share_a_load(on_a_s
     off = own_less_neighbours(shifted(on_a_small_bore), radius) - own_less_neighbours(on_a_small_bore, radius)
     assert np.abs(off).max() < 0.05
     assert (shifted(on_a_small_bore).own(0, radius) > on_a_small_bore.own(0, radius)).all()  # the mean knows it
+
+
+@pytest.mark.dear
+def test_few_teeth_on_a_small_bore_are_meshed_by_shorter_edges_in_the_body():
+    """Nine teeth were refused: increase rim thickness, which was nearly the whole radius."""
+    tooth = Tooth(9, BasicRack(0.612, 0.891, 0.5, math.radians(14.5)))
+    small, usual = (
+        solve_gear(Gear(tooth, 3e-3, bore * 3e-3, 0.02), settings_at(-6.0), estimate_error=False)
+        for bore in (0.0274, 1.45)
+    )
+    radius = np.array([4.6, 5.0]) * 3e-3
+    stress, wanted = (one.largest_root_stress(0, "tension", radius)[0] for one in (small, usual))
+    assert stress == pytest.approx(wanted, rel=0.03)
 
 
 def test_a_plan_refuses_a_bore_that_a_run_cannot_solve():
