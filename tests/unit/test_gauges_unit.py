@@ -176,7 +176,7 @@ def test_strain_is_mean_stress_by_the_plane_modulus(plain):
     assert history.strain == pytest.approx(history.stress * (1.0 - 0.3**2) / 206.8e9, rel=1e-12)
     assert plain.peak_strain[0] == history.strain.max()
     assert plain.fillet_ratio[0] == pytest.approx(history.strain_opposite.min() / history.strain.max())
-    assert plain.peak_error[0] < 3e-3 * plain.peak_strain[0]
+    assert 0.0 < plain.peak_error[0] < 1e-2 * plain.peak_strain[0]  # the tolerance
 
 
 def test_a_displaced_grid_sees_what_one_glued_there_does(plain):

@@ -286,7 +286,9 @@ class GaugesOnFillet:
         coarse, m = known.estimate.coarse, known.gear.module
         clipped = np.clip(r, known.lowest_radius, known.highest_radius)
         other = self.weights(coarse) @ coarse.fillet_stress(k, self.side, clipped / m) / m
-        return known.estimate.place_error(self.stress(k, clipped), np.asarray(other))
+        by_order = known.estimate.place_error(self.stress(k, clipped), np.asarray(other))
+        # What both orders have in common, the edges' own curves, is part of the largest stress's error only.
+        return np.maximum(by_order, known.root_stress_error(k, self.side, clipped))
 
     @property
     def strain_per_stress(self) -> float:
