@@ -328,3 +328,9 @@ def test_flanks_of_a_ring_that_meshes(cache):
     hertz = np.sqrt(at["line_load"] * modulus * bent / np.pi)
     assert at["hertz_pressure"][on] == pytest.approx(hertz[on], rel=1e-3)
     assert any(": ISO/TS 6336-22 applies to external gears;" in remark for remark in found.remarks)
+
+
+def test_two_pins_hold_a_ring_and_one_does_not():
+    assert ring(rim_support={"kind": "pins", "pins": 2, "width": "6 mm"}).support.pins == 2
+    with pytest.raises(InputError, match=r"rim_support\.pins = 1: must be at least 2"):
+        ring(rim_support={"kind": "pins", "pins": 1, "width": "6 mm"})
