@@ -126,6 +126,10 @@ def test_names_that_join_to_one_table_are_refused_by_the_plan(monkeypatch):
         run_plan(scene, make_plan(scene, STAGES))
 
 
+#: What makes tables and figures, by hand or as a part of a sheet; the text of its name comes first.
+MAKERS = {"Table", "Figure", "DeferredFigure", "Rows", "EveryLoad", "Every", "Chart", "Over", "Map", "Bundle", "Family"}
+
+
 def joined_words():
     """What names that results make go on with, where shorter ones end: of all texts with a name behind them."""
     stems = set()
@@ -134,9 +138,10 @@ def joined_words():
             if isinstance(node, ast.JoinedStr) and isinstance(node.values[0], ast.Constant):
                 stem = node.values[0].value
                 stems |= {stem[:-1]} if re.fullmatch(r"[a-z0-9_]+_", stem) else set()
-            elif isinstance(node, ast.Call) and ast.unparse(node.func) in {"Table", "Figure", "DeferredFigure"}:
-                name = node.args[0].value if node.args and isinstance(node.args[0], ast.Constant) else None
-                stems |= {name} if isinstance(name, str) else set()
+            elif isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in MAKERS:
+                given = [*node.args[:1], *(key.value for key in node.keywords if key.arg == "name")]
+                names = [one.value for one in given if isinstance(one, ast.Constant)]
+                stems |= {re.sub(r"_?\{.*", "", name) for name in names if isinstance(name, str)} - {""}
     return {long[len(stem) + 1 :] for stem in stems for long in stems if long.startswith(f"{stem}_")}
 
 
