@@ -28,8 +28,9 @@ import numpy as np
 
 from fegear import __version__
 from fegear.base.errors import InputError
-from fegear.case.built.train import build_train, train_inputs
+from fegear.case.built.train import train_inputs
 from fegear.dynamics.train.gear_train import a_drives
+from fegear.dynamics.train.train_spec import build_train
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.output.file_names import file_name
@@ -328,12 +329,12 @@ def _model(scene: Scene, name: str, teeth: LoadedTeeth) -> tuple[MeshModel, str]
     of = [m for m, one in part.mesh.items() if one.like is None and part.pair_of(m) == name] if part else []
     if part and of:
         number = list(part.mesh).index(of[0])
-        forward = a_drives(build_train(train_inputs(scene)))[number]
+        forward = a_drives(build_train(train_inputs(scene).spec))[number]
     found = tuple(_springs(teeth, load, forward=forward) for load in teeth.loads)
     about = "no damping specified; set its parameter damping"
     if part and of:
         stiffness = 1.0 / found[teeth.loads.index(teeth.nominal)].mean_compliance()
-        mesh = build_train(train_inputs(scene), {of[0]: stiffness}).meshes[number]
+        mesh = build_train(train_inputs(scene).spec, {of[0]: stiffness}).meshes[number]
         found = tuple(replace(one, phase=part.mesh[of[0]].phase) for one in found)
         about = f"damping and phase from train.mesh.{of[0]}"
     pair = teeth.pair if forward else teeth.pair.reversed()

@@ -66,16 +66,16 @@ def sizes(scene: Scene) -> tuple[int, int]:
 
 def periods(scene: Scene) -> int:
     """Periods of the fastest mesh after which all meshes stand as before."""
-    from fegear.case.built.train import build_train, train_inputs
+    from fegear.case.built.train import train_inputs
     from fegear.dynamics.train.torque_ripple import common_period
+    from fegear.dynamics.train.train_spec import build_train, speed_ratio
 
-    asked = train_inputs(scene)
-    train = build_train(asked)
+    spec = train_inputs(scene).spec
+    train = build_train(spec)
     turns, fastest = train.mesh_turns, max(train.mesh_orders)
     speeds = scene.case.dynamics.speed_values
-    if asked.ripple and speeds.size:
-        first = float(speeds[0]) / abs(float(train.ratios[train.dof[asked.speed_of]]))
-        turns *= common_period(turns, fastest, first, asked.ripple).count
+    if spec.ripple and speeds.size:
+        turns *= common_period(turns, fastest, float(speeds[0]) / speed_ratio(spec, train), spec.ripple).count
     return round(float(turns * fastest))
 
 

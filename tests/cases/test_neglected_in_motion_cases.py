@@ -10,7 +10,7 @@ import pytest
 from solved_once import CACHE
 
 from fegear.case.built.neglected_in_motion import contact_loss_changes, friction_changes
-from fegear.case.built.train import motion_inputs
+from fegear.case.built.train import motion_spec
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -51,7 +51,7 @@ def test_the_reported_size_is_that_of_the_run_with_the_effect_on(load, relief, e
     off = run(load, f"effects.{effect}=false", f"effects.relief={relief}")
     on = run(load, f"effects.{effect}=true", f"effects.relief={relief}")
     data, states = off.outcomes[Task("gear-train")].data, off.outcomes[Task("motion")].data.states
-    (change,) = changes(motion_inputs(off.scene), data, states)
+    (change,) = changes(motion_spec(off.scene), data, states)
     true = factors(on) - factors(off)
     there = true[np.argmin(np.abs(np.array([s.model.speed for s in states]) - change.speed))]
     # at its own speed it is the run's

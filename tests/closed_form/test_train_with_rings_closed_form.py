@@ -7,11 +7,12 @@ import pytest
 
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.planetary import set_inputs
-from fegear.case.built.train import build_train, train_inputs
+from fegear.case.built.train import train_inputs
 from fegear.case.reading import build_scene
 from fegear.dynamics.planetary.set_modes import set_modes
 from fegear.dynamics.train.friction import sliding_contact, with_friction
 from fegear.dynamics.train.matrices import mass_matrix, static_forces, stiffness_matrix
+from fegear.dynamics.train.train_spec import build_train
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.flash_temperature import flank_speeds
@@ -51,7 +52,7 @@ def single(results=("natural-modes",), drives="planet", more_of_pair=None, **mor
 @pytest.mark.parametrize("drives", ["planet", "ring"])
 def test_planet_and_ring_turn_the_same_way_under_the_force_of_the_torque(drives):
     found = single(drives=drives)
-    train = build_train(train_inputs(found), {"M": 400e6})
+    train = build_train(train_inputs(found).spec, {"M": 400e6})
     assert train.ratios == pytest.approx([1.0, 29 / 83], rel=1e-12)  # both counter-clockwise
     driver = found.pairs["I"].driver
     assert static_forces(train) == pytest.approx([80.0 / driver.base_radius], rel=1e-12)
@@ -73,7 +74,7 @@ def test_a_star_of_two_planets_has_the_rotational_modes_of_its_set():
         "torque": {"sun": "100 N*m"}, "balance": "ring",
     }  # fmt: skip
     found = scene(train, ["natural-modes"], planetary=PLANETARY)
-    made = build_train(train_inputs(found), {"sa": 300e6, "sb": 300e6, "ar": 480e6, "br": 480e6})
+    made = build_train(train_inputs(found).spec, {"sa": 300e6, "sb": 300e6, "ar": 480e6, "br": 480e6})
     ratio = dict(zip(bodies, (made.ratios[made.dof[name]] for name in bodies), strict=True))
     assert ratio == pytest.approx({"sun": 1.0, "a": -25 / 29, "b": -25 / 29, "ring": -25 / 83}, rel=1e-12)
     assert static_forces(made) == pytest.approx([50.0 / found.gears["s"].base_radius] * 4, rel=1e-9)

@@ -13,8 +13,9 @@ from scipy.integrate import solve_ivp
 
 import fegear
 from fegear.base.errors import InputError
-from fegear.case.built.train import motion_inputs, motion_model
+from fegear.case.built.train import motion_spec
 from fegear.dynamics.motion.motion import simulate
+from fegear.dynamics.motion.motion_spec import motion_model
 from fegear.engine.stage import Task
 
 SPEED = 8000.0 * math.pi / 30.0
@@ -120,7 +121,7 @@ def test_one_revolution_moves_as_in_fegear(made):
     """
     results, path = made
     data = results.outcomes[Task("gear-train", "")].data
-    model = motion_model(motion_inputs(results.scene), data, SPEED)
+    model = motion_model(motion_spec(results.scene), data, SPEED)
     duration = 2.0 * math.pi / SPEED
     own = simulate(model, duration)
     pair, (j1, j2) = data.meshes[0].pair, data.train.inertia

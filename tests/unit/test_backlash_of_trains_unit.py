@@ -6,8 +6,9 @@ import pytest
 
 import fegear
 from fegear.base.errors import InputError
-from fegear.case.built.train import build_train, train_inputs
+from fegear.case.built.train import train_inputs
 from fegear.case.reading import build_scene
+from fegear.dynamics.train.train_spec import build_train
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 
@@ -31,7 +32,7 @@ def case(allowance="53.2088886 um", distance="350 mm", **keys):
 
 def backlash(folder, document):
     scene = build_scene(document, "case", folder)
-    return build_train(train_inputs(scene)).meshes[0].backlash, scene.pairs["I"].normal_backlash
+    return build_train(train_inputs(scene).spec).meshes[0].backlash, scene.pairs["I"].normal_backlash
 
 
 def test_it_is_that_of_the_gears_unless_given(tmp_path):

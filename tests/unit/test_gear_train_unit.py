@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.built.train import build_train, train_inputs
+from fegear.case.built.train import train_inputs
 from fegear.case.reading import build_scene
 from fegear.dynamics.train.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
 from fegear.dynamics.train.modes import campbell, damped_eigenvalues, modes
@@ -25,6 +25,7 @@ from fegear.dynamics.train.train import (
     shaft_damping,
     shaft_stiffness,
 )
+from fegear.dynamics.train.train_spec import build_train
 
 
 def mesh(name="m", a="a", b="b", ra=0.05, rb=0.1, za=20, zb=40, k=1e8, **more):
@@ -186,7 +187,7 @@ def test_rigid_shafts_of_a_case_join_bodies_in_damping_ratios():
             del shaft[key]
         shaft["rigid"] = True
     (mesh,) = case["train"]["mesh"].values()
-    swinging = damped_eigenvalues(build_train(train_inputs(build_scene(case, "rigid", Path()))))[-1]
+    swinging = damped_eigenvalues(build_train(train_inputs(build_scene(case, "rigid", Path())).spec))[-1]
     assert -swinging.real / abs(swinging) == pytest.approx(mesh["damping_ratio"], rel=1e-9)
 
 

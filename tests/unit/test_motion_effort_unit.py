@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.case.built.train import steady_motion
 from fegear.dynamics.motion import effort, steady_state
 from fegear.dynamics.motion.effort import EFFORT, ENDLESS_EFFORT, Effort, effort_for, least_decay, of_one
 from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_spec import steady_motion
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Mesh, Shaft, Torque, Train, mesh_damping
@@ -106,9 +106,9 @@ def test_an_effort_that_is_not_needed_changes_nothing(monkeypatch):
 @pytest.mark.parametrize("method", ["averaging", "shooting"])
 def test_a_steady_motion_is_found_by_the_method_that_the_case_names(method, monkeypatch):
     told = []
-    for name, module in (("averaged_motion", "averaging"), ("steady_state", "steady_state")):
+    for name in ("averaged_motion", "steady_state"):
         monkeypatch.setattr(
-            f"fegear.dynamics.motion.{module}.{name}",
+            f"fegear.dynamics.motion.motion_spec.{name}",
             lambda model, name=name, **how: (told.append((name, how)), name)[1],
         )
     found = steady_motion(SimpleNamespace(method=method), "model", "static", 1e-3, None)

@@ -19,7 +19,7 @@ from fegear.contact.plane.neglected_effects import COUNTED
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from fegear.case.built.train import MotionInputs
+    from fegear.dynamics.motion.motion_spec import MotionSpec
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.gear_train import GearTrain
@@ -59,9 +59,9 @@ def _loaded(data: GearTrain) -> list[int]:
     return [m for m, force in enumerate(data.forces) if force > least]
 
 
-def _changes(asked: MotionInputs, data: GearTrain, state: SteadyState) -> list[FactorChange]:
+def _changes(asked: MotionSpec, data: GearTrain, state: SteadyState) -> list[FactorChange]:
     """One motion with one effect more, at the speed of a state without it."""
-    from fegear.case.built.train import motion_model, steady_motion
+    from fegear.dynamics.motion.motion_spec import motion_model, steady_motion
 
     speed = state.model.speed
     other = steady_motion(asked, motion_model(asked, data, speed), asked.start, max(asked.tolerance, 1e-3))
@@ -81,7 +81,7 @@ def _held_apart(excitation: MeshExcitation) -> bool:
     return bool(spread.max() > _NOTHING)
 
 
-def contact_loss_changes(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+def contact_loss_changes(asked: MotionSpec, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
     """What contact loss changes at the speed at which a mesh that may not part has the smallest force.
 
     No change, and no work, where no mesh force falls below zero and all teeth of a mesh touch at one approach: none
@@ -107,7 +107,7 @@ def _with_backlash(data: GearTrain) -> GearTrain:
     return replace(data, train=replace(data.train, meshes=meshes))
 
 
-def friction_changes(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+def friction_changes(asked: MotionSpec, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
     """What tooth friction changes at the speed of the largest dynamic factor."""
     if not asked.parametric or not all(mesh.excitation.slotted for mesh in data.meshes):
         return []  # lumped teeth have no place at which they slide
@@ -118,7 +118,7 @@ def friction_changes(asked: MotionInputs, data: GearTrain, states: Sequence[Stea
 
 
 #: What one more effect changes, by the effects of which that is estimated.
-SIZED: dict[str, Callable[[MotionInputs, GearTrain, Sequence[SteadyState]], list[FactorChange]]] = {
+SIZED: dict[str, Callable[[MotionSpec, GearTrain, Sequence[SteadyState]], list[FactorChange]]] = {
     CONTACT_LOSS.name: contact_loss_changes,
     FRICTION.name: friction_changes,
 }
@@ -140,7 +140,7 @@ class NeglectedInMotion:
     failed: Mapping[str, str]
 
 
-def neglected_in_motion(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> NeglectedInMotion:
+def neglected_in_motion(asked: MotionSpec, data: GearTrain, states: Sequence[SteadyState]) -> NeglectedInMotion:
     """What contact loss and friction would change where they are off."""
     changes: dict[str, tuple[FactorChange, ...]] = {}
     failed: dict[str, str] = {}

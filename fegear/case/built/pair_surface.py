@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.built.train import build_train, train_inputs
+from fegear.case.built.train import train_inputs
+from fegear.dynamics.train.train_spec import build_train, speed_ratio
 from fegear.geometry.pair import MEMBERS, GearPair
 
 if TYPE_CHECKING:
@@ -148,9 +149,9 @@ def pair_speed(scene: Scene, name: str) -> float:
     meshes = [mesh for mesh in train.mesh if train.pair_of(mesh) == name]
     if not meshes:
         return math.nan
-    asked = train_inputs(scene)
-    built = build_train(asked)
-    first = scene.case.dynamics.one_speed / abs(float(built.ratios[built.dof[asked.speed_of]]))
+    spec = train_inputs(scene).spec
+    built = build_train(spec)
+    first = scene.case.dynamics.one_speed / speed_ratio(spec, built)
     frequency = float(built.mesh_frequencies(first)[built.mesh_index(meshes[0])])
     return 2.0 * math.pi * frequency / scene.pairs[name].driver.teeth
 

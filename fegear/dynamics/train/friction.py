@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,7 @@ from fegear.dynamics.train.gear_train import TrainMesh
 from fegear.dynamics.train.mesh_excitation import FIT
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Mesh
+from fegear.geometry.pair import GearPair
 
 _INCH = 0.0254
 
@@ -124,6 +125,33 @@ def sliding_contact(
 
 
 @tallied("friction fits")
+@dataclass(frozen=True)
+class FrictionLaw:
+    """A law of the friction coefficient of teeth.
+
+    Parameters
+    ----------
+    law : {"buckingham", "benedict-kelley", "constant"}
+    viscosity : float, optional
+        Of the oil, for ``benedict-kelley`` [Pa s].
+    coefficient : float, optional
+        For ``constant``.
+    """
+
+    law: Literal["buckingham", "benedict-kelley", "constant"] = "buckingham"
+    viscosity: float | None = None
+    coefficient: float | None = None
+
+    def of(self, pair: GearPair) -> Callable[[Array, Array, Array], Array]:
+        """Friction coefficient of a pair from sliding speed, sum of the rolling speeds [m/s] and tooth force [N]."""
+        if self.law == "buckingham":
+            return lambda sliding, _rolling, _force: buckingham(sliding)
+        if self.law == "constant":
+            return lambda sliding, _rolling, _force: np.full(np.shape(sliding), self.coefficient or 0.0)
+        viscosity, width = self.viscosity or 0.0, pair.face_width
+        return lambda sliding, rolling, force: benedict_kelley(np.asarray(force) / width, viscosity, sliding, rolling)
+
+
 def with_friction(
     excitation: MeshExcitation,
     mesh: Mesh,

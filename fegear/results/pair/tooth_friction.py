@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.effects import FRICTION
 from fegear.base.shown import shown, shows
-from fegear.case.built.train import friction_coefficient
+from fegear.case.built.train import motion_spec
 from fegear.contact.plane.pair_history import PairHistory
 from fegear.engine.citation import Citation
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
@@ -33,9 +33,8 @@ from fegear.results.train.motion import check_friction
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.case.dynamics import FrictionPart
     from fegear.case.reading import Scene
-    from fegear.dynamics.train.friction import FrictionOverPath
+    from fegear.dynamics.train.friction import FrictionLaw, FrictionOverPath
     from fegear.dynamics.train.gear_train import TrainMesh
 
 #: Each speed [s].
@@ -49,7 +48,7 @@ class FrictionInputs:
     Parameters
     ----------
     mesh : str
-    law : FrictionPart
+    law : FrictionLaw
     speeds : ndarray
         Of the body that speeds refer to [rad/s].
     stated : float
@@ -59,7 +58,7 @@ class FrictionInputs:
     """
 
     mesh: str
-    law: FrictionPart
+    law: FrictionLaw
     speeds: Array
     stated: float
     positions: int
@@ -136,7 +135,7 @@ def _inputs(scene: Scene, name: str) -> FrictionInputs:
     part = scene.case.dynamics
     speeds = np.unique([*part.speed_values, *(() if part.speed is None else (part.speed,))])
     stated = float(speeds[-1]) if part.speed is None else part.speed
-    return FrictionInputs(name, part.friction, speeds, stated, part.positions)
+    return FrictionInputs(name, motion_spec(scene).law, speeds, stated, part.positions)
 
 
 def _compute(asked: FrictionInputs, upstream: Upstream, work: Work) -> FrictionData:
@@ -144,7 +143,7 @@ def _compute(asked: FrictionInputs, upstream: Upstream, work: Work) -> FrictionD
 
     data, found = gear_train(upstream), []
     i = data.train.mesh_index(asked.mesh)
-    law = friction_coefficient(asked.law, data.meshes[i].pair)
+    law = asked.law.of(data.meshes[i].pair)
     if carries_nothing(data, i):
         return FrictionData(data.meshes[i], data.speed_of, (), asked.speeds, asked.stated)
     for speed in asked.speeds:

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.case.built.pair_surface import pair_speed
-from fegear.case.built.train import build_train, check_train, train_inputs, train_part
+from fegear.case.built.train import check_train, train_inputs, train_part
 from fegear.case.reading import Scene
 from fegear.contact.tooth_loss import ToothLoss
 from fegear.engine.figure.axis import Axis
@@ -110,22 +110,23 @@ def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
 
 def _train_inputs(scene: Scene, _subject: str) -> TrainLossInputs:
     from fegear.dynamics.train.matrices import static_forces
+    from fegear.dynamics.train.train_spec import build_train, speed_ratio
 
     part = train_part(scene)
-    asked = train_inputs(scene)
-    train = build_train(asked)
+    spec = train_inputs(scene).spec
+    train, pairs = build_train(spec), spec.pairs
     forces = np.abs(static_forces(train))
-    speed = scene.case.dynamics.one_speed / abs(float(train.ratios[train.dof[asked.speed_of]]))
+    speed = scene.case.dynamics.one_speed / speed_ratio(spec, train)
     if not speed > 0.0:  # by the first pair that gives one
         for i, mesh in enumerate(part.mesh):
             own = pair_speed(scene, part.pair_of(mesh))
             if own > 0.0:
-                speed = own * asked.pairs[mesh].driver.teeth / float(train.mesh_orders[i])
+                speed = own * pairs[mesh].driver.teeth / float(train.mesh_orders[i])
                 break
     frequency = train.mesh_frequencies(speed)
     power, doubtful = [], []
     for i, mesh in enumerate(part.mesh):
-        pair = asked.pairs[mesh]
+        pair = pairs[mesh]
         power.append(float(forces[i]) * float(frequency[i]) * pair.base_pitch)
         turns = 2.0 * math.pi * float(frequency[i]) / pair.driver.teeth
         if abs(pair_speed(scene, part.loaded_pair_of(mesh)) / turns - 1.0) > _SAME:

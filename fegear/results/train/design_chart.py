@@ -12,21 +12,15 @@ from fegear.base.effects import CONTACT_LOSS, PARAMETRIC
 from fegear.base.errors import FegearError, InputError
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.tooth_influence import GearToSolve, gear_to_solve
-from fegear.case.built.train import (
-    MotionInputs,
-    TrainInputs,
-    assemble,
-    motion_inputs,
-    steady_motions,
-    train_inputs,
-    train_part,
-)
+from fegear.case.built.train import motion_spec, train_inputs, train_part
 from fegear.case.dynamics import DesignChartPart
 from fegear.case.reading import Scene
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.engagement import Engagement
+from fegear.dynamics.motion.motion_spec import MotionSpec, steady_motions
 from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 from fegear.dynamics.train.gear_train import GearTrain
+from fegear.dynamics.train.train_spec import TrainSpec, assemble
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
@@ -56,8 +50,8 @@ class ChartInputs:
     shape : {"linear", "parabolic"}
     mesh : str
         That is relieved and looked at.
-    train : TrainInputs
-    motion : MotionInputs
+    train : TrainSpec
+    motion : MotionSpec
     teeth : PairSpec
         Of that mesh.
     gears : tuple of GearToSolve
@@ -69,8 +63,8 @@ class ChartInputs:
     unequal: tuple[tuple[float, float, float], ...]
     shape: Shape
     mesh: str
-    train: TrainInputs
-    motion: MotionInputs
+    train: TrainSpec
+    motion: MotionSpec
     teeth: PairSpec
     gears: tuple[GearToSolve, ...]
 
@@ -106,7 +100,7 @@ def chart_trial(trial: Trial) -> dict[str, float]:
     mesh = trial.train.meshes[i]
     found = mesh_excitation(engagement if mesh.a_drives else engagement.reversed(), mesh.force)
     by_mesh = {name: one.excitation for name, one in zip(trial.train.names, trial.train.meshes, strict=True)}
-    by_mesh[trial.train.names[i]] = replace(found, phase=mesh.excitation.phase)
+    by_mesh[trial.train.names[i]] = found
     data = assemble(asked.train, by_mesh)
     states = steady_motions(asked.motion, data)
     curve = SpeedChart.of(asked.motion.speeds, states, i, float(data.forces[i]))
@@ -170,7 +164,7 @@ def _inputs(scene: Scene, _subject: str) -> ChartInputs:
     solved = teeth.gears if teeth.compliance == "fe" else ()
     return ChartInputs(
         np.unique(part.amounts), np.unique(part.lengths), tuple((u.driver, u.driven, u.length) for u in part.unequal),
-        part.shape, mesh, train_inputs(scene), motion_inputs(scene),
+        part.shape, mesh, train_inputs(scene).spec, motion_spec(scene),
         teeth, tuple(gear_to_solve(scene, gear) for gear in solved),
     )  # fmt: skip
 

@@ -12,7 +12,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.case.built.train import MotionInputs, backlash_of, motion_inputs, train_part
+from fegear.case.built.train import motion_spec, train_inputs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Line, Over
@@ -33,6 +33,7 @@ from fegear.results.train.gear_train import (
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.dynamics.motion.motion_spec import MotionSpec
     from fegear.dynamics.train.charts import SpeedChart
     from fegear.dynamics.train.tooth_force import Pull
     from fegear.engine.sheet.seen import Seen
@@ -75,24 +76,24 @@ class FactorInputs:
     Parameters
     ----------
     mesh : str
-    motion : MotionInputs
+    motion : MotionSpec
     positions, harmonics : int
         Of tooth forces in the linearised train.
     """
 
     mesh: str
-    motion: MotionInputs
+    motion: MotionSpec
     positions: int
     harmonics: int
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (*needs_train(scene, name), *((Task("motion"),) if motion_inputs(scene).in_time else ()))
+    return (*needs_train(scene, name), *((Task("motion"),) if motion_spec(scene).in_time else ()))
 
 
 def _inputs(scene: Scene, name: str) -> FactorInputs:
     part = scene.case.dynamics
-    return FactorInputs(name, motion_inputs(scene), part.positions, part.harmonics)
+    return FactorInputs(name, motion_spec(scene), part.positions, part.harmonics)
 
 
 def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFactorData:
@@ -145,7 +146,7 @@ class ShownFactors:
     """Factors of a mesh as they are tabulated and drawn."""
 
     found: DynamicFactorData
-    motion: MotionInputs
+    motion: MotionSpec
 
     @property
     def chart(self) -> SpeedChart | None:
@@ -243,13 +244,13 @@ class ShownFactors:
 
 def _check(scene: Scene, name: str) -> None:
     needs_speeds(scene, name)
-    if scene.case.dynamics.method == "averaging" and not motion_inputs(scene).in_time:
+    if scene.case.dynamics.method == "averaging" and not motion_spec(scene).in_time:
         raise InputError(
             "dynamics.method", "averaging", "applies to time-domain results only",
             "set effects.contact_loss, effects.parametric or effects.friction, or remove the key",
         )  # fmt: skip
-    mesh, pair = train_part(scene).mesh[name], scene.pairs[train_part(scene).pair_of(name)]
-    given, own = backlash_of(mesh, pair), pair.free_backlash  # said once more, that of the gears changes nothing
+    (mesh,) = (mesh for mesh in train_inputs(scene).spec.meshes if mesh.name == name)
+    given, own = mesh.room, mesh.pair.free_backlash  # said once more, that of the gears changes nothing
     said_nothing = math.isinf(given) or math.isclose(given, own, rel_tol=1e-6, abs_tol=1e-12)
     if scene.case.effects.contact_loss is False and not said_nothing:
         raise InputError(
@@ -378,7 +379,7 @@ _SHEET = Sheet(
 def _forecast(scene: Scene, _name: str) -> Forecast:
     """Read from the motion, or the linearised train at each speed."""
     speeds = int(scene.case.dynamics.speed_values.size)
-    return Forecast({"speeds": speeds}, 0.005 if motion_inputs(scene).in_time else 0.02 * speeds)
+    return Forecast({"speeds": speeds}, 0.005 if motion_spec(scene).in_time else 0.02 * speeds)
 
 
 DYNAMIC_FACTOR = Stage(

@@ -367,10 +367,11 @@ def _inputs(scene: Scene, _subject: str) -> FrequencyInputs:
 def _check(scene: Scene, _subject: str) -> None:
     """Refuse determinants of a train that is not Mark's rig."""
     if scene.case.dynamics.determinants:
-        from fegear.case.built.train import build_train, train_inputs
+        from fegear.case.built.train import train_inputs
         from fegear.dynamics.train.four_square import FourSquare
+        from fegear.dynamics.train.train_spec import build_train
 
-        FourSquare.of(build_train(train_inputs(scene)))
+        FourSquare.of(build_train(train_inputs(scene).spec))
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:

@@ -15,9 +15,10 @@ from fegear.base.errors import InputError
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.pair_checks import check_relief
-from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
+from fegear.case.built.train import MeshTeeth, TrainInputs, check_train, train_inputs, train_part
 from fegear.dynamics.train.gear_train import GearTrain, a_drives
 from fegear.dynamics.train.matrices import static_forces
+from fegear.dynamics.train.train_spec import assemble, build_train
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
-    from fegear.case.train import TrainMeshPart
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.gear_train import TrainMesh
@@ -96,27 +96,26 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
     from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
-    part, train = asked.part, build_train(asked)
+    train = build_train(asked.spec)
     forces, forward = static_forces(train), a_drives(train)
     excitations: dict[str, MeshExcitation] = {}
-    for number, (name, mesh) in enumerate(part.mesh.items()):
-        pair, force = part.loaded_pair_of(name), abs(float(forces[number]))
-        width = mesh.like.width_ratio if mesh.like else 1.0
+    for number, (name, teeth) in enumerate(asked.teeth.items()):
+        pair, force, width = teeth.pair, abs(float(forces[number])), teeth.width_ratio
         if Task("loaded-flanks", pair) in upstream:
             found = excitation_of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
         else:
             loaded = loaded_pair(upstream, pair)
-            engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
+            engagement = loaded.engagement.unmodified() if teeth.like else loaded.engagement
             found = mesh_excitation(
                 engagement if forward[number] else engagement.reversed(), force / width or loaded.nominal
             )
-        excitations[name] = replace(found.widened(width), phase=mesh.phase)
-        work.progress((number + 1) / len(part.mesh))
-    made = assemble(asked, excitations)
-    flanks = {mesh: Task("loaded-flanks", part.loaded_pair_of(mesh)) for mesh in part.mesh}
+        excitations[name] = found.widened(width)
+        work.progress((number + 1) / len(asked.teeth))
+    made = assemble(asked.spec, excitations)
+    flanks = {mesh: Task("loaded-flanks", teeth.pair) for mesh, teeth in asked.teeth.items()}
     meshes = tuple(
         replace(one, doubt=_doubt(loaded_flanks(upstream, flanks[name].subject))) if flanks[name] in upstream else one
-        for name, one in zip(part.mesh, made.meshes, strict=True)
+        for name, one in zip(asked.teeth, made.meshes, strict=True)
     )
     return replace(made, meshes=meshes)
 
@@ -138,13 +137,13 @@ class MeshRow:
         With its excitation.
     spring : Mesh
         In the train.
-    part : TrainMeshPart
-        Of the case.
+    teeth : MeshTeeth
+        Whose they are.
     """
 
     made: TrainMesh
     spring: Mesh
-    part: TrainMeshPart
+    teeth: MeshTeeth
 
     @property
     @shows("N", "mean axial force (helix)")
@@ -179,7 +178,7 @@ class MeshRow:
     @property
     def pitches(self) -> int:
         """Base pitches after which its excitation repeats; 1 for teeth like those of another mesh."""
-        return self.made.error.pitches if self.part.like is None else 1
+        return self.made.error.pitches if not self.teeth.like else 1
 
 
 @dataclass(frozen=True)
@@ -191,16 +190,13 @@ class BodyRow:
 
 
 def _meshes(seen: Seen) -> dict[str, MeshRow]:
-    parts = zip(seen.data.meshes, seen.data.train.meshes, seen.asked.part.mesh.items(), strict=True)
-    return {name: MeshRow(made, spring, part) for made, spring, (name, part) in parts}
+    parts = zip(seen.data.meshes, seen.data.train.meshes, seen.asked.teeth.items(), strict=True)
+    return {name: MeshRow(made, spring, teeth) for made, spring, (name, teeth) in parts}
 
 
 def _bodies(seen: Seen) -> dict[str, BodyRow]:
-    found = {}
-    for name, body in seen.asked.part.body.items():
-        sources = [*(f"gear {gear}" for gear in body.gears or ()), *(["inertia"] if body.inertia else [])]
-        found[name] = BodyRow(" + ".join(sources), seen.asked.inertias[name])
-    return found
+    sources = seen.asked.sources
+    return {body.name: BodyRow(sources[body.name], body.inertia) for body in seen.asked.spec.bodies}
 
 
 def _whose_speeds(seen: Seen) -> list[str]:
@@ -211,7 +207,7 @@ def _whose_speeds(seen: Seen) -> list[str]:
         return []
     low, high = (float(ratio) / data.speed_ratio for ratio in (ratios.min(), ratios.max()))
     said = (
-        f"dynamics.speed_of not specified: speeds refer to {asked.speed_of}, the first table under [train.body]. "
+        f"dynamics.speed_of not specified: speeds refer to {asked.spec.reference}, the first table under [train.body]. "
         f"Other bodies rotate at {low:.4g} to {high:.4g} times this speed; set speed_of under [dynamics]."
     )
     return [said]
@@ -245,8 +241,8 @@ _SHEET = Sheet(
         Each(
             _meshes,
             Remark(
-                "Mesh {key}: by the torques {one.part.driven} drives {one.part.driver}; x is positive towards the tip "
-                "of the gear on {one.part.driven}.",
+                "Mesh {key}: by the torques {one.spring.b} drives {one.spring.a}; x is positive towards the tip of "
+                "the gear on {one.spring.b}.",
                 when=lambda seen: not seen.one.made.a_drives,
             ),
             Remark(

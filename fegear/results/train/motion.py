@@ -11,10 +11,12 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.printed import percent
 from fegear.case.built.neglected_in_motion import SIZED, NeglectedInMotion, motion_remarks, neglected_in_motion
-from fegear.case.built.train import MotionInputs, build_train, motion_inputs, steady_motions, train_inputs
+from fegear.case.built.train import motion_spec, train_inputs
 from fegear.case.part import at
 from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.motion_spec import MotionSpec, steady_motions
 from fegear.dynamics.train.torque_ripple import LONGEST, common_period
+from fegear.dynamics.train.train_spec import build_train, speed_ratio
 from fegear.engine.citation import Citation
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
@@ -54,7 +56,7 @@ class SweepInputs:
 
     Parameters
     ----------
-    motion : MotionInputs
+    motion : MotionSpec
     tolerance : float
         That neglected effects are compared with.
     idle_friction : bool
@@ -65,7 +67,7 @@ class SweepInputs:
         Whether the sizes of effects that are off are estimated.
     """
 
-    motion: MotionInputs
+    motion: MotionSpec
     tolerance: float = field(compare=False)
     idle_friction: bool = field(compare=False)
     effects: EffectsPart = field(compare=False)
@@ -99,14 +101,14 @@ def check_motion(scene: Scene, subject: str = "") -> None:
 
 def _check_ripple(scene: Scene) -> None:
     """Refuse torque ripple so slow that no motion can be closed over its period."""
-    if not scene.case.effects.torque_ripple or not motion_inputs(scene).in_time:
+    if not scene.case.effects.torque_ripple or not motion_spec(scene).in_time:
         return
-    asked = train_inputs(scene)
-    train = build_train(asked)
-    ratio = abs(float(train.ratios[train.dof[asked.speed_of]]))
+    spec = train_inputs(scene).spec
+    train = build_train(spec)
+    ratio = speed_ratio(spec, train)
     try:
-        for speed in scene.case.dynamics.speed_values / ratio if asked.ripple else ():
-            common_period(train.mesh_turns, max(train.mesh_orders), float(speed), asked.ripple)
+        for speed in scene.case.dynamics.speed_values / ratio if spec.ripple else ():
+            common_period(train.mesh_turns, max(train.mesh_orders), float(speed), spec.ripple)
     except InputError as error:
         raise at("train", error) from None
 
@@ -114,7 +116,7 @@ def _check_ripple(scene: Scene) -> None:
 def _inputs(scene: Scene, _subject: str) -> SweepInputs:
     effects = scene.case.effects
     idle = "friction" in scene.case.dynamics.given and not effects.friction
-    return SweepInputs(motion_inputs(scene), scene.case.accuracy.tolerance, idle, effects, scene.sizes_neglected)
+    return SweepInputs(motion_spec(scene), scene.case.accuracy.tolerance, idle, effects, scene.sizes_neglected)
 
 
 def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:

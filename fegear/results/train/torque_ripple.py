@@ -270,7 +270,7 @@ def _swing(lines: RippleSpectrum, carried: Complex) -> tuple[float, float]:
 def _file_remarks(asked: TrainInputs) -> list[str]:
     """Mean torques of files that were left out, and harmonics that were where they are more than a little."""
     said = []
-    for one in asked.ripple:
+    for one in asked.spec.ripple:
         size = math.sqrt(0.5 * sum(a * a for a in one.amplitudes))
         mean = asked.ripple_means.get(one.name, 0.0)
         if abs(mean) > _SOME_MEAN * size:

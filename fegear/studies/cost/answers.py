@@ -16,12 +16,13 @@ from fegear.base.errors import RangeError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_compliance_table, pair_spec
-from fegear.case.built.train import motion_inputs, motion_model, steady_motion, train_inputs
+from fegear.case.built.train import motion_spec, train_inputs
 from fegear.contact.plane.closed_form_compliance import ConstantCompliance, closed_form_compliance
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.table_compliance import table_sources
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
+from fegear.dynamics.motion.motion_spec import motion_model, steady_motion
 from fegear.dynamics.train.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
@@ -98,7 +99,7 @@ def largest_force(asked: Asked, data: GearTrain, harmonics: int = FORCE_HARMONIC
 def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> float:
     """Dynamic factor of steady motion at a speed of the reference body [rad/s], started from static deflection."""
     i = data.train.mesh_index(asked.mesh)
-    motion = motion_inputs(asked.scene)
+    motion = motion_spec(asked.scene)
     state = steady_motion(motion, motion_model(motion, data, speed / data.speed_ratio), "static", tolerance)
     if state.kind == "growing":
         raise RangeError(

@@ -11,7 +11,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.solid_influence import flank_pairs
-from fegear.case.built.train import motion_inputs
+from fegear.case.built.train import motion_spec
 from fegear.case.reading import Scene
 from fegear.case.train import TrainPart
 from fegear.results.catalogue import STAGES
@@ -160,7 +160,7 @@ def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
         mesh = ""
     else:
         mesh = next((m for m, part in train.mesh.items() if part.like is None and train.pair_of(m) == pair), "")
-    if "dynamic-factor" in names and not (mesh and motion_inputs(scene).in_time):
+    if "dynamic-factor" in names and not (mesh and motion_spec(scene).in_time):
         raise InputError(
             "cost.quantities", '"dynamic-factor"', "requires a train, speeds, and an effect in the time domain",
             "specify them and set effects.contact_loss = true, or remove the quantity",
