@@ -12,10 +12,10 @@ from fegear.dynamics.train.friction import FrictionLaw, benedict_kelley, bucking
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Torque, mesh_damping
 from fegear.dynamics.train.train_spec import MeshSpec, ShaftSpec, TrainSpec, assemble, build_train
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.tooth import Tooth
 
 RACK = BasicRack(1.0, 1.25, 0.25)
 PAIR = GearPair(Gear(Tooth(20, RACK), 3e-3, 20e-3), Gear(Tooth(50, RACK), 3e-3, 20e-3))
