@@ -40,7 +40,7 @@ _NARROWER = 0.6
 #: goes with the square of that share, which is taken out, and then with higher powers of it.
 _ROOM_SHARE = 0.7
 #: Where neighbours give way by so much of what the loaded tooth does, most of it is the gear that turns on its bore.
-MOSTLY_TURNED = 0.5
+MOSTLY_TURNED = 0.8
 #: From how far beside the tip on a true contact keeps to Hertz's pressure [modules]: there the mating flank stiffens as
 #: fast as this one softens.
 _BESIDE_TIP = 0.15
