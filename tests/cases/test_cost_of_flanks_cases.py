@@ -118,7 +118,8 @@ def test_what_can_be_pasted_asks_a_case_for_it():
         settings, wanted = solid_settings_of(scene, "pinion"), pair_spec(scene, "I")
         assert settings.source == ("slices" if one.body == "coupled-slices" else "solid")
         assert settings.section == one.solid.section
-        assert (wanted.panels, wanted.neighbour_coupling) == (one.panels, one.neighbours)
+        assert wanted.wide is not None
+        assert (wanted.wide.panels, wanted.neighbour_coupling) == (one.panels, one.neighbours)
         pasted += 1
     assert pasted == 8
 

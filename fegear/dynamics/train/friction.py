@@ -124,7 +124,6 @@ def sliding_contact(
     )
 
 
-@tallied("friction fits")
 @dataclass(frozen=True)
 class FrictionLaw:
     """A law of the friction coefficient of teeth.
@@ -152,6 +151,7 @@ class FrictionLaw:
         return lambda sliding, rolling, force: benedict_kelley(np.asarray(force) / width, viscosity, sliding, rolling)
 
 
+@tallied("friction fits")
 def with_friction(
     excitation: MeshExcitation,
     mesh: Mesh,
