@@ -205,14 +205,26 @@ class Solved:
         _, first, count = np.unique(edges[2], return_index=True, return_counts=True)
         edges = edges[:, first[count == 1]]
         middle = self.points[:, edges[2]]
-        near = np.array([np.hypot(*(line - at[:, None])).min() < 1e-4 for at in middle.T])
+        away = np.array([np.hypot(*(line - at[:, None])) for at in middle.T])
+        near = away.min(axis=1) < 1e-4
         moved = self.moved(key).reshape(-1, 2).T
-        found = []
+        place, found = [], []
         for xi in 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0):
             slope = np.array([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
             along, change = (np.einsum("cin,i->cn", of[:, edges[:, near]], slope) for of in (self.points, moved))
             found.append((along * change).sum(axis=0) / (along**2).sum(axis=0) / (1.0 - self.nu**2))
-        return float(np.concatenate(found).max())
+            at = np.einsum(
+                "cin,i->cn",
+                self.points[:, edges[:, near]],
+                [(1 - xi) * (1 - 2 * xi), xi * (2 * xi - 1), 4 * xi * (1 - xi)],
+            )
+            place.append(np.array([np.hypot(*(line - one[:, None])).argmin() for one in at.T]))
+        place, found = np.concatenate(place) / u.size, np.concatenate(found)
+        # A smooth curve through the places around the largest value: elements scatter about it.
+        close = np.abs(place - place[found.argmax()]).argsort()[:12]
+        middle = place[close].mean()
+        curve = np.polynomial.Polynomial.fit(place[close] - middle, found[close], 4)
+        return float(curve(np.linspace((place[close] - middle).min(), (place[close] - middle).max(), 401)).max())
 
 
 def _values(u, v):
