@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, get_args
 
 import numpy as np
 
@@ -190,6 +190,9 @@ class PairSpec(ToothEffects, FaceEffects):
             among = ", ".join(f"{load:.6g}" for load in sorted(self.loads))
             raise InputError("nominal", f"{self.nominal:.6g} N", f"must be one of the loads, {among} N")
         object.__setattr__(self, "loads", tuple(sorted(set(self.loads))))
+        if self.width not in get_args(Width):
+            among = ", ".join(f'"{one}"' for one in get_args(Width))
+            raise InputError("width", f'"{self.width}"', f"must be one of {among}")
         if self.width == "plane":
             object.__setattr__(self, "wide", None)
         elif self.wide is None:

@@ -173,6 +173,8 @@ def test_gears_that_are_not_solved_and_loads_that_are_one_number_are_refused():
         load(replace(SPEC, compliance="fe", width="slices"))
     with pytest.raises(InputError, match=r"loads = 3000\.0: must be a sequence of loads"):
         PairSpec(PAIR, 3000.0)
+    with pytest.raises(InputError, match='width = "2d": must be one of "plane", "slices", "solid"'):
+        PairSpec(PAIR, (3000.0,), width="2d")
 
 
 def test_a_law_changed_alike_keeps_every_field_that_does_not_change():

@@ -35,6 +35,7 @@ FURTHER = {
     "sources/litvin_fig10": {},
     "sources/mark_fig03": {},
     "planetary_set": {"results": ["planet-motion"], "planetary.P.speeds.count": 3},
+    "four_square_dynamics": {"results": ["dynamic-strain"], "gauge": {"t": {"gear": "test", "pair": "I"}}},
     "robust_pair": {"robustness": {"draws": 20}, "accuracy": {"tolerance": 0.05}},
     "nasa_relief_design": {"results": ["robustness"], "accuracy": {"tolerance": 0.05}},
     "two_stage_gearbox": {
