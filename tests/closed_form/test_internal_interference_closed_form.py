@@ -149,7 +149,7 @@ def to_limit(name, planet, ring, distance, room):
         return planet, replace(ring, tip_radius=math.hypot(ring.base_radius, rho))
 
     def other(tip):
-        if name.startswith("planet's"):
+        if name.startswith("planet tip corner"):
             return replace(planet, tip_radius=tip), ring
         return planet, replace(ring, tip_radius=tip)
 
@@ -157,7 +157,7 @@ def to_limit(name, planet, ring, distance, room):
         return margin(name, *other(tip), distance) - room
 
     low, high = ring.limit_radius + 1e-3, ring.form_radius - 1e-3
-    if name.startswith("planet's"):
+    if name.startswith("planet tip corner"):
         low, high = planet.pitch_radius, ring.root_radius - distance - 0.01
     tips = np.linspace(low, high, 6)
     found = []
@@ -184,7 +184,9 @@ def pairs(name: str, seed: int, count: int):
     """Random pairs within hundredths of a module of the limit of one check and clear of others that meet in mesh."""
     rng, found = np.random.default_rng(seed), []
     fewer = {"trochoidal tip interference": (7, 11), "radial assembly": (9, 18), "infeed of the cutter": (12, 25)}
-    while len(found) < count:
+    for _ in range(20_000 * count):
+        if len(found) == count:
+            break
         z3 = int(rng.integers(40, 130))
         z1 = z3 - int(rng.integers(*fewer.get(name, (12, z3 - 17))))
         z0 = z3 - int(rng.integers(9, 22)) if name == "infeed of the cutter" else int(rng.integers(12, 30))
@@ -205,6 +207,7 @@ def pairs(name: str, seed: int, count: int):
         if planet.undercut or (rolls and any(one.margin < 0.003 for one in others)):
             continue
         found.append((planet, ring, distance))
+    assert len(found) == count, name
     return found
 
 
