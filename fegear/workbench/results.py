@@ -206,7 +206,7 @@ class Results(Found):
     def export(
         self, folder: str | os.PathLike[str], formats: str | list[str] = "dxf", gears: tuple[str, ...] = ()
     ) -> list[Path]:
-        """Write drawings and meshes of the gears, as ``fegear export`` does.
+        """Write drawings and meshes of the gears, as ``fegear export`` does; a REXS model holds these results, too.
 
         Parameters
         ----------
@@ -228,10 +228,11 @@ class Results(Found):
         """
         from fegear.output.export import export_gears
         from fegear.output.folder import whole_or_nothing
+        from fegear.studies.comparison.compare import side_of
 
         kinds, names, target = texts(formats, "formats", "dxf"), texts(gears, "gears", "pinion"), folder_of(folder)
         with whole_or_nothing(target, "folder") as scratch:
-            written = export_gears(self.scene, scratch, tuple(names), ",".join(kinds))
+            written = export_gears(self.scene, scratch, tuple(names), ",".join(kinds), side_of(self, self.scene.name))
         for remark in written.remarks:
             warnings.warn(remark, stacklevel=2)
         return [target / name for name in written.files]

@@ -174,4 +174,9 @@ def test_the_command_writes_results_of_a_run(tmp_path, monkeypatch, capsys):
     assert len(model.findall(".//attribute[@id='force_acting_on_inner_component_w']")) == 6
     # What is read again is the case, not its results.
     assert tomllib.loads(case_of(model_of(text, HERE)))["pair"]["I"]["torque"] == "100 N*m"
+    # From Python the model holds the same.
+    run = fegear.run("box.toml", {"results": ["geometry", "rating", "shaft-deflection"], "accuracy.tolerance": 5e-2})
+    (model,) = run.export("python", "rexs")
+    values = [re.findall(r'id="safety[^>]*>([^<]*)<', one) for one in (text, model.read_text("utf-8"))]
+    assert values[0] == values[1] != []
     assert "can be exported as rexs only" in say("export", "results/box", "--format", "dxf")[1]
