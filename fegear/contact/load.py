@@ -17,12 +17,13 @@ if TYPE_CHECKING:
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.compliance import GearCompliance
     from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.odd.odd_gear import OddGearInfluence
     from fegear.fem.solid.influence import SolidInfluence
 
 
 def load(
     spec: PairSpec,
-    gears: Sequence[GearInfluence | GearCompliance | SolidInfluence] = (),
+    gears: Sequence[GearInfluence | OddGearInfluence | GearCompliance | SolidInfluence] = (),
     *,
     cache: SolutionCache | None = None,
     progress: Callable[[float], None] | None = None,
@@ -34,8 +35,9 @@ def load(
     ----------
     spec : PairSpec
     gears : sequence
-        Driver and driven: `fegear.fem.plane.solution.solve_gear` of each for plane teeth, or any sources of compliance;
-        none where the spec's compliances are those of a formula or of a table. For teeth with a width,
+        Driver and driven: `fegear.fem.plane.solution.solve_gear` of each for plane teeth, of one with cracked teeth
+        `fegear.fem.plane.odd.odd_gear.solve_cracked_gear`, or any sources of compliance; none where the spec's
+        compliances are those of a formula or of a table. For teeth with a width,
         `fegear.fem.solid.influence.SolidInfluence` of each.
     cache : SolutionCache, optional
         Where what a load or a relief does not change is recalled from and kept.

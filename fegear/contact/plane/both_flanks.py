@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -21,6 +22,9 @@ from fegear.contact.plane.root_stress_history import superposed_stress
 from fegear.contact.plane.tooth_stress import with_peaks
 from fegear.fem.plane.influence import Side
 from fegear.geometry.pair import Member
+
+if TYPE_CHECKING:
+    from fegear.fem.plane.root_stress import FilletCurve
 
 #: Roll positions over the base pitch, and places along a fillet at which its extremes are looked for.
 _POSITIONS, _PLACES = 200, 201
@@ -63,7 +67,7 @@ def fillet_trace(engagement: Engagement, member: Member, load: float) -> FilletT
     """
     engagement.compliance.refuse_unequal("bending to both sides")
     source = engagement.compliance.source(member)
-    curves = {side: source.fillet_curve(0, side) for side in _FILLETS}
+    curves = {side: cast("FilletCurve | None", source.fillet_curve(0, side)) for side in _FILLETS}  # none is cut
     if any(curve is None for curve in curves.values()):
         raise InputError(
             "compliance.source", "a formula", "gives no stress along the fillet, which alternating bending requires",

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.fem.plane.root_stress import FilletCurve
+from fegear.fem.plane.root_stress import CutFillet, FilletCurve
 from fegear.fem.teeth import AlikeTeeth, Teeth
 
 Side = Literal["tension", "compression"]
@@ -40,7 +40,7 @@ class RootStressInfluence(Teeth, Protocol):
     def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """Stress along a fillet of tooth i per unit line load at q of tooth j, (points, Q) [1/m]; None if unknown."""
 
-    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:
         """How the largest stress of tooth i is found between the points of a fillet; None if they are all."""
 
     def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
@@ -85,12 +85,14 @@ class GearCompliance(RootStressInfluence, Protocol):
         """Return one sentence: what this source includes and what not."""
 
 
-def largest_stress(curve: FilletCurve | None, stress: Array, side: Side, radius: ArrayLike = math.inf) -> Array:
+def largest_stress(
+    curve: FilletCurve | CutFillet | None, stress: Array, side: Side, radius: ArrayLike = math.inf
+) -> Array:
     """Largest tension or most negative compression of a fillet under whatever loads, shape (Q,).
 
     Parameters
     ----------
-    curve : FilletCurve or None
+    curve : FilletCurve, CutFillet or None
         Of the source; without one the largest is that of the points.
     stress : ndarray, shape (points, Q)
     side : {"tension", "compression"}
@@ -117,7 +119,7 @@ class OneTooth(AlikeTeeth):
         """Unknown."""
         return None
 
-    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:  # noqa: ARG002  (the interface)
         """Unknown."""
         return None
 

@@ -91,10 +91,7 @@ class FiniteElementCompliance(AlikeTeeth):
         return found
 
     def _tabulated_neighbours(self) -> dict[int, Array]:
-        rb, m = self.influence.gear.base_radius, _NEIGHBOUR_POINTS
-        t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
-        nodes = np.hypot(rb, 0.5 * (self.lowest + self.highest) + 0.5 * (self.highest - self.lowest) * t)
-        to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(t, m - 1))
+        nodes, to_coefficients = chebyshev_nodes(self.influence.gear, self.lowest, self.highest)
         found = {}
         for k in range(1, self.reach + 1):
             found[k] = to_coefficients @ self.influence.neighbour(k, nodes, nodes) @ to_coefficients.T
@@ -161,6 +158,14 @@ def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) ->
     return np.clip(length, lowest, highest)
 
 
+def chebyshev_nodes(gear: Gear, lowest: float, highest: float) -> tuple[Array, Array]:
+    """Radii [m] at which functions over a flank between two roll lengths [m] are taken; the matrix to their series."""
+    m = _NEIGHBOUR_POINTS
+    t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
+    radii = np.hypot(gear.base_radius, 0.5 * (lowest + highest) + 0.5 * (highest - lowest) * t)
+    return radii, np.asarray(np.linalg.inv(np.polynomial.chebyshev.chebvander(t, m - 1)))
+
+
 def chebyshev_over(lowest: float, highest: float, p: Array, q: Array, coefficients: Array) -> Array:
     """A Chebyshev series in two roll lengths [m] between the same ends, shape of p and q broadcast."""
     middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest)
@@ -182,11 +187,12 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
     """Tabulate the influence functions of a solved gear, once for each solution."""
     # Kept are the tables alone: what holds the solution itself would keep it alive in a circle, and with it its memory.
     if "own" not in influence.tabulated:
-        influence.tabulated["own"] = _tabulated(influence)
+        influence.tabulated["own"] = tabulated_own(influence)
     return FiniteElementCompliance(influence, *influence.tabulated["own"])
 
 
-def _tabulated(influence: GearInfluence) -> tuple[Spline, float, float]:
+def tabulated_own(influence: GearInfluence) -> tuple[Spline, float, float]:
+    """c_0 at the nominal half-width [m^2/N] over the roll length [m], and the ends of the flank [m]."""
     gear = influence.gear
     rb, (lowest, highest) = gear.base_radius, gear.involute_radii
     bottom, top = max(influence.lowest_radius, lowest), min(influence.highest_radius, highest)

@@ -31,6 +31,7 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.largest_on_pair import largest_on_pair
 from fegear.contact.plane.neglected_effects import neglected_effects
+from fegear.contact.plane.over_revolution import OverRevolution, over_revolution
 from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
 from fegear.contact.plane.shifted_loads import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
@@ -170,6 +171,18 @@ class LoadedPair:
         """Harmonics over the base pitches after which the same teeth meet again, where they are not too many."""
         e, cycles = self.engagement, self.engagement.cycles
         return revolution(e, self.nominal, cycles, 3 * cycles) if e.uneven and cycles <= MOST_CYCLES else None
+
+    def over_revolution(self, positions: int = POSITIONS) -> OverRevolution:
+        """Load sharing, transmission error and mesh stiffness until the same teeth meet again, under the nominal load.
+
+        Of gears whose teeth are alike that is one base pitch.
+
+        Parameters
+        ----------
+        positions : int
+            Even steps over a base pitch.
+        """
+        return over_revolution(self.engagement, self.nominal, positions, self.shifted)
 
     def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:
         """See `LoadedTeeth`."""

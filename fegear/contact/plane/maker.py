@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 from fegear.base.errors import InputError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
@@ -11,10 +11,17 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_element_compliance
 from fegear.contact.plane.flanks import as_specified, with_flanks
 from fegear.contact.plane.loaded_pair import LoadedPair
+from fegear.contact.plane.odd_compliance import (
+    OddCompliance,
+    odd_compliance,
+    odd_neighbours_shifted_by_error,
+    odd_shifted_by_error,
+)
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
 from fegear.contact.plane.table_compliance import table_sources
 from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -25,11 +32,12 @@ if TYPE_CHECKING:
     from fegear.contact.plane.compliance import GearCompliance
 
     Sources = tuple[GearCompliance, GearCompliance]
+    Solved = GearInfluence | OddGearInfluence
 
 
 def load_plane(
     spec: PairSpec,
-    gears: Sequence[GearInfluence | GearCompliance] = (),
+    gears: Sequence[Solved | GearCompliance] = (),
     *,
     cache: SolutionCache | None = None,
     estimates: bool = True,
@@ -51,13 +59,13 @@ def load_plane(
     return LoadedPair(engagement, others, spec, described, exact=estimates)
 
 
-def engagement_at_rest(spec: PairSpec, *gears: GearInfluence | GearCompliance) -> Engagement:
+def engagement_at_rest(spec: PairSpec, *gears: Solved | GearCompliance) -> Engagement:
     """The engagement of perfect flanks, the same one for every load and relief: it keeps what these do not change."""
     sources = compliance_sources(spec, gears)
     return as_specified(spec, Engagement(PairCompliance(spec.pair, *sources, nominal_load=spec.nominal)))
 
 
-def compliance_sources(spec: PairSpec, gears: Sequence[GearInfluence | GearCompliance]) -> Sources:
+def compliance_sources(spec: PairSpec, gears: Sequence[Solved | GearCompliance]) -> Sources:
     """The sources of driver and driven: those that are given, a table's, a formula's, or of solved gears.
 
     Raises
@@ -65,7 +73,7 @@ def compliance_sources(spec: PairSpec, gears: Sequence[GearInfluence | GearCompl
     InputError
         If a table or a formula does not fit the gears, or gears that are to be solved are not.
     """
-    if gears and not isinstance(gears[0], GearInfluence):
+    if gears and not isinstance(gears[0], (GearInfluence, OddGearInfluence)):
         first, second = gears
         return first, second  # type: ignore[return-value]  # both are sources where the first is
     pair = spec.pair
@@ -82,21 +90,39 @@ def compliance_sources(spec: PairSpec, gears: Sequence[GearInfluence | GearCompl
             "gears", f"{len(gears)} given", "must be both solved gears, driver and driven",
             "give solve_gear(pair.driver) and solve_gear(pair.driven), or a formula as compliance",
         )  # fmt: skip
-    solved = {id(gear): finite_element_compliance(gear) for gear in gears if isinstance(gear, GearInfluence)}
+    solved = {id(gear): _tabulated(gear) for gear in gears if isinstance(gear, (GearInfluence, OddGearInfluence))}
     first, second = (solved[id(gear)] for gear in gears)
     return first, second
 
 
+def _tabulated(gear: Solved) -> FiniteElementCompliance | OddCompliance:
+    return odd_compliance(gear) if isinstance(gear, OddGearInfluence) else finite_element_compliance(gear)
+
+
 def shifted_sources(first: GearCompliance, second: GearCompliance, *, coupling: bool) -> tuple[Sources, ...]:
     """The pairs of sources that are off by their estimated errors; none where the sources state none."""
-    if not (isinstance(first, FiniteElementCompliance) and isinstance(second, FiniteElementCompliance)):
+    if not (_states_error(first) and _states_error(second)):
         return ()
-    if first.influence.estimate is None or second.influence.estimate is None:
-        return ()
-    own1 = shifted_by_error(first)
-    own2 = own1 if second is first else shifted_by_error(second)
+    own1 = _shifted(first)
+    own2 = own1 if second is first else _shifted(second)
     shifted: list[Sources] = [(own1, second), (first, own2)]
     if coupling:
-        beside1 = neighbours_shifted_by_error(first)
-        shifted.append((beside1, beside1 if second is first else neighbours_shifted_by_error(second)))
+        beside1 = _neighbours_shifted(first)
+        shifted.append((beside1, beside1 if second is first else _neighbours_shifted(second)))
     return tuple(shifted)
+
+
+def _states_error(source: GearCompliance) -> TypeGuard[FiniteElementCompliance | OddCompliance]:
+    if isinstance(source, OddCompliance):
+        return source.influence.fine.lower is not None and source.influence.ordinary.estimate is not None
+    return isinstance(source, FiniteElementCompliance) and source.influence.estimate is not None
+
+
+def _shifted(source: FiniteElementCompliance | OddCompliance) -> GearCompliance:
+    return odd_shifted_by_error(source) if isinstance(source, OddCompliance) else shifted_by_error(source)
+
+
+def _neighbours_shifted(source: FiniteElementCompliance | OddCompliance) -> GearCompliance:
+    if isinstance(source, OddCompliance):
+        return odd_neighbours_shifted_by_error(source)
+    return neighbours_shifted_by_error(source)

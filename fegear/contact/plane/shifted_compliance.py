@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import Side
     from fegear.contact.plane.fe_compliance import FiniteElementCompliance
-    from fegear.fem.plane.root_stress import FilletCurve
+    from fegear.fem.plane.root_stress import CutFillet, FilletCurve
 
 
 _POINTS = 25
@@ -90,7 +90,7 @@ class ShiftedCompliance:
         """As the base."""
         return self.base.root_stress(i, j, radius_q, side)
 
-    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:
         """As the base."""
         return self.base.fillet_curve(i, side)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import GearCompliance, RootStressInfluence, Side
-    from fegear.fem.plane.root_stress import FilletCurve
+    from fegear.fem.plane.root_stress import CutFillet, FilletCurve
     from fegear.geometry.gear import Gear
 
 
@@ -92,7 +92,7 @@ class ToothTable(AlikeTeeth):
         """Unknown: see `RootTable`."""
         return None
 
-    def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:  # noqa: ARG002  (the interface)
         """Unknown."""
         return None
 
@@ -122,7 +122,7 @@ class RootTable:
         Roll length of the first entry and distance of the next [m].
     tension : mapping of int to ndarray, shape (N, points)
         Stress along the fillet of tooth k per unit line load on tooth 0 [1/m], by k.
-    curve : FilletCurve or None
+    curve : FilletCurve, CutFillet or None
         How its largest value is found.
     """
 
@@ -130,7 +130,7 @@ class RootTable:
     lowest: float
     step: float
     tension: Mapping[int, Array]
-    curve: FilletCurve | None
+    curve: FilletCurve | CutFillet | None
 
     @property
     def reach(self) -> int:

@@ -181,6 +181,32 @@ class FilletCurve:
         return extreme(stress, self.arc, 1.0, search_end(self.length, above, width, CLEARANCE), CLEARANCE)
 
 
+@dataclass(frozen=True)
+class CutFillet:
+    """The same of a fillet in which a crack starts: it is looked at on either side of the mouth.
+
+    Parameters
+    ----------
+    pieces : tuple of (float, FilletCurve, slice)
+        Where each piece starts [modules], its curve, and its points among those of the fillet.
+    """
+
+    pieces: tuple[tuple[float, FilletCurve, slice], ...]
+
+    def largest(
+        self, stress: Array, radius: ArrayLike = math.inf, half_width: float = REFERENCE_HALF_WIDTH
+    ) -> tuple[Array, Array]:
+        """As `FilletCurve.largest`."""
+        sign = 1.0 if self.pieces[0][1].side == "tension" else -1.0
+        best, place = np.full(stress.shape[1], -np.inf), np.zeros(stress.shape[1])
+        for start, curve, points in self.pieces:
+            value, at = curve.largest(stress[points], radius, half_width)
+            better = sign * value > best
+            best = np.where(better, sign * value, best)
+            place = np.where(better, at + start * curve.module, place)
+        return sign * best, place
+
+
 def contact_width(half_width: ArrayLike, below: Array, above: Array) -> Array:
     """Half-widths of contacts with so much flank on either side, narrowed where they would reach past its end."""
     return np.minimum(half_width, np.maximum(np.minimum(below, above), POINT))

@@ -249,7 +249,7 @@ def shape_codec(tooth: InvoluteTooth, kinds: tuple[type, ...] = _PLANE) -> Codec
     tooth : InvoluteTooth
         Which whoever asks for the solution knows: it is not kept.
     kinds : tuple of type
-        Dataclasses that the solution consists of, its own first; it has the tooth as a field.
+        Dataclasses that the solution consists of, its own first; those with the tooth as a field are given it.
     """
     return Codec(lambda found: pack(_plain(found, kinds)), lambda data: _restored(data, tooth, kinds))
 
@@ -267,13 +267,14 @@ def _plain(item: object, kinds: tuple[type, ...]) -> object:
 def _restored(data: bytes | memoryview, tooth: InvoluteTooth, kinds: tuple[type, ...]) -> Any:
     """Rebuild a solution; None if the bytes do not fit."""
     names = {kind.__name__: kind for kind in kinds}
+    of_tooth = {kind for kind in kinds if any(one.name == "tooth" for one in dataclasses.fields(kind))}
 
     def build(item: object) -> object:
         if not isinstance(item, dict):
             return item
         if set(item) == {"kind", "fields"}:
             kind = names[item["kind"]]
-            given = {"tooth": tooth} if kind is kinds[0] else {}
+            given = {"tooth": tooth} if kind in of_tooth else {}
             return kind(**given, **{key: build(value) for key, value in item["fields"].items()})
         return {key: build(value) for key, value in item.items()}
 

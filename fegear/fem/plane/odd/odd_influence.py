@@ -170,18 +170,26 @@ class OddInfluence:
         return {}
 
     def tooth(self, i: int) -> Influence:
-        """A tooth under loads on itself, without neighbours."""
+        """A tooth under loads on itself; its neighbours are of its own kind.
+
+        Such neighbours stand for none that there are: they show what of its deflection the tooth shares with others,
+        where the gear turns on its bore (`Influence`).
+        """
         if i not in self._teeth:
             kind = self.kind(i)
             sides = self.ring.between(i, i)
-            compliance = kind.flank_own + kind.flank_follows @ sides @ kind.flank_follows.T
+            compliance = {0: kind.flank_own + kind.flank_follows @ sides @ kind.flank_follows.T}
+            if self.reach:
+                beside = self.ring.between(i + 1, i) if i < self.reach else self.ring.between(i, i - 1)
+                compliance[1] = kind.flank_follows @ beside @ kind.flank_follows.T
+                compliance[-1] = compliance[1].T
             stress = {
                 (0, side): kind.stress_own[side] + kind.stress_follows[side] @ sides @ kind.flank_follows.T
                 for side in SIDES
             }
             self._teeth[i] = Influence(
-                kind.tooth, self.poisson_ratio, self.plane, kind.mesh, kind.flank, {0: compliance}, kind.fillets,
-                stress, self.corner_distance, 0, kind.unknowns, {},
+                kind.tooth, self.poisson_ratio, self.plane, kind.mesh, kind.flank, compliance, kind.fillets,
+                stress, self.corner_distance, min(self.reach, 1), kind.unknowns, {},
             )  # fmt: skip
         return self._teeth[i]
 

@@ -29,24 +29,14 @@ class OddRing:
 
     Parameters
     ----------
-    ordinary : BetweenSides
-    odd : mapping of int to BetweenSides
-        By the number of the sector, -reach to reach.
-    teeth, reach : int
-        z; R, sectors -R..R can be loaded and watched.
+    reach : int
+        R: sectors -R..R can be loaded and watched.
     motion : ndarray, shape (2 R + 2, m, 2 R + 2, m)
         H, motions of the sides -R..R + 1 under forces on them, in polar components.
     """
 
-    ordinary: BetweenSides
-    odd: Mapping[int, BetweenSides]
-    teeth: int
     reach: int
     motion: Array
-
-    def part(self, sector: int) -> BetweenSides:
-        """Of what kind a sector is."""
-        return self.odd.get(sector, self.ordinary)
 
     def between(self, watched: int, loaded: int) -> Array:
         """Motion of the sides A and B of one sector under forces on those of another, shape (2 m, 2 m)."""
@@ -59,8 +49,11 @@ def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int
 
     Parameters
     ----------
-    ordinary, odd, teeth, reach
-        As for `OddRing`.
+    ordinary : BetweenSides
+    odd : mapping of int to BetweenSides
+        By the number of the sector, -reach to reach.
+    teeth, reach : int
+        z, and R as of `OddRing`.
 
     Raises
     ------
@@ -70,7 +63,9 @@ def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int
         If the stiffness is not positive definite.
     """
     if 2 * reach + 1 > teeth or any(abs(k) > reach for k in odd):
-        raise InputError("reach", reach, f"must be at least {max(map(abs, odd))} and at most {(teeth - 1) // 2}")
+        raise InputError(
+            "reach", reach, f"must be at least {max(map(abs, odd), default=0)} and at most {(teeth - 1) // 2}"
+        )
     m, sides = ordinary.follow_a.shape[1], 2 * reach + 2
     if any(part.follow_a.shape[1] != m for part in odd.values()):
         raise InputError("mesh", "side_a", "of an odd sector has other nodes than the ordinary sector's")
@@ -88,7 +83,7 @@ def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int
         once = _inverse(closed_stiffness(chains, sides - 1, m).reshape(n, -1))
         twice = np.r_[np.arange(n), np.arange(m)]
         motion = once[np.ix_(twice, twice)]
-    return OddRing(ordinary, odd, teeth, reach, motion.reshape(sides, m, sides, m))
+    return OddRing(reach, motion.reshape(sides, m, sides, m))
 
 
 def _inverse(stiffness: Array) -> Array:

@@ -1,0 +1,229 @@
+"""A gear with odd teeth as a compliance source: its teeth have numbers, and their answers a period of one revolution.
+
+c_ii of every tooth that answers otherwise than the ordinary ones is a spline, c_ij of two teeth of which one does a
+series; all else is the ordinary gear's. Of the base pitches of a revolution those are distinct in which such a tooth
+can touch, and only they are solved: the others recall the ordinary one (`same_as`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.plane.fe_compliance import (
+    FiniteElementCompliance,
+    chebyshev_nodes,
+    chebyshev_over,
+    finite_element_compliance,
+    roll_length,
+    tabulated_own,
+)
+from fegear.contact.plane.shifted_compliance import ShiftedCompliance, neighbours_shifted_by_error, shifted_by_error
+from fegear.contact.plane.spline import Spline, spline
+from fegear.fem.plane.odd.odd_gear import OddGearInfluence
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import Side
+    from fegear.contact.plane.stress_rows import StressRows
+    from fegear.fem.plane.root_stress import CutFillet, FilletCurve
+
+#: Radii at which errors of c_ij are looked for.
+_FEW = 4
+
+
+@dataclass(frozen=True)
+class OddCompliance:
+    """One gear's influence functions, some of its teeth odd, interpolated in the roll length.
+
+    Parameters
+    ----------
+    influence : OddGearInfluence
+    ordinary : FiniteElementCompliance or ShiftedCompliance
+        Of the gear whose teeth are all alike.
+    own_splines : mapping of int to Spline
+        c_ii at the reference half-width [m^2/N] over the roll length [m], by the tooth's number from the middle one.
+    series : mapping of (int, int) to ndarray
+        Chebyshev coefficients of c_ij(p, q), shape (m, m) each, by such numbers.
+    """
+
+    influence: OddGearInfluence
+    ordinary: FiniteElementCompliance | ShiftedCompliance
+    own_splines: Mapping[int, Spline]
+    series: Mapping[tuple[int, int], Array]
+
+    kinks = ()
+    power = 0.0
+    remarks = ()
+
+    @cached_property
+    def stress_rows(self) -> dict[tuple[Side, int, int], StressRows]:
+        """Root stress at the contacts asked for last, by fillet, by how many neighbours count, and by the teeth."""
+        return {}
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        """Roll lengths of the ends of the flank [m]."""
+        plain = self.ordinary.base if isinstance(self.ordinary, ShiftedCompliance) else self.ordinary
+        return plain.lowest, plain.highest
+
+    @property
+    def reach(self) -> int:
+        """K of the ordinary gear."""
+        return self.ordinary.reach
+
+    @property
+    def log_slope(self) -> float:
+        """kappa [m^2/N]."""
+        return self.ordinary.log_slope
+
+    @property
+    def tip_wedge(self) -> tuple[float, float]:
+        """As of the ordinary teeth."""
+        return self.ordinary.tip_wedge
+
+    @property
+    def period(self) -> int:
+        """The gear's teeth."""
+        return self.influence.gear.teeth
+
+    def same_as(self, first: int, count: int) -> int:
+        """Those from `first` on by themselves where one of them answers otherwise than ordinary teeth."""
+        z, touched = self.period, self.influence.touched
+        if any(self._from_middle(first + n) in touched for n in range(min(count, z))):
+            return first % z
+        return (self.influence.middle + touched[-1] + 1) % z
+
+    def _from_middle(self, tooth: int) -> int:
+        return self.influence.from_middle(tooth)
+
+    def _odd(self, i: int, j: int) -> tuple[int, int] | None:
+        """Two teeth by their numbers from the middle one; None if they answer as ordinary ones do."""
+        known, touched = self.influence.known, self.influence.touched
+        near = self._from_middle(i)
+        other = near + j - i
+        if near not in known and self._from_middle(j) in known:
+            other = self._from_middle(j)
+            near = other + i - j
+        between = range(min(near, other), max(near, other) + 1)
+        if near not in known or other not in known or between[0] > touched[-1] or between[-1] < touched[0]:
+            return None
+        return near, other
+
+    def own(self, i: int, radius: ArrayLike) -> Array:
+        """c_ii at the reference half-width [m^2/N]."""
+        found = self.own_splines.get(self._from_middle(i))
+        if found is None:
+            return self.ordinary.own(i, radius)
+        return np.asarray(found(roll_length(self.influence.gear, radius, *self._ends)))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """The half-width that `own` is for [m]."""
+        return self.ordinary.reference_half_width(radius)
+
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_ij(p, q), zero beyond the reach."""
+        teeth = self._odd(i, j)
+        if teeth is None or teeth not in self.series:
+            return self.ordinary.between(i, j, radius_p, radius_q)
+        p, q = (roll_length(self.influence.gear, r, *self._ends) for r in (radius_p, radius_q))
+        return chebyshev_over(*self._ends, p, q, self.series[teeth])
+
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Tangential stress along the fillet of tooth i [1/m], shape (points, Q); zero beyond the reach."""
+        teeth = self._odd(i, j)
+        if teeth is None and self._from_middle(i) not in self.influence.fine.odd:
+            return self.ordinary.root_stress(i, j, radius_q, side)
+        if teeth is None or abs(i - j) > self.reach:
+            return np.zeros_like(self.influence.fillet_stress(i, i, side, radius_q))
+        return self.influence.fillet_stress(i, j, side, radius_q)
+
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:
+        """That of the tooth's own solution."""
+        return self.ordinary.fillet_curve(i, side) if self._odd(i, i) is None else self.influence.fillet_curve(i, side)
+
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
+        """Estimated error of the largest stress of a fillet of tooth i under a load on tooth j [1/m]."""
+        if self._odd(i, j) is None or abs(i - j) > self.reach:
+            return self.ordinary.root_stress_error(i, j, radius_q, side)
+        known = self.influence.ordinary
+        return self.influence.root_stress_error(
+            i, j, side, np.clip(radius_q, known.lowest_radius, known.highest_radius)
+        )
+
+    def describe(self) -> str:
+        """Return what it includes."""
+        odd = sorted((self.influence.middle + number) % self.period for number in self.influence.fine.odd)
+        which = f"tooth {odd[0]}" if len(odd) == 1 else f"teeth {', '.join(map(str, odd))}"
+        return f"{self.ordinary.describe()}, {which} cracked"
+
+
+def odd_compliance(influence: OddGearInfluence) -> OddCompliance:
+    """Tabulate the influence functions of a gear with odd teeth, once for each solution."""
+    ordinary, kept = finite_element_compliance(influence.ordinary), influence.tabulated
+    if "odd" not in kept:
+        own = {near: tabulated_own(influence.alone(near))[0] for near in influence.touched}
+        kept["odd"] = own, _series(influence, ordinary)
+    return OddCompliance(influence, ordinary, *kept["odd"])
+
+
+def _series(influence: OddGearInfluence, ordinary: FiniteElementCompliance) -> dict[tuple[int, int], Array]:
+    nodes, to_series = chebyshev_nodes(influence.gear, ordinary.lowest, ordinary.highest)
+    found = {}
+    for i, j in _coupled(influence, ordinary.reach):
+        first, second = (influence.middle + near for near in (i, j))
+        found[i, j] = to_series @ influence.between(first, second, nodes, nodes) @ to_series.T
+        found[j, i] = found[i, j].T  # reciprocity, exact for pressure-weighted deflections
+    return found
+
+
+def _coupled(influence: OddGearInfluence, reach: int) -> list[tuple[int, int]]:
+    """Pairs i < j of teeth, no farther apart than the reach, that do not answer as ordinary ones do."""
+    known, touched = influence.known, influence.touched
+    return [(i, j) for i in known for j in known if 0 < j - i <= reach and j >= touched[0] and i <= touched[-1]]
+
+
+def odd_shifted_by_error(base: OddCompliance) -> OddCompliance:
+    """The source with its loaded teeth softer by the estimated error, its neighbours by what they have of it."""
+    ordinary = shifted_by_error(_plain(base))
+    known, middle = base.influence, base.influence.middle
+    radii = ordinary.radii
+    own = {}
+    for near, curve in base.own_splines.items():
+        error = known.own_error(middle + near, radii, base.reference_half_width(radii))
+        at = np.clip(np.hypot(known.gear.base_radius, curve.x), radii[0], radii[-1])
+        own[near] = spline(curve.x, curve.y + np.interp(at, radii, error))
+    series = {teeth: _raised(found, ordinary.neighbour_error) for teeth, found in base.series.items()}
+    return replace(base, ordinary=ordinary, own_splines=own, series=series)
+
+
+def odd_neighbours_shifted_by_error(base: OddCompliance) -> OddCompliance:
+    """The source with its neighbours softer by their estimated error, its loaded teeth by what they have of it."""
+    ordinary = neighbours_shifted_by_error(_plain(base))
+    known, middle = base.influence, base.influence.middle
+    few = np.linspace(ordinary.radii[0], ordinary.radii[-1], _FEW)
+    common = float(ordinary.own_error[0])
+    own = {near: replace(curve, y=curve.y + common) for near, curve in base.own_splines.items()}
+    series = {
+        (i, j): _raised(found, float(known.between_error(middle + i, middle + j, few, few).max()))
+        for (i, j), found in base.series.items()
+    }
+    return replace(base, ordinary=ordinary, own_splines=own, series=series)
+
+
+def _plain(base: OddCompliance) -> FiniteElementCompliance:
+    assert isinstance(base.ordinary, FiniteElementCompliance)  # noqa: S101
+    return base.ordinary
+
+
+def _raised(series: Array, by: float) -> Array:
+    """A series whose value is larger everywhere."""
+    found = series.copy()
+    found[0, 0] += by
+    return found

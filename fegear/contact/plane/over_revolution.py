@@ -1,0 +1,236 @@
+"""A pair of whose gears some teeth differ, over all base pitches until the same teeth meet again.
+
+Base pitches in which the teeth answer alike are solved once: of a gear with one odd tooth those in which it or a tooth
+beside it can touch, and one for all the others. `revolution` has the lines of the same transmission error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fegear.base.arrays import Array, Index
+from fegear.base.errors import InputError
+from fegear.contact.plane.base_pitch import roll_positions, secant_stiffness
+from fegear.contact.plane.compliance import RootStressInfluence, Side
+from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.fem.teeth import together
+from fegear.geometry.pair import Member
+
+#: Base pitches that are looked at at most: hunting teeth of two odd gears meet after the product of their numbers.
+MOST_PITCHES = 20_000
+
+
+@dataclass(frozen=True)
+class OverRevolution:
+    """A loaded pair over C base pitches, P roll positions in each, under one load.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Roll positions in a base pitch [m]; in base pitch c they are farther by c times `pitch`.
+    pitch : float
+        Base pitch [m].
+    load : float
+        [N].
+    number : ndarray of int, shape (n,)
+        Of the pairs, as of `Contacts`.
+    transmission_error : ndarray, shape (C, P)
+        [m].
+    stiffness : ndarray, shape (C, P)
+        Secant mesh stiffness (`secant_stiffness`) [N/m].
+    loads : ndarray, shape (C, n, P)
+        On each pair [N].
+    solved : int
+        How many base pitches differ from each other.
+    transmission_error_error, stiffness_error : ndarray, shape (C, P)
+        What the compliances' estimated errors change; NaN where they state none.
+    """
+
+    x: Array
+    pitch: float
+    load: float
+    number: Index
+    transmission_error: Array
+    stiffness: Array
+    loads: Array
+    solved: int
+    transmission_error_error: Array
+    stiffness_error: Array
+
+    @property
+    def along(self) -> Array:
+        """Roll positions over all base pitches, shape (C, P) [m]."""
+        return np.asarray(self.x + self.pitch * np.arange(self.transmission_error.shape[0])[:, None])
+
+    @property
+    def residual(self) -> Array:
+        """Transmission error less that of an ordinary base pitch, their median, shape (C, P) [m]."""
+        return np.asarray(self.transmission_error - np.median(self.transmission_error, axis=0))
+
+    @property
+    def lowest_stiffness(self) -> float:
+        """[N/m]."""
+        return float(self.stiffness.min())
+
+    @property
+    def ordinary_lowest_stiffness(self) -> float:
+        """The lowest of an ordinary base pitch [N/m]."""
+        return float(np.median(self.stiffness, axis=0).min())
+
+
+def over_revolution(
+    engagement: Engagement, load: float, positions: int = 200, shifted: Sequence[Engagement] = ()
+) -> OverRevolution:
+    """Follow a pair over all base pitches until the same teeth meet again.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    load : float
+        [N].
+    positions : int
+        Even steps over a base pitch; more stand on either side of every jump.
+    shifted : sequence of Engagement
+        The same with one compliance each off by its estimated error.
+
+    Raises
+    ------
+    InputError
+        If the same teeth meet again after more than `MOST_PITCHES` base pitches only.
+    """
+    _refuse_too_many(engagement)
+    x = roll_positions(engagement, positions)
+    number = engagement.grid(x).contacts.number
+    (error, stiffness, loads), solved = _each_pitch(engagement, x, load, _curves)
+    te_off, off = np.full((2, *error.shape), np.nan)
+    if shifted:
+        others = [_each_pitch(one, x, load, _curves)[0] for one in shifted]
+        te_off, off = (
+            np.sum([np.abs(other[at] - value) for other in others], axis=0)
+            for at, value in enumerate((error, stiffness))
+        )
+    return OverRevolution(x, engagement.pair.base_pitch, load, number, error, stiffness, loads, solved, te_off, off)
+
+
+def _refuse_too_many(engagement: Engagement) -> None:
+    if engagement.cycles > MOST_PITCHES:
+        raise InputError(
+            "pair", f"{engagement.cycles} base pitches until the same teeth meet again",
+            f"must be at most {MOST_PITCHES} for a revolution", "let the teeth of one gear only differ",
+        )  # fmt: skip
+
+
+def _curves(loaded: Loaded) -> tuple[Array, ...]:
+    """Transmission error, secant stiffness and loads of a base pitch."""
+    return loaded.transmission_error[:, 0], secant_stiffness(loaded)[:, 0], loaded.loads[:, :, 0]
+
+
+def _each_pitch(
+    engagement: Engagement, x: Array, load: float, of: Callable[[Loaded], tuple[Array, ...]]
+) -> tuple[list[Array], int]:
+    """What is asked of every base pitch, shape (C, ...) each, and how many of them differ from each other."""
+    grid, count = engagement.grid(x), engagement.cycles
+    alike = together(_teeth_and_spacing(engagement, grid.contacts.number, cycle) for cycle in range(count))
+    found: list[Array] = []
+    for pitches in alike:
+        each = of(engagement.solve(grid, [load], int(pitches[0])))
+        found = found or [np.empty((count, *one.shape)) for one in each]
+        for whole, one in zip(found, each, strict=True):
+            whole[pitches] = one
+    return found, len(alike)
+
+
+def _teeth_and_spacing(engagement: Engagement, number: Index, cycle: int) -> tuple[object, ...]:
+    """What tells a base pitch from others: how its teeth answer, and where they stand."""
+    spacing = tuple(
+        errors[np.mod(cycle - number, errors.size)].tobytes()
+        for errors in (engagement.driver_spacing, engagement.driven_spacing)
+        if errors.size
+    )
+    return (*engagement.compliance.pattern(number, cycle), *spacing)
+
+
+@dataclass(frozen=True)
+class StressOfTeeth:
+    """Root stress of every tooth of a gear over all base pitches until the same teeth meet again.
+
+    Parameters
+    ----------
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+    x : ndarray, shape (P,)
+        Roll positions in a base pitch [m].
+    tooth : ndarray of int, shape (C, n + 2)
+        Number of the tooth, 0 to z - 1.
+    stress : ndarray, shape (C, n + 2, P)
+        Largest tension, or most negative compression, of its fillet [Pa].
+    teeth : int
+        z.
+    """
+
+    member: Member
+    side: Side
+    x: Array
+    tooth: Index
+    stress: Array
+    teeth: int
+
+    @property
+    def largest(self) -> Array:
+        """Of each tooth on its way through the mesh, shape (z,) [Pa]."""
+        sign = 1.0 if self.side == "tension" else -1.0
+        found = np.full(self.teeth, -np.inf)
+        np.maximum.at(found, self.tooth, (sign * self.stress).max(axis=2))
+        return sign * found
+
+
+def stress_over_revolution(
+    engagement: Engagement,
+    load: float,
+    member: Member,
+    side: Side = "tension",
+    positions: int = 200,
+    source: RootStressInfluence | None = None,
+) -> StressOfTeeth:
+    """Root stress of every tooth of a gear by its own load and its neighbours', tooth after tooth.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    load : float
+        [N].
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+    positions : int
+        Even steps over a base pitch; more stand on either side of every jump.
+    source : RootStressInfluence, optional
+        Where this gear's root stress comes from; by default where its compliance does.
+
+    Raises
+    ------
+    InputError
+        If the source knows no root stress, or there are too many base pitches.
+    """
+    _refuse_too_many(engagement)
+    compliance, x = engagement.compliance, roll_positions(engagement, positions)
+    known, grid = source or compliance.source(member), engagement.grid(x)
+    number = grid.contacts.number
+    z, count = compliance.pair.gear(member).teeth, engagement.cycles
+    rows = np.arange(int(number[0]) - 1, int(number[-1]) + 2)
+    reach = known.reach if compliance.coupling else 0
+
+    def teeth_and_fillets(cycle: int) -> tuple[object, ...]:
+        ends = [compliance.tooth(member, int(row), cycle) for row in (rows[0], rows[-1])]
+        fillets = known.same_as(min(ends) - reach, rows.size + 2 * reach)
+        return (*_teeth_and_spacing(engagement, number, cycle), fillets)
+
+    stress = np.empty((count, rows.size, x.size))
+    for pitches in together(teeth_and_fillets(cycle) for cycle in range(count)):
+        state = engagement.solve(grid, [load], int(pitches[0]))
+        stress[pitches] = root_stress_history(engagement, state, member, side, 1, known).stress[:, :, 0]
+    tooth = np.array([[compliance.tooth(member, int(row), cycle) % z for row in rows] for cycle in range(count)])
+    return StressOfTeeth(member, side, x, tooth, stress, z)

@@ -1,0 +1,347 @@
+"""Influence functions of a real gear with cracked teeth in SI, with their own error estimate; per unit face width.
+
+Teeth have the numbers of the gear (`fegear.fem.teeth`). Those around the cracked ones are known by number; farther
+away teeth are as on the ordinary gear, whose solution this one is made from, on the same mesh.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.plane.estimate import Estimate
+from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.mesh import GENERATED, SectorMesh
+from fegear.fem.plane.odd.cracked_sector import cracked_sector
+from fegear.fem.plane.odd.odd_influence import OddInfluence, OddTooth, ToothKind, solve_odd_influence
+from fegear.fem.plane.odd.odd_ring import OddRing
+from fegear.fem.plane.root_stress import CutFillet, FilletStrain
+from fegear.fem.plane.settings import LEVEL_RATIO
+from fegear.fem.plane.solution import shape_codec
+from fegear.fem.plane.trace import LoadedFlank
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.plane.odd.crack import Crack
+    from fegear.fem.plane.root_stress import FilletCurve
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.geometry.gear import Gear
+
+#: What a solved ring with odd teeth consists of.
+_KINDS: tuple[type, ...] = (OddInfluence, ToothKind, OddRing, SectorMesh, LoadedFlank, FilletStrain)
+#: So many teeth on either side of the outermost odd ones are known by number at least.
+_BESIDE = 2
+#: Teeth on either side of the outermost odd ones that answer otherwise than ordinary ones. A crack half of the way
+#: through changes c_ii of the next ones by up to 8e-3, of the second ones by 1.2e-3 (the transmission error by less
+#: than 5e-4): these count as ordinary.
+_TOUCHED = 1
+#: Part of the difference from elements one order lower that is taken for the error of c_ij and of root stress: no less
+#: than the true one where meshes of all levels were compared, with cracks of .1 to .7 of the way through.
+_COUPLING_SHARE, _STRESS_SHARE = 1.0, 1.5
+#: A difference may vanish by chance at one position: the estimate is no smaller than so many times what it usually is.
+_USUAL = 1.5
+#: Positions over the flank at which usual differences are looked for.
+_SAMPLES = 17
+
+
+@dataclass(frozen=True)
+class OddGearInfluence:
+    """Compliance, root-stress and stress-intensity influence of a gear with odd teeth, per unit face width, in SI.
+
+    Parameters
+    ----------
+    ordinary : GearInfluence
+        The same gear, all its teeth alike.
+    fine : OddInfluence
+        The solution that every number comes from; its tooth 0 is tooth `middle` of the gear.
+    middle : int
+    seconds : mapping of str to float
+    """
+
+    ordinary: GearInfluence
+    fine: OddInfluence
+    middle: int = 0
+    seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
+
+    @property
+    def gear(self) -> Gear:
+        """The gear, all its teeth alike."""
+        return self.ordinary.gear
+
+    @property
+    def settings(self) -> MeshSettings:
+        """Of its mesh."""
+        return self.ordinary.settings
+
+    def alone(self, near: int) -> GearInfluence:
+        """A tooth under loads on itself, by its number from the middle one, as of a gear of such teeth."""
+        return GearInfluence(self.gear, self.fine.tooth(near), None, self.settings, self.seconds)
+
+    @property
+    def known(self) -> range:
+        """Teeth that are known by number, from the middle one."""
+        return range(-self.fine.reach, self.fine.reach + 1)
+
+    @property
+    def touched(self) -> range:
+        """Teeth from the middle one that answer otherwise than ordinary ones: odd, between odd ones or next to one."""
+        odd, reach = self.fine.odd, self.fine.reach
+        return range(max(min(odd) - _TOUCHED, -reach), min(max(odd) + _TOUCHED, reach) + 1)
+
+    def from_middle(self, tooth: int) -> int:
+        """Number of a tooth from the middle one, within half a turn to either side."""
+        z = self.gear.teeth
+        return (tooth - self.middle + z // 2) % z - z // 2
+
+    def _near(self, *teeth: int) -> list[int]:
+        """Numbers from the middle tooth.
+
+        Raises
+        ------
+        InputError
+            If a tooth is not known by number.
+        """
+        found = [self.from_middle(tooth) for tooth in teeth]
+        for tooth, near in zip(teeth, found, strict=True):
+            if near not in self.known:
+                first, last = (self.middle + self.known[at] for at in (0, -1))
+                raise InputError("tooth", tooth, f"must be one of those near the odd teeth, {first} to {last}")
+        return found
+
+    def _modules(self, radius: ArrayLike) -> Array:
+        return np.atleast_1d(np.asarray(radius, dtype=float)) / self.gear.module
+
+    @property
+    def _modulus(self) -> float:
+        return self.gear.material.young_modulus
+
+    @property
+    def _patch(self) -> float:
+        return self.settings.patch_half_width
+
+    def own(self, i: int, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """c_ii(p, p) of a contact with a given half-width [m], shape (P,) [m^2/N]."""
+        (near,) = self._near(i)
+        b = np.asarray(half_width, dtype=float) / self.gear.module
+        return self.fine.own(near, self._modules(radius), self._patch, b) / self._modulus
+
+    def own_error(self, i: int, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """Estimated error of `own`, shape (P,) [m^2/N]; NaN without a solution of lower order."""
+        r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
+        (near,) = self._near(i)
+        if self.fine.lower is None:
+            return np.full(np.broadcast_shapes(r.shape, b.shape), np.nan)
+        return self._estimate(near).self_error(r, b) / self._modulus
+
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [m^2/N]."""
+        p, q = self._modules(radius_p), self._modules(radius_q)
+        near, other = self._near(i, j)
+        return self.fine.between(near, other, p, q, self._patch) / self._modulus
+
+    def between_error(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """Estimated error of `between`, shape (P, Q) [m^2/N]."""
+        p, q = self._modules(radius_p), self._modules(radius_q)
+        near, other = self._near(i, j)
+        if self.fine.lower is None:
+            return np.full((p.size, q.size), np.nan)
+        usual = self._usual_between(near, other)
+        return np.maximum(self._off_between(near, other, p, q), _USUAL * usual) / self._modulus
+
+    def _off_between(self, i: int, j: int, p: Array, q: Array) -> Array:
+        """What half the width of the pressures, and elements one order lower, change of c_ij."""
+        assert self.fine.lower is not None  # noqa: S101
+        value = self.fine.between(i, j, p, q, self._patch)
+        width = np.abs(value - self.fine.between(i, j, p, q, 0.5 * self._patch))
+        return np.asarray(width + _COUPLING_SHARE * np.abs(value - self.fine.lower.between(i, j, p, q, self._patch)))
+
+    def _usual_between(self, i: int, j: int) -> float:
+        key = "c", i, j
+        if key not in self._kept:
+            off = self._off_between(i, j, self._samples, self._samples)
+            self._kept[key] = float(np.sqrt(np.mean(off**2)))
+        return self._kept[key]
+
+    def fillet_stress(
+        self, i: int, j: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None
+    ) -> Array:
+        """Tangential stress along a fillet of tooth i per unit line load on tooth j, shape (points, P) [1/m]."""
+        near, other = self._near(i, j)
+        found = self.fine.fillet_stress(near, other, side, self._modules(radius), self._half_width(half_width))
+        return found / self.gear.module
+
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet:
+        """How the largest stress of a fillet of tooth i is found between its points."""
+        (near,) = self._near(i)
+        pieces = tuple(
+            (start, replace(curve, module=self.gear.module), points)
+            for start, curve, points in self.fine.kind(near).pieces(side)
+        )
+        return pieces[0][1] if len(pieces) == 1 else CutFillet(pieces)
+
+    def largest_root_stress(
+        self, i: int, j: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None
+    ) -> tuple[Array, Array]:
+        """Largest root stress of tooth i per unit line load on tooth j [1/m], and its arc length [m], shape (P,)."""
+        near, other = self._near(i, j)
+        r, b, m = self._modules(radius), self._half_width(half_width), self.gear.module
+        value, arc = self.fine.largest_root_stress(near, other, side, r, b)
+        return value / m, arc * m
+
+    def root_stress_error(
+        self, i: int, j: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None
+    ) -> Array:
+        """Estimated error of `largest_root_stress`, shape (P,) [1/m]."""
+        near, other = self._near(i, j)
+        r, b = self._modules(radius), self._half_width(half_width)
+        if self.fine.lower is None:
+            return np.full(r.shape, np.nan)
+        key = side, near, other
+        if key not in self._kept:
+            off = self._off_stress(near, other, side, self._samples, np.asarray(REFERENCE_HALF_WIDTH))
+            self._kept[key] = float(np.sqrt(np.mean(off**2)))
+        error = np.maximum(self._off_stress(near, other, side, r, b), _USUAL * self._kept[key])
+        return np.asarray(_STRESS_SHARE * error / self.gear.module)
+
+    def _off_stress(self, i: int, j: int, side: Side, r: Array, b: Array) -> Array:
+        assert self.fine.lower is not None  # noqa: S101
+        value, other = (one.largest_root_stress(i, j, side, r, b)[0] for one in (self.fine, self.fine.lower))
+        return np.asarray(np.abs(value - other))
+
+    def stress_intensity(self, i: int, j: int, radius: ArrayLike) -> tuple[Array, Array]:
+        """K_I and K_II of the crack of tooth i per unit line load on tooth j, and their error, (2, P) each [1/sqrt m].
+
+        Raises
+        ------
+        InputError
+            If the tooth has no crack.
+        """
+        near, other = self._near(i, j)
+        value, error = self.fine.stress_intensity(near, other, self._modules(radius), self._patch)
+        root = np.sqrt(self.gear.module)
+        return value / root, error / root
+
+    def _half_width(self, half_width: ArrayLike | None) -> Array:
+        if half_width is None:
+            return np.asarray(REFERENCE_HALF_WIDTH)
+        return np.asarray(half_width, dtype=float) / self.gear.module
+
+    def _estimate(self, i: int) -> Estimate:
+        """Of a tooth under its own load."""
+        if i not in self._estimates:
+            assert self.fine.lower is not None  # noqa: S101
+            coarser = self.settings.refined(LEVEL_RATIO)
+            other = replace(self.fine.lower.tooth(i), corner_distance=coarser.corner_distance)
+            self._estimates[i] = Estimate(self.fine.tooth(i), other, self._patch, coarser.patch_half_width)
+        return self._estimates[i]
+
+    @cached_property
+    def _estimates(self) -> dict[int, Estimate]:
+        return {}
+
+    @cached_property
+    def _kept(self) -> dict[tuple[str, int, int], float]:
+        return {}
+
+    @cached_property
+    def _samples(self) -> Array:
+        """Radii over the flank, evenly in roll angle [modules]."""
+        tooth, flank = self.fine.ordinary.tooth, self.fine.ordinary.flank
+        least, most = tooth.involute_radii
+        low, high = max(flank.lowest_radius, least), min(flank.highest_radius, most)
+        first, last = tooth.roll(np.array([max(low, tooth.base_radius), high])).tolist()
+        return np.clip(tooth.radius_of_roll(np.linspace(first, last, _SAMPLES)), low, high)
+
+    @cached_property
+    def tabulated(self) -> dict[str, Any]:
+        """What has been tabulated of it, by name, as of `GearInfluence`."""
+        return {}
+
+
+def solve_cracked_gear(
+    ordinary: GearInfluence,
+    cracks: Mapping[int, Crack],
+    *,
+    beside: int | None = None,
+    cache: SolutionCache | None = None,
+) -> OddGearInfluence:
+    """Solve a gear some of whose teeth are cracked, from the same gear without cracks.
+
+    Parameters
+    ----------
+    ordinary : GearInfluence
+        Its settings are taken, and whether errors are estimated.
+    cracks : mapping of int to Crack
+        By the number of the tooth.
+    beside : int, optional
+        Teeth on either side of the outermost cracked ones that are known by number, where there are so many; by default
+        as many as neighbours are known of the ordinary gear, and two at least.
+    cache : SolutionCache, optional
+        Where solved gears are recalled from and kept.
+
+    Raises
+    ------
+    InputError
+        If there is no crack; if a crack does not fit its tooth; of a gear with a mesh of its own or a supported rim.
+    """
+    started, gear = time.perf_counter(), ordinary.gear
+    known = SolutionCache() if cache is None else cache
+    _refuse(ordinary, cracks)
+    middle, numbers = _numbers(cracks, gear.teeth)
+    beside = max(_BESIDE, ordinary.reach) if beside is None else max(beside, _TOUCHED)
+    reach = min(max(map(abs, numbers)) + beside, (gear.teeth - 1) // 2)
+    fine = known.call_kept(
+        shape_codec(gear.tooth, _KINDS), _solve, ordinary.fine, gear.bore_radius / gear.module, ordinary.settings,
+        tuple(zip(numbers, cracks.values(), strict=True)), reach, ordinary.fine.lower is not None,
+    ).value  # fmt: skip
+    return OddGearInfluence(ordinary, fine, middle, {**fine.seconds, "total": time.perf_counter() - started})
+
+
+def _refuse(ordinary: GearInfluence, cracks: Mapping[int, Crack]) -> None:
+    if not cracks:
+        raise InputError("cracks", "(none)", "must name at least one tooth")
+    z = ordinary.gear.teeth
+    if len({number % z for number in cracks}) < len(cracks):
+        raise InputError("cracks", sorted(cracks), f"name one of {z} teeth twice")
+    if ordinary.fine.support is not None:
+        raise InputError("rim_support", "of a gear with odd teeth", "is not possible", "hold the whole circle")
+    if ordinary.fine.mesh.origin != GENERATED:
+        raise InputError("mesh", ordinary.fine.mesh.origin, "of a gear with odd teeth must be a generated one")
+
+
+def _numbers(cracks: Mapping[int, Crack], teeth: int) -> tuple[int, list[int]]:
+    """Tooth in the middle of the shortest arc with all cracked ones, and their numbers from it, in their order."""
+    at = sorted(number % teeth for number in cracks)
+    gaps = [(after - before) % teeth or teeth for before, after in zip(at, at[1:] + at[:1], strict=True)]
+    widest = int(np.argmax(gaps))
+    first, span = at[(widest + 1) % len(at)], teeth - gaps[widest]
+    middle = first + span // 2
+    return middle % teeth, [(number - middle + teeth // 2) % teeth - teeth // 2 for number in cracks]
+
+
+def _solve(
+    fine: Influence,
+    bore_radius: float,
+    settings: MeshSettings,
+    cracks: tuple[tuple[int, Crack], ...],
+    reach: int,
+    two_orders: bool,
+) -> OddInfluence:
+    odd = {
+        number: OddTooth(fine.tooth, cracked_sector(fine.tooth, bore_radius, settings, one)) for number, one in cracks
+    }
+    return solve_odd_influence(
+        fine.tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders
+    )
