@@ -16,7 +16,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.compliance import largest_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction, Ramp
-from fegear.fem.plane.root_stress import FilletCurve
+from fegear.fem.plane.root_stress import CutFillet, FilletCurve
 from fegear.geometry.pair import MEMBERS, Member
 
 
@@ -35,7 +35,7 @@ class DesignStress:
     compliance: PairCompliance
     x: Array
     kernels: dict[Member, list[tuple[Array, Array]]]
-    curves: dict[Member, FilletCurve | None]
+    curves: dict[Member, FilletCurve | CutFillet | None]
 
     def largest(self, loading: LoadingFunction, member: Member) -> float:
         """Largest root tension over the path [Pa] for a design load of 1 N."""

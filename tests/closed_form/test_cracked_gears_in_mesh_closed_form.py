@@ -85,7 +85,7 @@ def test_a_healthy_odd_tooth_changes_nothing(member):
     even = engagement()
     odd = engagement(healthy(member))
     found, usual = over_revolution(odd, LOAD, 24), over_revolution(even, LOAD, 24)
-    assert found.solved == 7
+    assert found.solved == 9
     assert usual.solved == 1
     assert found.transmission_error == pytest.approx(
         np.broadcast_to(usual.transmission_error, found.transmission_error.shape), rel=1e-10
@@ -120,24 +120,25 @@ def test_what_teeth_of_a_cracked_gear_do_to_each_other_is_reciprocal(member, num
                     if n:
                         one, other = (source.between(start + n, start, p, q) for start in (first, like))
                         assert np.array_equal(one, other)
-        assert len({source.same_as(first, 2) for first in range(z)}) == 5  # the pairs that can touch, and two, and one
+        assert len({source.same_as(first, 2) for first in range(z)}) == 7  # with the tooth or two beside it, and one
     assert base.own(number, p).min() > 1.1 * base.own(number + 2, p).min()
     assert base.own(number + z, p) == pytest.approx(base.own(number, p), rel=1e-15)
 
 
-def test_the_second_teeth_from_a_crack_are_ordinary(monkeypatch):
-    """What `same_as` takes for granted: they change little, and the transmission error is the same to 6e-4."""
+def test_the_third_teeth_from_a_crack_are_ordinary(monkeypatch):
+    """What `same_as` takes for granted: they change little, and the transmission error is the same to 4e-4."""
     known, radii = cracked("driver", 0.5), [23.9e-3, 25.0e-3, 26.5e-3]
+    farther = solve_cracked_gear(ordinary("driver"), {0: crack_of("driver", 0.5)}, beside=3)
     half = 0.02 * 2e-3
     usual = ordinary("driver").self_compliance(radii, half)
-    off = {i: np.abs(known.own(i, radii, half) / usual - 1.0).max() for i in (-2, -1, 1, 2)}
-    assert max(off[-1], off[1]) > 3e-3
-    assert max(off[-2], off[2]) < 2e-3
+    off = {i: np.abs(farther.own(i, radii, half) / usual - 1.0).max() for i in (-3, -2, 2, 3)}
+    assert max(off[-2], off[2]) > 1e-3
+    assert max(off[-3], off[3]) < 6e-4
     one = over_revolution(engagement(known, corner=False), LOAD, 12)
-    monkeypatch.setattr("fegear.fem.plane.odd.odd_gear._TOUCHED", 2)
-    other = over_revolution(engagement(replace(known, seconds={}), corner=False), LOAD, 12)
-    assert (one.solved, other.solved) == (5, 7)
-    assert one.transmission_error == pytest.approx(other.transmission_error, rel=6e-4)
+    monkeypatch.setattr("fegear.fem.plane.odd.odd_gear._TOUCHED", 3)
+    other = over_revolution(engagement(farther, corner=False), LOAD, 12)
+    assert (one.solved, other.solved) == (7, 9)
+    assert one.transmission_error == pytest.approx(other.transmission_error, rel=4e-4)
 
 
 @pytest.mark.dear
@@ -147,7 +148,7 @@ def test_the_table_of_depths(share):
     found = over_revolution(engagement(cracked("driver", share)), LOAD, 100)
     drop, residual = TABLE[share]
     assert found.transmission_error.shape[0] == Z[0]
-    assert found.solved == 7  # of four rows of pairs, two of them corner contacts: those and two, and the ordinary one
+    assert found.solved == 9  # of four rows of pairs, two of them corner contacts: those and four, and the ordinary one
     assert 1.0 - found.lowest_stiffness / found.ordinary_lowest_stiffness == pytest.approx(drop, abs=2e-3)
     assert np.abs(found.residual).max() * 1e6 == pytest.approx(residual, rel=1e-2)
 
@@ -215,7 +216,7 @@ def test_the_cracked_tooth_shows_while_it_is_in_mesh(member):
     found = over_revolution(engagement(cracked(member, 0.5), corner=False), LOAD, 20)
     z = PAIR.gear(member).teeth
     assert found.transmission_error.shape[0] == z
-    assert found.solved == 5
+    assert found.solved == 7
     peak = np.abs(found.residual).max(axis=1)
     # tooth 0 is pair 0 in base pitch 0, and pair 1 in the next one
     assert set(np.argsort(peak)[-2:]) == {0, 1}

@@ -44,9 +44,9 @@ _KINDS: tuple[type, ...] = (OddInfluence, ToothKind, OddRing, SectorMesh, Loaded
 #: So many teeth on either side of the outermost odd ones are known by number at least.
 _BESIDE = 2
 #: Teeth on either side of the outermost odd ones that answer otherwise than ordinary ones. A crack half of the way
-#: through changes c_ii of the next ones by up to 8e-3, of the second ones by 1.2e-3 (the transmission error by up to
-#: 5e-4): these count as ordinary.
-_TOUCHED = 1
+#: through changes c_ii of the next ones by up to 5e-3, of the second by 1.2e-3, of the third by 5e-4 (the transmission
+#: error by up to 3.5e-4): these count as ordinary.
+_TOUCHED = 2
 #: Part of the difference from elements one order lower that is taken for the error of c_ij and of root stress: no less
 #: than the true one where meshes of all levels were compared, with cracks of .1 to .7 of the way through.
 _COUPLING_SHARE, _STRESS_SHARE = 1.0, 1.5
