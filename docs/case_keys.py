@@ -1,6 +1,7 @@
 """The tables of keys in docs/case-files.md, made from the model of case files; run as a program it writes them.
 
-What a key means stands at the key, as ``Field(description=...)`` in `fegear/case`; window and editors show the same.
+What a key means stands at the key, as ``Field(description=...)`` in `fegear/case`, or as `given` at the spec from which
+a table has its keys; window and editors show the same.
 """
 
 from __future__ import annotations

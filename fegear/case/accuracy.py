@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import AfterValidator, Field
 
+from fegear.base.given import all_given
+from fegear.case.derived import keys_of
 from fegear.case.part import Number, Part, refuse
+from fegear.fem.plane.settings import MeshSettings
 
 
 def _tolerance(value: float) -> float:
@@ -15,72 +18,31 @@ def _tolerance(value: float) -> float:
     return value
 
 
-#: In modules; the mesher never ends with shorter ones.
-EdgeLength = Annotated[Number, Field(ge=1e-5, le=2.0)]
-
-
-class AccuracyPart(Part):
-    """Relative tolerance of the results, or explicit settings with lengths in modules (see `MeshSettings`)."""
+class _Tolerance(Part):
+    """What chooses the settings that a case does not give."""
 
     tolerance: Annotated[Number, AfterValidator(_tolerance)] = Field(
         default=1e-3,
         description="Target relative error of compliances and root stresses, 1e-6 to 0.5. The mesh is refined until "
         "the estimated error meets it; otherwise a note is issued.",
     )
-    solver: Literal["condensed", "scikit-fem"] = Field(
-        default="condensed",
-        description="Solver of the tooth sector: `condensed` (nested dissection) or `scikit-fem` (its own asm, "
-        "condense and solve). Results agree to round-off; `scikit-fem` takes several times as long.",
-    )
-    order: Annotated[int, Field(ge=2, le=4)] | None = Field(
-        default=None, description="Polynomial order of the elements, 2 to 4. Default: chosen from the tolerance."
-    )
-    root_edge_length: EdgeLength | None = Field(
-        default=None, description="Maximum edge length along the fillet, in modules. Default: from the tolerance."
-    )
-    root_fraction: Annotated[Number, Field(ge=1e-4, le=2.0)] | None = Field(
-        default=None,
-        description="Maximum edge length along a fillet relative to its radius of curvature. Default: from the "
-        "tolerance.",
-    )
-    flank_edge_length: EdgeLength | None = Field(
-        default=None, description="Edge length along the flank, in modules. Default: from the tolerance."
-    )
-    tip_edge_length: EdgeLength | None = Field(
-        default=None, description="Edge length at the tip, in modules. Default: from the tolerance."
-    )
-    junction_edge_length: EdgeLength | None = Field(
-        default=None,
-        description="Edge length at the transition from flank to fillet, in modules. Default: from the tolerance.",
-    )
-    back_edge_length: EdgeLength | None = Field(
-        default=None, description="Edge length on the unloaded flank, in modules. Default: from the tolerance."
-    )
-    growth: EdgeLength | None = Field(
-        default=None, description="Growth rate of edge lengths away from the fillet. Default: from the tolerance."
-    )
-    tip_growth: EdgeLength | None = Field(
-        default=None, description="Growth rate of edge lengths away from the tip corner. Default: from the tolerance."
-    )
-    side_growth: EdgeLength | None = Field(
-        default=None,
-        description="Growth rate of edge lengths away from the tooth outline. Default: from the tolerance.",
-    )
-    body_fraction: Annotated[Number, Field(ge=1e-3, le=10.0)] | None = Field(
-        default=None,
-        description="Maximum edge length in the body relative to the sector width. Default: from the tolerance.",
-    )
-    rim_fraction: Annotated[Number, Field(ge=1e-3, le=1.0)] | None = Field(
-        default=None,
-        description="Maximum edge length in the body relative to the rim thickness. Default: from the tolerance.",
-    )
-    corner_distance: Annotated[Number, Field(gt=0.0, le=0.5)] | None = Field(
-        default=None,
-        description="Distance from a flank corner below which c_0 is extrapolated with the wedge solution [modules]. "
-        "Default: 0.006.",
-    )
-    patch_half_width: Annotated[Number, Field(gt=0.0, le=0.5)] | None = Field(
-        default=None,
-        description="Half-width of the wider of the two pressure patches applied to the mesh, in modules. Default: "
-        "from the tolerance.",
-    )
+
+
+#: What settings follow from where a case does not give them.
+_OTHERWISE = {
+    **{key: "from the tolerance" for key in all_given(MeshSettings) if key != "solver"},
+    "order": "chosen from the tolerance",
+    "corner_distance": "0.006",
+}
+
+if TYPE_CHECKING:
+
+    class _Keys(_Tolerance, MeshSettings):  # type: ignore[misc]  # frozen by pydantic
+        """Of the settings all but the solver may be None."""
+
+else:
+    _Keys = keys_of(MeshSettings, base=_Tolerance, first=("solver", "order"), otherwise=_OTHERWISE)
+
+
+class AccuracyPart(_Keys):
+    """Relative tolerance of the results, or explicit settings with lengths in modules (see `MeshSettings`)."""

@@ -5,14 +5,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from fegear.case.part import Angle, Length, Number, Part, PositiveLength, PositiveNumber, refuse, spelt_also
-
-Shape = Literal["linear", "parabolic"]
-
+from fegear.case.derived import keys_of
+from fegear.case.part import Angle, Length, Part, PositiveLength, refuse, spelt_also
+from fegear.geometry.relief import Shape
+from fegear.geometry.relief_spec import BiasSpec, CrowningSpec, EndReliefSpec, RootReliefSpec, TipReliefSpec
 
 #: The ways to say where an end relief starts.
 STARTS = ("start_roll_angle", "start_radius", "length", "normalised_length")
@@ -27,31 +27,23 @@ def several(part: type[Part]) -> BeforeValidator:
     return BeforeValidator(read, json_schema_input_type=part | list[part])  # type: ignore[valid-type]  # made at run time
 
 
-class EndReliefPart(Part):
-    """Tip or root relief: amount, start and shape."""
+if TYPE_CHECKING:
 
-    amount: Length | None = Field(
-        default=None, description="Amount of relief (C_a); alternatively `amount_over_delta`."
-    )
-    amount_over_delta: Number | None = Field(
-        default=None,
-        description="Amount in units of Welbourn's Delta (deflection at the driver's HPSTC plus twice the maximum "
-        "pitch deviation).",
-    )
-    start_roll_angle: Angle | None = Field(
-        default=None, description="Start of relief as roll angle; specify exactly one of the four start keys."
-    )
-    start_radius: PositiveLength | None = Field(
-        default=None, description="Start of relief as radius; specify exactly one of the four start keys."
-    )
-    length: PositiveLength | None = Field(
-        default=None,
-        description="Length of the relief along the line of action; specify exactly one of the four start keys.",
-    )
-    normalised_length: PositiveNumber | None = Field(
-        default=None, description="Normalised length L_n of the tip relief (TM-89901): 1 from the tip to the HPSTC."
-    )
-    shape: Shape = Field(default="linear", description="Shape of the relief from its start: linear or parabolic.")
+    class _EndReliefKeys(Part, EndReliefSpec):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+    class _CrowningKeys(Part, CrowningSpec):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+    class _BiasKeys(Part, BiasSpec):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+else:
+    _EndReliefKeys, _CrowningKeys, _BiasKeys = keys_of(EndReliefSpec), keys_of(CrowningSpec), keys_of(BiasSpec)
+
+
+class EndReliefPart(_EndReliefKeys):
+    """Tip or root relief: amount, start and shape."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -70,12 +62,21 @@ class EndReliefPart(Part):
         return self
 
 
-class TipReliefPart(EndReliefPart):
-    """``tip = { amount, start_roll_angle | start_radius | length | normalised_length, shape, at_radius }``."""
+if TYPE_CHECKING:
 
-    at_radius: PositiveLength | None = Field(
-        default=None, description="Radius at which the amount applies. Default: end of the involute (tip form circle)."
-    )
+    class _TipReliefKeys(EndReliefPart, TipReliefSpec):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+    class _RootReliefKeys(EndReliefPart, RootReliefSpec):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+else:
+    _TipReliefKeys = keys_of(TipReliefSpec, base=EndReliefPart)
+    _RootReliefKeys = keys_of(RootReliefSpec, base=EndReliefPart)
+
+
+class TipReliefPart(_TipReliefKeys):
+    """``tip = { amount, start_roll_angle | start_radius | length | normalised_length, shape, at_radius }``."""
 
     @model_validator(mode="after")
     def _measured_at_the_tip(self) -> Self:
@@ -84,12 +85,8 @@ class TipReliefPart(EndReliefPart):
         return self
 
 
-class RootReliefPart(EndReliefPart):
+class RootReliefPart(_RootReliefKeys):
     """``root = { amount, start_..., shape, end_radius }``; it ends where contact starts unless given otherwise."""
-
-    end_radius: PositiveLength | None = Field(
-        default=None, description="Radius at which the amount applies. Default: start of active profile."
-    )
 
     @model_validator(mode="after")
     def _no_tip_measures(self) -> Self:
@@ -98,16 +95,8 @@ class RootReliefPart(EndReliefPart):
         return self
 
 
-class CrowningPart(Part):
+class CrowningPart(_CrowningKeys):
     """``crowning = { amount, start_radius, end_radius }``; over the active profile unless given otherwise."""
-
-    amount: Length = Field(description="Amount of profile crowning C_alpha at both ends of the crowned profile.")
-    start_radius: PositiveLength | None = Field(
-        default=None, description="Lower end of the crowned profile. Default: start of active profile."
-    )
-    end_radius: PositiveLength | None = Field(
-        default=None, description="Upper end of the crowned profile. Default: end of active profile."
-    )
 
 
 class ReliefTablePart(Part):
@@ -231,21 +220,10 @@ class LeadPart(Part):
         return self
 
 
-class BiasPart(Part):
+class BiasPart(_BiasKeys):
     """``bias = "10 um"``, or ``{ amount, start_radius, end_radius }``; over the active profile unless given."""
 
     model_config = spelt_also(lambda table: table["properties"]["amount"])
-
-    amount: Length = Field(
-        description="Flank twist S_alpha; positive removes material at the tip at end II and at the root at end I (a "
-        "quarter of it at each corner)."
-    )
-    start_radius: PositiveLength | None = Field(
-        default=None, description="Lower end of the twisted profile. Default: start of active profile."
-    )
-    end_radius: PositiveLength | None = Field(
-        default=None, description="Upper end of the twisted profile. Default: end of active profile."
-    )
 
     @model_validator(mode="before")
     @classmethod

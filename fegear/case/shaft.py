@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.base.errors import GeometryError
+from fegear.case.derived import keys_of
 from fegear.case.gear import MaterialPart
 from fegear.case.part import (
     Angle,
@@ -16,7 +17,6 @@ from fegear.case.part import (
     LengthOrZero,
     Number,
     Part,
-    PositiveForce,
     PositiveLength,
     StiffnessOrZero,
     TorsionalStiffnessOrZero,
@@ -25,27 +25,29 @@ from fegear.case.part import (
     refuse,
 )
 from fegear.geometry.plausible import refuse_shaft
+from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.life import LifeRating
 
 if TYPE_CHECKING:
-    from fegear.shafts.beam import Shaft
     from fegear.shafts.bearing import Bearing
-    from fegear.shafts.life import LifeRating
 
 Torque = Annotated[float, quantity("torque")]
 
 
-class SectionPart(Part):
-    """``{ length = "40 mm", outer = "35 mm", inner = "0 mm" }``; a cone where an end has another diameter."""
+if TYPE_CHECKING:
 
-    length: PositiveLength = Field(description="Length of the section.")
-    outer: PositiveLength = Field(description="Outer diameter at the start of the section.")
-    inner: LengthOrZero = Field(default=0.0, description="Bore diameter at the start of the section; 0: solid.")
-    outer_end: PositiveLength | None = Field(
-        default=None, description="Outer diameter at the end of the section (conical)."
-    )
-    inner_end: LengthOrZero | None = Field(
-        default=None, description="Bore diameter at the end of the section (conical)."
-    )
+    class _SectionKeys(Part, Section):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+    class _LifeKeys(Part, LifeRating):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+else:
+    _SectionKeys, _LifeKeys = keys_of(Section), keys_of(LifeRating)
+
+
+class SectionPart(_SectionKeys):
+    """``{ length = "40 mm", outer = "35 mm", inner = "0 mm" }``; a cone where an end has another diameter."""
 
 
 class GearPlacePart(Part):
@@ -138,8 +140,6 @@ class ShaftInSpacePart(Part):
 
     def build(self, *, rigid: bool = False) -> Shaft:
         """Make the shaft."""
-        from fegear.shafts.beam import Section, Shaft
-
         made = tuple(Section(one.length, one.outer, one.inner, one.outer_end, one.inner_end) for one in self.sections)
         modulus = math.inf if rigid or self.rigid else self.material.young_modulus
         return Shaft(made, modulus, self.material.poisson_ratio)
@@ -164,19 +164,11 @@ class RollingElementsPart(Part):
     clearance: Length = Field(default=0.0, description="Diametral clearance as mounted; negative for preload.")
 
 
-class BearingLifePart(Part):
+class BearingLifePart(_LifeKeys):
     """``life = { dynamic_rating = "32.5 kN", axial_factor = 1.6, ... }`` of the catalogue, for ISO 281."""
-
-    dynamic_rating: PositiveForce = Field(description="Basic dynamic load rating C.")
-    kind: Literal["ball", "roller"] = Field(default="ball", description="Life exponent p, 3 or 10/3.")
-    radial_factor: Annotated[Number, Field(ge=0.0)] = Field(default=1.0, description="Factor X for F_a/F_r above e.")
-    axial_factor: Annotated[Number, Field(ge=0.0)] = Field(default=0.0, description="Factor Y for F_a/F_r above e.")
-    limit: Annotated[Number, Field(ge=0.0)] = Field(default=0.0, description="Limit e of F_a/F_r up to which P = F_r.")
 
     def build(self) -> LifeRating:
         """Make the rating."""
-        from fegear.shafts.life import LifeRating
-
         return LifeRating(self.dynamic_rating, self.kind, self.radial_factor, self.axial_factor, self.limit)
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.given import given
 from fegear.geometry.flank_modification import Bias
 from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.plausible_flanks import refuse_deep_relief, refuse_relief_elsewhere
@@ -31,28 +32,30 @@ from fegear.geometry.relief import (
 
 @dataclass(frozen=True, kw_only=True)
 class EndReliefSpec:
-    """Relief toward one end of the profile; its amount in one of two ways, its start in one of four.
+    """Relief toward one end of the profile; its amount in one of two ways, its start in one of four."""
 
-    Parameters
-    ----------
-    amount : float, optional
-        Material removed at the end [m].
-    amount_over_delta : float, optional
-        The same in units of Welbourn's Delta.
-    start_roll_angle, start_radius, length : float, optional
-        Where it starts [rad], [m], or its length along the line of action [m].
-    normalised_length : float, optional
-        L_n of TM-89901, of tip reliefs only.
-    shape : {"linear", "parabolic"}
-    """
-
-    amount: float | None = None
-    amount_over_delta: float | None = None
-    start_roll_angle: float | None = None
-    start_radius: float | None = None
-    length: float | None = None
-    normalised_length: float | None = None
-    shape: Shape = "linear"
+    amount: float | None = given("length", "Amount of relief (C_a); alternatively `amount_over_delta`.", default=None)
+    amount_over_delta: float | None = given(
+        meaning="Amount in units of Welbourn's Delta (deflection at the driver's HPSTC plus twice the maximum "
+        "pitch deviation).",
+        default=None,
+    )
+    start_roll_angle: float | None = given(
+        "angle", "Start of relief as roll angle; specify exactly one of the four start keys.", default=None
+    )
+    start_radius: float | None = given(
+        "length", "Start of relief as radius; specify exactly one of the four start keys.", default=None, above=0.0
+    )
+    length: float | None = given(
+        "length", "Length of the relief along the line of action; specify exactly one of the four start keys.",
+        default=None, above=0.0,
+    )  # fmt: skip
+    #: Of tip reliefs only.
+    normalised_length: float | None = given(
+        meaning="Normalised length L_n of the tip relief (TM-89901): 1 from the tip to the HPSTC.",
+        default=None, above=0.0,
+    )  # fmt: skip
+    shape: Shape = given(meaning="Shape of the relief from its start: linear or parabolic.", default="linear")
 
     def removed(self, delta: float) -> float:
         """Amount, Welbourn's Delta given [m]."""
@@ -61,34 +64,50 @@ class EndReliefSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class TipReliefSpec(EndReliefSpec):
-    """Tip relief; `at_radius` is where its amount is measured [m], by default where the involute ends."""
+    """Tip relief."""
 
-    at_radius: float | None = None
+    at_radius: float | None = given(
+        "length", "Radius at which the amount applies. Default: end of the involute (tip form circle).",
+        default=None, above=0.0,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class RootReliefSpec(EndReliefSpec):
-    """Root relief; `end_radius` is where its amount is measured [m], by default where contact starts."""
+    """Root relief."""
 
-    end_radius: float | None = None
+    end_radius: float | None = given(
+        "length", "Radius at which the amount applies. Default: start of active profile.", default=None, above=0.0
+    )
 
 
 @dataclass(frozen=True)
 class CrowningSpec:
-    """Profile crowning: removal at both ends [m], which are those of the active profile by default."""
+    """Profile crowning: removal at both ends, which are those of the active profile by default."""
 
-    amount: float
-    start_radius: float | None = None
-    end_radius: float | None = None
+    amount: float = given("length", "Amount of profile crowning C_alpha at both ends of the crowned profile.")
+    start_radius: float | None = given(
+        "length", "Lower end of the crowned profile. Default: start of active profile.", default=None, above=0.0
+    )
+    end_radius: float | None = given(
+        "length", "Upper end of the crowned profile. Default: end of active profile.", default=None, above=0.0
+    )
 
 
 @dataclass(frozen=True)
 class BiasSpec:
-    """Twist S_alpha of a flank [m] between two radii [m], by default those of the active profile."""
+    """Twist of a flank between two radii, by default those of the active profile."""
 
-    amount: float
-    start_radius: float | None = None
-    end_radius: float | None = None
+    amount: float = given(
+        "length", "Flank twist S_alpha; positive removes material at the tip at end II and at the root at end I (a "
+        "quarter of it at each corner).",
+    )  # fmt: skip
+    start_radius: float | None = given(
+        "length", "Lower end of the twisted profile. Default: start of active profile.", default=None, above=0.0
+    )
+    end_radius: float | None = given(
+        "length", "Upper end of the twisted profile. Default: end of active profile.", default=None, above=0.0
+    )
 
     def built(self, pair: GearPair, member: Member) -> Bias:
         """The twist of one gear of a pair.

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.given import given
 from fegear.shafts.carried import carry
 
 if TYPE_CHECKING:
@@ -46,26 +47,21 @@ _GAUSS = {count: np.polynomial.legendre.leggauss(count) for count in (_PRISM, _C
 class Section:
     """A piece of a shaft: a cylinder, or a cone where its end has other diameters than its start.
 
-    Parameters
-    ----------
-    length : float
-        [m].
-    outer, inner : float
-        Diameters at its start [m]; inner zero for solid shafts.
-    outer_end, inner_end : float, optional
-        At its end; without them those of the start.
-
     Raises
     ------
     RangeError
         If there is no material.
     """
 
-    length: float
-    outer: float
-    inner: float = 0.0
-    outer_end: float | None = None
-    inner_end: float | None = None
+    length: float = given("length", "Length of the section.", above=0.0)
+    outer: float = given("length", "Outer diameter at the start of the section.", above=0.0)
+    inner: float = given("length", "Bore diameter at the start of the section; 0: solid.", default=0.0, at_least=0.0)
+    outer_end: float | None = given(
+        "length", "Outer diameter at the end of the section (conical).", default=None, above=0.0
+    )
+    inner_end: float | None = given(
+        "length", "Bore diameter at the end of the section (conical).", default=None, at_least=0.0
+    )
 
     def __post_init__(self) -> None:
         """Refuse pieces without length or wall."""

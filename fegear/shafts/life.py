@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fegear.base.errors import RangeError
+from fegear.base.given import given
 
 #: p.
 EXPONENT = {"ball": 3.0, "roller": 10.0 / 3.0}
@@ -20,27 +21,17 @@ EXPONENT = {"ball": 3.0, "roller": 10.0 / 3.0}
 class LifeRating:
     """What a catalogue says of a bearing's life.
 
-    Parameters
-    ----------
-    dynamic_rating : float
-        C [N].
-    kind : {"ball", "roller"}
-    radial_factor, axial_factor : float
-        X and Y where the axial force counts.
-    limit : float
-        e: up to this F_a/F_r the axial force does not count.
-
     Raises
     ------
     RangeError
         If a value is negative, or the rating is not positive.
     """
 
-    dynamic_rating: float
-    kind: Literal["ball", "roller"] = "ball"
-    radial_factor: float = 1.0
-    axial_factor: float = 0.0
-    limit: float = 0.0
+    dynamic_rating: float = given("force", "Basic dynamic load rating C.", above=0.0)
+    kind: Literal["ball", "roller"] = given(meaning="Life exponent p, 3 or 10/3.", default="ball")
+    radial_factor: float = given(meaning="Factor X for F_a/F_r above e.", default=1.0, at_least=0.0)
+    axial_factor: float = given(meaning="Factor Y for F_a/F_r above e.", default=0.0, at_least=0.0)
+    limit: float = given(meaning="Limit e of F_a/F_r up to which P = F_r.", default=0.0, at_least=0.0)
 
     def __post_init__(self) -> None:
         """Refuse what is no rating."""

@@ -9,6 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.given import given
 
 #: What assembles a sector and eliminates its inner unknowns: nested dissection of its elements (`condensation`), or
 #: scikit-fem's own `asm`, `condense` and `solve` (`scikit_fem_solver`).
@@ -24,51 +25,62 @@ _WIDEST_PATCH = 0.36
 class MeshSettings:
     """Edge lengths and order of the sector's mesh; all lengths in modules, so one choice serves every size.
 
-    Parameters
-    ----------
-    root_edge_length : float
-        Edges along both fillets.
-    root_fraction : float
-        Longest edge along a fillet as a fraction of its radius of curvature there.
-    flank_edge_length : float
-        Edges along the loaded flank.
-    tip_edge_length, junction_edge_length : float
-        Edges at the ends of the loaded flank: at its tip corner, and where it joins the fillet (in proportion to the
-        length of fillets shorter than .1 modules).
-    back_edge_length : float
-        Longest edge along the other flank and the tip.
-    growth, tip_growth, side_growth : float
-        How fast edges grow with distance from the fillet, from the ends of the loaded flank, and from the outline.
-    body_fraction : float
-        Longest edge in the body as a fraction of the sector's width there.
-    rim_fraction : float
-        Longest edge in the body as a fraction of the rim's thickness (outline to bore).
-    corner_distance : float
-        Nearer than this to a corner of the flank the exact wedge gives the deflection; the narrowest pressure that
-        loads the mesh.
-    patch_half_width : float
-        Half-width of the wider of the two semi-elliptic pressures that load the mesh.
-    order : int
-        Polynomial order of the displacement, 2 to 4.
-    solver : {"condensed", "scikit-fem"}
-        What assembles and eliminates: the answers agree to round-off, the second takes several times as long.
+    Bounds are those of what a case may ask for; `scaled` sets may go beyond them.
     """
 
-    root_edge_length: float = 0.055
-    root_fraction: float = 0.08
-    flank_edge_length: float = 0.055
-    tip_edge_length: float = 0.003
-    junction_edge_length: float = 0.00075
-    back_edge_length: float = 0.3
-    growth: float = 0.28
-    tip_growth: float = 0.155
-    side_growth: float = 0.4
-    body_fraction: float = 1.4
-    rim_fraction: float = 0.45
-    corner_distance: float = 0.006
-    patch_half_width: float = 0.18
-    order: int = 4
-    solver: Solver = "condensed"
+    root_edge_length: float = given(
+        meaning="Maximum edge length along the fillet, in modules.", default=0.055, at_least=1e-5, at_most=2.0
+    )
+    root_fraction: float = given(
+        meaning="Maximum edge length along a fillet relative to its radius of curvature.",
+        default=0.08, at_least=1e-4, at_most=2.0,
+    )  # fmt: skip
+    flank_edge_length: float = given(
+        meaning="Edge length along the flank, in modules.", default=0.055, at_least=1e-5, at_most=2.0
+    )
+    tip_edge_length: float = given(
+        meaning="Edge length at the tip, in modules.", default=0.003, at_least=1e-5, at_most=2.0
+    )
+    #: In proportion to the length of fillets shorter than 0.1 modules.
+    junction_edge_length: float = given(
+        meaning="Edge length at the transition from flank to fillet, in modules.",
+        default=0.00075, at_least=1e-5, at_most=2.0,
+    )  # fmt: skip
+    back_edge_length: float = given(
+        meaning="Edge length on the unloaded flank, in modules.", default=0.3, at_least=1e-5, at_most=2.0
+    )
+    growth: float = given(
+        meaning="Growth rate of edge lengths away from the fillet.", default=0.28, at_least=1e-5, at_most=2.0
+    )
+    tip_growth: float = given(
+        meaning="Growth rate of edge lengths away from the tip corner.", default=0.155, at_least=1e-5, at_most=2.0
+    )
+    side_growth: float = given(
+        meaning="Growth rate of edge lengths away from the tooth outline.", default=0.4, at_least=1e-5, at_most=2.0
+    )
+    body_fraction: float = given(
+        meaning="Maximum edge length in the body relative to the sector width.",
+        default=1.4, at_least=1e-3, at_most=10.0,
+    )  # fmt: skip
+    rim_fraction: float = given(
+        meaning="Maximum edge length in the body relative to the rim thickness.",
+        default=0.45, at_least=1e-3, at_most=1.0,
+    )  # fmt: skip
+    #: Also the half-width of the narrowest pressure that loads the mesh.
+    corner_distance: float = given(
+        meaning="Distance from a flank corner below which c_0 is extrapolated with the wedge solution [modules].",
+        default=0.006, above=0.0, at_most=0.5,
+    )  # fmt: skip
+    patch_half_width: float = given(
+        meaning="Half-width of the wider of the two pressure patches applied to the mesh, in modules.",
+        default=0.18, above=0.0, at_most=0.5,
+    )  # fmt: skip
+    order: int = given(meaning="Polynomial order of the elements, 2 to 4.", default=4, at_least=2, at_most=4)
+    solver: Solver = given(
+        meaning="Solver of the tooth sector: `condensed` (nested dissection) or `scikit-fem` (its own asm, "
+        "condense and solve). Results agree to round-off; `scikit-fem` takes several times as long.",
+        default="condensed",
+    )
 
     def __post_init__(self) -> None:
         """Refuse settings that make no mesh."""
