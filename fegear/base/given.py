@@ -60,7 +60,8 @@ def given(
     **options
         Of `dataclasses.field`: ``compare``, ``kw_only``, ...
     """
-    return field(default=default, metadata={_KEY: Given(dimension, meaning, above, at_least, at_most)}, **options)  # type: ignore[call-overload]  # the default is of any type
+    how = Given(dimension, meaning, above, at_least, at_most)
+    return field(default=default, metadata={_KEY: how}, **options)
 
 
 def all_given(spec: type) -> dict[str, Given]:

@@ -44,5 +44,5 @@ else:
     _Keys = keys_of(MeshSettings, base=_Tolerance, first=("solver", "order"), otherwise=_OTHERWISE)
 
 
-class AccuracyPart(_Keys):
+class AccuracyPart(_Keys):  # type: ignore[misc]  # frozen by pydantic
     """Relative tolerance of the results, or explicit settings with lengths in modules (see `MeshSettings`)."""

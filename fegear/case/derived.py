@@ -61,7 +61,8 @@ def keys_of(
 def _read(kind: Any, how: Given) -> Any:
     """The type of a key: that of the field, read with its unit and within its bounds."""
     if get_origin(kind) in (Union, UnionType):
-        return Union[tuple(part if part is type(None) else _read(part, how) for part in get_args(kind))]  # noqa: UP007
+        (single,) = (part for part in get_args(kind) if part is not type(None))
+        return _read(single, how) | None
     if how.dimension:
         if how.at_most is not None or how.above not in (None, 0.0) or how.at_least not in (None, 0.0):
             raise TypeError(f"a quantity has no bound but zero: {how}")

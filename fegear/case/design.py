@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.base.given import all_given
 from fegear.case.part import (
     Angle,
     Length,
@@ -21,9 +22,8 @@ from fegear.case.part import (
     refuse,
     refuse_more,
 )
-
-Shape = Literal["linear", "parabolic"]
-
+from fegear.geometry.relief import Shape
+from fegear.geometry.relief_spec import EndReliefSpec
 
 Positive = Annotated[list[PositiveNumber], Field(min_length=1)]
 
@@ -47,7 +47,7 @@ class ChartPart(Part):
     loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
         default=None, description="Loads. Default: those of the pair."
     )
-    shape: Shape = Field(default="linear", description="Shape of the relief from its start: linear or parabolic.")
+    shape: Shape = Field(default="linear", description=all_given(EndReliefSpec)["shape"].meaning)
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:

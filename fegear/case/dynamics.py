@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from fegear.base.given import all_given
 from fegear.case.part import (
     Number,
     Part,
@@ -22,6 +23,8 @@ from fegear.case.part import (
     refuse_more,
     spelt_also,
 )
+from fegear.geometry.relief import Shape
+from fegear.geometry.relief_spec import EndReliefSpec
 
 Frequency = Annotated[float, quantity("frequency", positive=True)]
 
@@ -137,9 +140,7 @@ class DesignChartPart(Part):
     lengths: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
         description="Normalised lengths L_n of the reliefs, from 0 (tip) to 1 (HPSTC)."
     )
-    shape: Literal["linear", "parabolic"] = Field(
-        default="linear", description="Shape of the relief from its start: linear or parabolic."
-    )
+    shape: Shape = Field(default="linear", description=all_given(EndReliefSpec)["shape"].meaning)
     unequal: list[UnequalReliefPart] = Field(
         default_factory=list, max_length=1000, description="Additional reliefs with a separate amount for each gear."
     )

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from fegear.base.errors import GeometryError, InputError
+from fegear.case.derived import keys_of
 from fegear.case.deviations import DeviationsPart
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_tool import CutterPart, RackPart
@@ -18,10 +19,8 @@ from fegear.case.part import (
     LengthOrZero,
     Number,
     Part,
-    PositiveDensity,
     PositiveInverseLength,
     PositiveLength,
-    PositivePressure,
     Table,
     at,
     refuse,
@@ -42,14 +41,17 @@ _KEYS = {
 }
 
 
-class MaterialPart(Part):
-    """``material = { young_modulus, poisson_ratio, density }``."""
+if TYPE_CHECKING:
 
-    young_modulus: PositivePressure = Field(default=206.8e9, description="Young's modulus.")
-    poisson_ratio: Number = Field(
-        default=0.3, description="Poisson's ratio, below 0.5 (in plane strain at most 0.4999)."
-    )
-    density: PositiveDensity = Field(default=7850.0, description="Density, for inertia.")
+    class _MaterialKeys(Part, Material):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+else:
+    _MaterialKeys = keys_of(Material)
+
+
+class MaterialPart(_MaterialKeys):  # type: ignore[misc]  # frozen by pydantic
+    """``material = { young_modulus, poisson_ratio, density }``."""
 
     def build(self) -> Material:
         """Make the material."""

@@ -42,7 +42,7 @@ else:
     _EndReliefKeys, _CrowningKeys, _BiasKeys = keys_of(EndReliefSpec), keys_of(CrowningSpec), keys_of(BiasSpec)
 
 
-class EndReliefPart(_EndReliefKeys):
+class EndReliefPart(_EndReliefKeys):  # type: ignore[misc]  # frozen by pydantic
     """Tip or root relief: amount, start and shape."""
 
     @model_validator(mode="after")
@@ -75,7 +75,7 @@ else:
     _RootReliefKeys = keys_of(RootReliefSpec, base=EndReliefPart)
 
 
-class TipReliefPart(_TipReliefKeys):
+class TipReliefPart(_TipReliefKeys):  # type: ignore[misc]  # frozen by pydantic
     """``tip = { amount, start_roll_angle | start_radius | length | normalised_length, shape, at_radius }``."""
 
     @model_validator(mode="after")
@@ -85,7 +85,7 @@ class TipReliefPart(_TipReliefKeys):
         return self
 
 
-class RootReliefPart(_RootReliefKeys):
+class RootReliefPart(_RootReliefKeys):  # type: ignore[misc]  # frozen by pydantic
     """``root = { amount, start_..., shape, end_radius }``; it ends where contact starts unless given otherwise."""
 
     @model_validator(mode="after")
@@ -95,7 +95,7 @@ class RootReliefPart(_RootReliefKeys):
         return self
 
 
-class CrowningPart(_CrowningKeys):
+class CrowningPart(_CrowningKeys):  # type: ignore[misc]  # frozen by pydantic
     """``crowning = { amount, start_radius, end_radius }``; over the active profile unless given otherwise."""
 
 
@@ -220,7 +220,7 @@ class LeadPart(Part):
         return self
 
 
-class BiasPart(_BiasKeys):
+class BiasPart(_BiasKeys):  # type: ignore[misc]  # frozen by pydantic
     """``bias = "10 um"``, or ``{ amount, start_radius, end_radius }``; over the active profile unless given."""
 
     model_config = spelt_also(lambda table: table["properties"]["amount"])

@@ -46,7 +46,7 @@ else:
     _SectionKeys, _LifeKeys = keys_of(Section), keys_of(LifeRating)
 
 
-class SectionPart(_SectionKeys):
+class SectionPart(_SectionKeys):  # type: ignore[misc]  # frozen by pydantic
     """``{ length = "40 mm", outer = "35 mm", inner = "0 mm" }``; a cone where an end has another diameter."""
 
 
@@ -164,7 +164,7 @@ class RollingElementsPart(Part):
     clearance: Length = Field(default=0.0, description="Diametral clearance as mounted; negative for preload.")
 
 
-class BearingLifePart(_LifeKeys):
+class BearingLifePart(_LifeKeys):  # type: ignore[misc]  # frozen by pydantic
     """``life = { dynamic_rating = "32.5 kN", axial_factor = 1.6, ... }`` of the catalogue, for ISO 281."""
 
     def build(self) -> LifeRating:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Literal
 
 from fegear.base.errors import GeometryError, InputError
+from fegear.base.given import given
 from fegear.base.shown import shown, shows
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody
@@ -26,21 +27,11 @@ USUAL_RING_RIM = 3.5
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A linear elastic, isotropic material.
+    """A linear elastic, isotropic material."""
 
-    Parameters
-    ----------
-    young_modulus : float
-        E [Pa].
-    poisson_ratio : float
-        nu, inside (-1, 0.5).
-    density : float
-        rho [kg/m^3].
-    """
-
-    young_modulus: float = 206.8e9
-    poisson_ratio: float = 0.3
-    density: float = 7850.0
+    young_modulus: float = given("pressure", "Young's modulus.", default=206.8e9, above=0.0)
+    poisson_ratio: float = given(meaning="Poisson's ratio, below 0.5 (in plane strain at most 0.4999).", default=0.3)
+    density: float = given("density", "Density, for inertia.", default=7850.0, above=0.0)
 
     def __post_init__(self) -> None:
         """Refuse materials that are unstable."""
