@@ -8,6 +8,8 @@ import math
 _DIGITS, _WHOLE = 6, 1e9
 #: Digits that a float holds; no error asks for more.
 _MOST = 10
+#: An error above this share of a number is said with it.
+_ROUGH = 0.5
 
 
 def percent(share: float, signed: bool = False, whole: bool = False) -> str:
@@ -66,6 +68,37 @@ def figures(value: float, digits: int = 3, signed: bool = False) -> str:
         if abs(value) >= 10.0**digits:
             return f"{value:{'+' if signed else ''}.0f}"
     return f"{value:{'+' if signed else ''}.{digits}g}"
+
+
+def rounded(value: float, error: float | None = None, digits: int = 3) -> str:
+    """A number as a person says it: few digits, none beyond the leading one of its error.
+
+    Parameters
+    ----------
+    value : float
+    error : float, optional
+        Estimated absolute error; None or zero where there is none.
+    digits : int
+        Significant ones at most.
+
+    Returns
+    -------
+    str
+        ``"11.7"``, ``"12"`` with an error of 2, ``"1 +- 3"`` where the error exceeds half of the number.
+    """
+    if not math.isfinite(value) or value == 0.0:
+        return figures(value, digits)
+    if not error or not math.isfinite(error):
+        return figures(value, digits)
+    if error > _ROUGH * abs(value):
+        return f"{figures(value, 1)} +- {figures(error, 1)}"
+    room = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 1
+    return figures(value, max(1, min(digits, room)))
+
+
+def unit_said(unit: str) -> str:
+    """A unit as a sentence has it: ``µm``, ``N m``."""
+    return unit.replace("um", "µm").replace(".", " ")
 
 
 def with_its_error(value: float, error: float) -> str:

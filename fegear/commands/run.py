@@ -110,6 +110,8 @@ def run(
     for remark in (*remarks, beyond_tolerance(results.values, scene.case.accuracy.tolerance)):
         if remark:
             voice.note(remark)
+    for sentence in results.answer.sentences:
+        voice.say(sentence)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
     voice.tell_folder(target)
 

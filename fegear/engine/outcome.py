@@ -13,6 +13,7 @@ from fegear.engine.value import Value
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.engine.answered import Answered
     from fegear.engine.figure.figure import DeferredFigure, Figure
     from fegear.engine.table import Table
 
@@ -35,6 +36,8 @@ class Outcome(Alike):
         What can be drawn.
     sharper_by : str
         What makes the estimated errors of its values smaller: key and verb of a remedy; empty where nothing does.
+    answer : Answered or None
+        What it comes to, in a few sentences; None where its sheet says none.
     """
 
     data: object = None
@@ -44,6 +47,7 @@ class Outcome(Alike):
     remarks: tuple[str, ...] = ()
     figures: tuple[Figure | DeferredFigure, ...] = ()
     sharper_by: str = "reduce accuracy.tolerance"
+    answer: Answered | None = None
 
     def __post_init__(self) -> None:
         """Raise errors that are below what the digits of their numbers are worth; note those that are large."""

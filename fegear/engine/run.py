@@ -19,6 +19,7 @@ from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.named import Named
 from fegear.engine.outcome import Outcome
 from fegear.engine.plan import ON_REQUEST, Plan, Step
+from fegear.engine.run_answer import RunAnswer, answer_of_run
 from fegear.engine.stage import Task, Work
 from fegear.engine.table import Table
 from fegear.engine.value import Value
@@ -124,6 +125,11 @@ class Results(Alike):
     def figures(self) -> Named[Figure | DeferredFigure]:
         """All figures, in order and by name."""
         return Named(figure for outcome in self.outcomes.values() for figure in outcome.figures)
+
+    @property
+    def answer(self) -> RunAnswer:
+        """What the wanted results come to: a few sentences, and the key of one figure."""
+        return answer_of_run(self.plan, self.outcomes, self.scene.case.results)
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -137,6 +137,7 @@ class Page:
                         ui.element("div").props("id=hands")
                         ui.element("div").props('id=small role=region aria-label="Thumbnails"')
                         ui.element("div").props('id=strip role=region aria-label="Numbers"')
+                        ui.element("ul").props('id=answer aria-label="Answer"')
                     with ui.element("div").props("id=report"):
                         for name in ("remarks", "maps", "designed", "compared", "results"):
                             ui.element("ul" if name == "remarks" else "div").props(f"id={name}")

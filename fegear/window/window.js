@@ -210,9 +210,10 @@ const fegear = (() => {
       kept.element.hidden = false;
       answered(kept);
     },
-    async done({ remarks, told, moving: goesOn, seconds, tolerance, level }) {
+    async done({ remarks, told, moving: goesOn, seconds, tolerance, level, answer }) {
       if (!goesOn) { fegearGears.rest(); fegearGlance.settle(); }
       ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`;
+      $("answer").replaceChildren(...answer.map((one) => made("li", "", one)));
       if (goesOn) return; // remarks and errors come when it stands still
       say(ended);
       for (const kept of sections.values()) {
@@ -290,7 +291,7 @@ const fegear = (() => {
       seen.clear();
       sight.disconnect();
       owner.clear();
-      document.querySelectorAll("#results, #remarks, #compared, #designed, #maps, #hands").forEach((one) => [...one.children].forEach(drop));
+      document.querySelectorAll("#answer, #results, #remarks, #compared, #designed, #maps, #hands").forEach((one) => [...one.children].forEach(drop));
     },
   };
 

@@ -256,7 +256,7 @@ class Worker:
         self._seconds.update({str(task): one.when_computed for task, one in results.timings.items()})
         self._say(
             "done", remarks=list(results.remarks), told=_told(results), seconds=time.perf_counter() - started,
-            timings=seconds, tolerance=tolerance, moving=asked.moving,
+            timings=seconds, tolerance=tolerance, moving=asked.moving, answer=list(results.answer.sentences),
         )  # fmt: skip
         if not asked.moving:
             self._say("harris", pairs=self._maps.at_rest(results))

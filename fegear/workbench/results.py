@@ -54,6 +54,8 @@ class Results(Found):
     ----------
     values, tables, figures : Named
         In order and by name: ``values["I.te_mean"]``, ``tables["transmission_error_I"]``.
+    answer : RunAnswer
+        What the wanted results come to: ``answer.sentences``, and ``answer.figure``, the key of one figure.
     remarks : tuple of str
         What the user should know: assumptions, neglected effects.
     scene : Scene
@@ -81,8 +83,9 @@ class Results(Found):
         return [*self.values.keys(), *self.tables.keys()]
 
     def __repr__(self) -> str:
-        """Values, and what else there is."""
-        lines = [f"  {value!r}" for value in self.values[:_FEW]]
+        """What the results come to, values, and what else there is."""
+        lines = [f"  {sentence}" for sentence in self.answer.sentences]
+        lines += [f"  {value!r}" for value in self.values[:_FEW]]
         if len(self.values) > _FEW:
             lines.append(f"  ... {len(self.values) - _FEW} more in .values")
         lines += [f"  Note: {textwrap.shorten(remark, _CLAUSE, placeholder=' ...')}" for remark in self.remarks]
@@ -100,6 +103,7 @@ class Results(Found):
 
         rows = [(value.name, *value_cells(value), pretty_unit(value.unit), value.meaning) for value in self.values]
         parts = [f"<b>{escape(self._headline())}</b>"]
+        parts += [f"<p>{escape(sentence)}</p>" for sentence in self.answer.sentences]
         if rows:
             parts.append(html_table(("value", "", "error", "unit", "meaning"), rows))
         for word, names in (("tables", self.tables.keys()), ("figures", self.figures.keys())):

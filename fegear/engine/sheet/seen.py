@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import dataclass, field, is_dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 
+from fegear.base.printed import percent, rounded, unit_said
 from fegear.base.shown import declared
 from fegear.base.units import from_si
+from fegear.engine.value import Value
 
 #: Where something stands: a path of attributes and of names in mappings ("found.errors.load") from what is shown, or a
 #: function of all that is seen. A path that meets None ends there.
@@ -36,6 +38,8 @@ class Seen:
         Which of them single numbers are for.
     key, one : str, object
         Name and object for which an element is repeated (``each``); paths then begin there.
+    values : mapping of str to Value
+        Single values of the sheet by their names, for its answer.
     """
 
     data: Any
@@ -45,6 +49,7 @@ class Seen:
     nominal: int | None = None
     key: str = ""
     one: Any = None
+    values: Mapping[str, Value] = field(default_factory=dict)
 
     def find(self, where: Where) -> Any:
         """What stands there; all that is shown for an empty path, None where a path ends at None."""
@@ -63,7 +68,13 @@ class Seen:
         Fields are ``{name}``, ``{key}``, ``{load}`` (nominal, in N), ``{d.…}`` for the data, ``{one.…}`` for the
         object of this repetition and ``{asked.…}``. A declared quantity stands in its unit, which follows it:
         ``{d.te_peak_to_peak:.3g}`` gives ``4.69 µm``, ``{d.te_peak_to_peak:.3g!}`` the number only; of several loads
-        that of the nominal one is meant.
+        that of the nominal one is meant. ``{v[te_peak_to_peak]}`` is a single value of the subject, rounded to what its
+        error allows and to three digits; ``:2`` two digits, ``:!`` without the unit, ``:%`` a share in per cent.
+
+        Raises
+        ------
+        MissingValueError
+            If there is no such single value.
         """
         if not isinstance(text, str):
             return text(self)
@@ -72,7 +83,7 @@ class Seen:
         load = None if self.nominal is None or not len(self.loads) else self.loads[self.nominal]
         read = {"d": self.data, "one": self.one, "asked": self.asked}
         return text.format(
-            name=self.name, key=self.key, load=load,
+            name=self.name, key=self.key, load=load, v=_Values(self.values, (self.name, self.key)),
             **{word: _Read(owner, self.nominal) for word, owner in read.items() if owner is not None},
         )  # fmt: skip
 
@@ -109,6 +120,43 @@ def reach(owner: Any, quantity: str) -> tuple[Any, str]:
     return owner, attribute
 
 
+class MissingValueError(KeyError):
+    """A sentence names a single value that there is not."""
+
+
+class _Values:
+    """Single values by their names, that of the subject left out."""
+
+    __slots__ = ("_owners", "_values")
+
+    def __init__(self, values: Mapping[str, Value], owners: Sequence[str]) -> None:
+        self._values, self._owners = values, owners
+
+    def __getitem__(self, name: str) -> _Rounded:
+        for full in (*(f"{owner}.{name}" for owner in self._owners if owner), name):
+            if full in self._values:
+                return _Rounded(self._values[full])
+        raise MissingValueError(name)
+
+
+class _Rounded:
+    """A single value that is written as a person says it."""
+
+    __slots__ = ("_value",)
+
+    def __init__(self, value: Value) -> None:
+        self._value = value
+
+    def __format__(self, spec: str) -> str:
+        if spec == "%":
+            return percent(self._value.value)
+        digits = spec.removesuffix(_ONLY)
+        number = rounded(self._value.value, self._value.error, int(digits) if digits else _SAID)
+        return number if spec.endswith(_ONLY) else f"{number} {unit_said(self._value.unit)}".rstrip()
+
+
+#: Digits of a number in an answer.
+_SAID = 3
 #: Ends the format of a number without its unit.
 _ONLY = "!"
 
@@ -149,4 +197,4 @@ class _Number:
         number = float(self._si) * (from_si(self._unit) if self._unit else 1.0)
         if spec.endswith(_ONLY):
             return format(number, spec.removesuffix(_ONLY))
-        return f"{number:{spec}} {self._unit.replace('um', 'µm').replace('.', ' ')}".rstrip()
+        return f"{number:{spec}} {unit_said(self._unit)}".rstrip()

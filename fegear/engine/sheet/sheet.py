@@ -8,6 +8,7 @@ from typing import Any
 
 from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.outcome import Outcome
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -51,6 +52,8 @@ class Sheet:
         ``name(asked)`` -> of the subject.
     sharper_by : str
         As that of `Outcome`.
+    answer : Answer, optional
+        What it comes to in a few sentences, and the figure that shows it.
     """
 
     tables: tuple[Rows | EveryLoad | Each | Callable[[Seen], Iterable[Table]], ...] = ()
@@ -63,6 +66,7 @@ class Sheet:
     nominal: Where | None = None
     name: Callable[[Any], str] = lambda asked: str(asked.name)
     sharper_by: str = "reduce accuracy.tolerance"
+    answer: Answer | None = None
 
     def present(self, data: Any, asked: Any) -> Outcome:
         """As `Stage.present`: the sheet filled from a result's data and from what it was asked for."""
@@ -71,14 +75,16 @@ class Sheet:
             seen = Seen(seen.data, asked, seen.name, seen.find(self.loads), seen.find(self.nominal or ""))
         given = self.settings
         settings = given(seen) if callable(given) else {key: seen.find(where) for key, where in given.items()}
+        values = tuple(value for one in self.values for value in _values(one, seen))
         return Outcome(
             data,
             tuple(table for one in self.tables for table in (one(seen) if callable(one) else one.tables(seen))),
-            tuple(value for one in self.values for value in _values(one, seen)),
+            values,
             {key: setting for key, setting in settings.items() if setting is not None},
             tuple(line for one in self.remarks for line in (one(seen) if callable(one) else one.sentences(seen))),
             tuple(figure for one in self.figures for figure in (one(seen) if callable(one) else one.figures(seen))),
             self.sharper_by,
+            None if self.answer is None else self.answer.of(seen, values),
         )
 
 

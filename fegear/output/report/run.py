@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.engine.run import Results
+    from fegear.engine.run_answer import RunAnswer
     from fegear.engine.stage import Task
     from fegear.output.figures import Drawn
 
@@ -66,6 +67,20 @@ def _values(results: Results) -> tuple[Block, ...]:
             group += (Folded(f"{len(rest)} more value{'s' if len(rest) > 1 else ''}", (Values(rest, tolerance),)),)
         open_.append(Group(group))
     return (*open_, *folded)
+
+
+def _answer(answer: RunAnswer, drawn: Sequence[Drawn], shown: frozenset[str]) -> tuple[Block, ...]:
+    """The card on top: what the wanted results come to, and the figure that shows it."""
+    figure = next((one for one in drawn if one.figure.key == answer.figure and answer.figure not in shown), None)
+    blocks: tuple[Block, ...] = (Notes(answer.sentences, "answer"),) if answer.sentences else ()
+    if figure is None:
+        return blocks
+    return (*blocks, *([Plot(figure.figure)] if figure.figure.drawable_in_page else map(Still, figure.pictures)))
+
+
+def _drawable(one: Drawn, shown: frozenset[str]) -> bool:
+    """Whether it is a picture of its section."""
+    return one.figure.key not in shown and bool(one.figure.drawable_in_page or one.pictures)
 
 
 def _citations(results: Results, task: Task) -> tuple[Citation, ...]:
@@ -154,11 +169,11 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     shown = frozenset(
         {"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs), *(f"gear_body_{gear}" for gear in scene.gears)}
     )
-    values = _values(results)
+    values, answer = _values(results), results.answer
     pictures = {task: [one for one in drawn if one.task == task] for task in results.outcomes}
-    stages = [_stage(results, task, pictures[task], shown) for task in results.outcomes]
     # Pictures before what is a table only: the mesh under load before the data of its gears.
-    stages.sort(key=lambda section: not any(isinstance(block, Plot | Still) for block in section.blocks))
+    order = sorted(results.outcomes, key=lambda task: not any(_drawable(one, shown) for one in pictures[task]))
+    stages = [_stage(results, task, pictures[task], shown | {answer.figure}) for task in order]
     warned = f" {len(remarks)} note{'s' if len(remarks) > 1 else ''}, below the results." if remarks and values else ""
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
@@ -167,6 +182,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
         f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
         sections=(
+            Section("Answer", _answer(answer, drawn, shown)),
             Section("Results", values),
             Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
             *stages,

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from fegear.base.printed import figures
 from fegear.base.shown import shows
 from fegear.case.gear import GearPart
 from fegear.case.reading import Scene
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure, Figure
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
@@ -291,6 +293,29 @@ def _bodies(seen: Seen) -> tuple[MassProperties, ...]:
     return tuple(gear.mass_properties for gear in seen.data.gears.values())
 
 
+def _in_mesh(seen: Seen) -> Iterator[str]:
+    """What a drawing of each pair begins with."""
+    for name, pair in seen.data.pairs.items():
+        z = f"{abs(pair.driver.tooth.teeth)} and {abs(pair.driven.tooth.teeth)} teeth"
+        ratio = f"contact ratio {figures(pair.contact_ratio)}"
+        if pair.driver.helix_angle != 0.0:
+            ratio += f", overlap ratio {figures(pair.overlap_ratio)}"
+        yield (
+            f"Pair {name}: {z}, {ratio}, centre distance {figures(pair.centre_distance * 1e3, 6)} mm, normal backlash "
+            f"{figures(pair.normal_backlash * 1e3, 2)} mm."
+        )
+
+
+def _lone_gears(seen: Seen) -> Iterator[str]:
+    """Of each gear in no pair."""
+    for one in _lone(seen) or ():
+        gear = one.gear
+        yield (
+            f"Gear {one.name}: {abs(gear.tooth.teeth)} teeth of module {figures(gear.module * 1e3, 5)} mm, tip "
+            f"diameter {figures(2e3 * gear.tip_radius, 6)} mm."
+        )
+
+
 _SHEET = Sheet(
     name=lambda _asked: "",
     tables=(
@@ -313,6 +338,7 @@ _SHEET = Sheet(
     ),
     values=(_values,),
     figures=(_figures,),
+    answer=Answer(_in_mesh, _lone_gears),
     remarks=(_on_pairs, lambda seen: seen.data.assumed, lambda seen: unmeasured_remarks(seen.data)),
 )  # fmt: skip
 

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, first_of_largest
+from fegear.base.printed import figures, rounded
 from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
@@ -136,6 +138,21 @@ def _panel(side: Side, title: str) -> Over:
     )
 
 
+def _largest(seen: Seen) -> Iterator[str]:
+    """The largest stress, and where."""
+    t: StiffnessTable = seen.data.table
+    i = int(first_of_largest(t.root_tension))
+    size, off, at = t.root_tension[i] * 1e-3, t.errors["root_tension"][i] * 1e-3, np.rad2deg(t.root_tension_angle[i])
+    yield (
+        f"Gear {seen.name}: root stress at most {rounded(size, off)} MPa mm/N, with the load at radius "
+        f"{figures(t.radius[i] * 1e3)} mm."
+    )
+    yield (
+        f"Gear {seen.name}: there the fillet's tangent is at {figures(at, 2)}° to the tooth centre line (ISO 6336-3 "
+        "assumes 30°)."
+    )
+
+
 _SHEET = Sheet(
     tables=(
         Rows(
@@ -154,6 +171,7 @@ _SHEET = Sheet(
         ),
         _deformed,
     ),
+    answer=Answer(_largest, figure="fillet_{name}"),
 )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, first_of_largest
-from fegear.base.printed import percent
+from fegear.base.printed import percent, rounded
 from fegear.base.shown import shown
 from fegear.case.built.tooth_influence import solution_settings
 from fegear.engine.citation import citing
@@ -20,6 +20,7 @@ from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis, Scale
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, Off, Rows
@@ -44,6 +45,10 @@ _SECONDS_PER_POSITION = 3e-4
 
 #: The error estimates of a table [s].
 _SECONDS_OF_TABLE = 0.05
+
+
+#: Line load whose deflection an answer says [N/m].
+_EXAMPLE = 100e3
 
 
 @dataclass(frozen=True)
@@ -190,6 +195,13 @@ def _line(key: str, error: str, label: str, role: str) -> Line:
     return Line(key, label, role, error=f"over_roll.errors.{error}", x="roll_angle")
 
 
+def _at_a_load(seen: Seen) -> Iterator[str]:
+    """What the compliance is at a load that one can imagine."""
+    if (one := _at_pitch(seen).get("c_self")) is not None:
+        moved = rounded(one.compliance * _EXAMPLE * 1e6, one.error * _EXAMPLE * 1e6)
+        yield f"Gear {seen.name}: {_EXAMPLE * 1e-3:g} N/mm deflect the loaded tooth by {moved} µm."
+
+
 _SHEET = Sheet(
     tables=(
         Rows(
@@ -248,6 +260,13 @@ _SHEET = Sheet(
         ),
     ),
     remarks=(_remarks,),
+    answer=Answer(
+        "Gear {name}, load on the pitch circle: compliance {v[c_self_at_pitch]} of the loaded tooth, "
+        "{v[c_next_at_pitch]} of the next one.",
+        _at_a_load,
+        "Gear {name}: root stress at most {v[largest_root_tension]} on the tension side.",
+        figure="compliance_{name}",
+    ),
     settings=lambda seen: solution_settings(seen.data.influence),
 )  # fmt: skip
 

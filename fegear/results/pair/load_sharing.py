@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +13,11 @@ from fegear.base.shown import shown, shows
 from fegear.case.reading import Scene
 from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth, LoadHistory
 from fegear.engine.citation import Citation, citing
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import LOADS, Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
+from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Subject, Upstream, Work
 from fegear.results import forecasts
@@ -24,6 +27,8 @@ from fegear.results.pair.loaded_teeth import OVER_LOADS, loaded_teeth, teeth_sta
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
 _HISTORY, _HISTORY_CORNERS, _WIDE = 0.035, 0.03, 0.05
+#: From this share on a tooth pair carries the whole load.
+_WHOLE = 1.0 - 1e-6
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,19 @@ class LoadSharingData:
         return 0.0 if h.corner is None else float((h.corner * h.found.load[:, h.at]).max())
 
     @property
+    @shows("N.m", "torque on the driver")
+    def torque(self) -> float:
+        """Nominal [N m]."""
+        return self.teeth.nominal * self.teeth.pair.driver.base_radius
+
+    @property
+    def alone(self) -> float:
+        """Part of the base pitch over which one tooth pair carries the whole nominal load."""
+        found = self.history.found
+        whole = np.where(found.share[:, self.history.at] > _WHOLE, 1.0, 0.0)
+        return float(np.trapezoid(whole, found.x)) / self.teeth.pair.base_pitch
+
+    @property
     def share_on_corners(self) -> float:
         """Of the nominal load."""
         return self.on_corners / self.teeth.nominal
@@ -77,6 +95,12 @@ class LoadSharingData:
 def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> LoadSharingData:
     teeth = loaded_teeth(upstream, inputs.name)
     return LoadSharingData(teeth, teeth.history())
+
+
+def _alone(seen: Seen) -> Iterator[str]:
+    if seen.data.alone > 0.0:
+        share = percent(seen.data.alone)
+        yield f"Pair {seen.name}: one tooth pair carries the whole load over {share} of a base pitch."
 
 
 _TITLE = "Load on one tooth pair of {name}"
@@ -130,6 +154,13 @@ _SHEET = Sheet(
         ),
     ),
     settings={"positions": "history.positions"},
+    answer=Answer(
+        "Pair {name} at {d.torque:.3g}: one tooth pair carries at most {v[largest_share]:%} of the load, "
+        "{v[largest_load]}.",
+        "Pair {name}: maximum Hertzian pressure {v[largest_hertz_pressure]}, {d.history.hardest_pressed_at}.",
+        _alone,
+        figure="load_sharing_{name}",
+    ),
 )  # fmt: skip
 
 

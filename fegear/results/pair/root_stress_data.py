@@ -254,6 +254,12 @@ class StressInMesh:
     teeth: Mapping[Member, StressedTooth]
 
     @property
+    @shows("N.m", "torque on the driver")
+    def torque(self) -> float:
+        """Nominal [N m]."""
+        return self.loads[self.at] * self.pair.driver.base_radius
+
+    @property
     def sources(self) -> list[StressBySource]:
         """Of both gears."""
         return [source for tooth in self.teeth.values() for source in tooth.sources]

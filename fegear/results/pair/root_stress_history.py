@@ -12,6 +12,7 @@ from fegear.case.built.members import gear_name
 from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Map, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -282,6 +283,11 @@ def _remarks(seen: Seen) -> Iterator[str]:
         )
 
 
+def _most(seen: Seen) -> float:
+    """Largest tension of both gears [Pa]."""
+    return max(float(one.first.largest_tension[seen.nominal]) for one in seen.data.teeth.values())
+
+
 _SHEET = Sheet(
     of=_shown,
     loads="loads",
@@ -291,7 +297,15 @@ _SHEET = Sheet(
     figures=_FIGURES,
     remarks=(_remarks,),
     settings=_settings,
-)
+    answer=Answer(
+        "Pair {name} at {d.torque:.3g}: maximum root stress {v[driver.largest_root_tension]} (driver) and "
+        "{v[driven.largest_root_tension]} (driven).",
+        "Pair {name}: stress range over the mesh cycle {v[driver.root_stress_range]} (driver) and "
+        "{v[driven.root_stress_range]} (driven).",
+        figure="root_stress_history_{name}", rank=lambda seen: -_most(seen),
+        among="the highest of {count} pairs",
+    ),
+)  # fmt: skip
 
 
 def _check(scene: Scene, name: str) -> None:

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from fegear.base.errors import InputError
+from fegear.base.printed import figures
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis, Scale
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import LOADS, Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
@@ -30,7 +34,7 @@ from fegear.results.pair.mark_transmission_error import MARK_FIGURES, MARK_REMAR
 from fegear.results.pair.mesh_table import MESH_REMARK, MESH_TABLE, EvenMesh, even_mesh
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from fegear.case.loading import TransmissionErrorPart
     from fegear.case.reading import Scene
@@ -181,6 +185,29 @@ _REMARKS = (
     ),
     MESH_REMARK,
 )
+
+
+def _over_loads(seen: Seen) -> Iterator[str]:
+    """From the lowest to the highest of several loads, and the quietest of them."""
+    e = seen.data.found
+    if len(e.loads) > 1:
+        low, high, quiet = np.argmin(e.loads), np.argmax(e.loads), np.argmin(e.te_peak_to_peak)
+        torque, size = drawn(e, "driver_torque"), drawn(e, "te_peak_to_peak")
+        yield (
+            f"From {figures(torque[low])} to {figures(torque[high])} N m it goes from {figures(size[low])} to "
+            f"{figures(size[high])} µm peak to peak; minimum {figures(size[quiet])} µm at {figures(torque[quiet])} N m."
+        )
+
+
+_ANSWER = Answer(
+    "Pair {name} at {d.found.driver_torque:.3g}: transmission error {v[te_peak_to_peak]} peak to peak, mean "
+    "{v[te_mean]}.",
+    _over_loads,
+    "Pair {name}: mean mesh stiffness {v[mesh_stiffness_mean]} (secant), {v[local_stiffness_mean]} (tangent).",
+    "Pair {name}: first harmonic of the mesh frequency {v[te_first_harmonic]} (amplitude).",
+    figure="transmission_error_{name}", rank=lambda seen: -seen.data.found.te_peak_to_peak[seen.nominal],
+    among="the largest of {count} pairs",
+)  # fmt: skip
 _SHEET = Sheet(
     loads="found.loads",
     nominal="found.at",
@@ -188,6 +215,7 @@ _SHEET = Sheet(
     values=(*_VALUES, *MARK_VALUES),
     figures=(*_FIGURES, *MARK_FIGURES),
     remarks=(*_REMARKS, *MARK_REMARKS),
+    answer=_ANSWER,
     settings={
         "harmonics": lambda seen: seen.data.found.series[seen.data.found.at].amplitude.size,
         "positions": "found.positions",

@@ -21,6 +21,7 @@ from fegear.formulas.symbols import ISO_6336
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results.rating.rated_life import nominal_damage, service_life, transmittable_power
 from fegear.results.rating.rated_methods import ByMethod, computed_flanks, methods
+from fegear.results.rating.rating_answer import RATING_ANSWER
 from fegear.results.rating.rating_remarks import rating_remarks, remark_of, shortfalls
 
 if TYPE_CHECKING:
@@ -331,6 +332,7 @@ def _settings(seen: Seen) -> dict[str, object]:
 _OF_MEMBER = "{name}.{one.member}"
 _AT_LEVEL, _AT_LOAD = ", FE at the load of the level", ", FE at the load with K_A, K_gamma and K_v"
 RATING_SHEET = Sheet(
+    answer=RATING_ANSWER,
     of=_shown,
     name=lambda inputs: inputs.asked.name,
     tables=(

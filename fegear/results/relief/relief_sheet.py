@@ -25,6 +25,7 @@ from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
 from fegear.results.relief.harris import OVER_ROLL, HarrisMap
+from fegear.results.relief.relief_answer import RELIEF_ANSWER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -257,6 +258,7 @@ _DIAGONAL_CAPTION = (
 _LOADING = "data.design.task.loading"
 
 RELIEF_SHEET = Sheet(
+    answer=RELIEF_ANSWER,
     of=ReliefShown,
     name=lambda asked: asked.asked.name,
     tables=(

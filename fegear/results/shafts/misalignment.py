@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from fegear.base.errors import InputError
+from fegear.base.printed import figures
 from fegear.base.shown import shown, shows
 from fegear.case.built.shafts import mesh_places
 from fegear.case.reading import Scene
 from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.engine.citation import Citation, citing
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Upstream, Work
 from fegear.results import forecasts
@@ -104,7 +110,24 @@ def _line_by(n: int, cause: str) -> Line:
     )
 
 
+def _worst_first(seen: Seen) -> list[MisalignedMesh]:
+    return sorted(seen.data.nominal, key=lambda one: -abs(one.shares.over_face[0]))
+
+
+def _sentences(seen: Seen) -> Iterator[str]:
+    """Every mesh, the most misaligned first, with its main cause."""
+    for k, one in enumerate(_worst_first(seen)):
+        every, by = one.shares.over_face[0] * 1e6, one.shares.over_face[1:] * 1e6
+        main = int(np.argmax(np.abs(by)))
+        most = f", the most of {len(seen.data.nominal)} meshes" if k == 0 and len(seen.data.nominal) > 1 else ""
+        yield (
+            f"Pair {one.pair}: misaligned by {figures(every)} µm over the face width{most}; main cause "
+            f"{_WORDS[CAUSES[main]]} ({figures(by[main])} µm)."
+        )
+
+
 _SHEET = Sheet(
+    answer=Answer(_sentences, figure=lambda seen: f"shaft_gap_{_worst_first(seen)[0].pair}"),
     of=lambda data, _asked: MisalignedMeshes(data),
     name=lambda _asked: "",
     tables=(

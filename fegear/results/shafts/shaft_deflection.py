@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
@@ -16,8 +20,11 @@ from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shaft
 from fegear.shafts.solution import BearingLoads
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.reading import Scene
     from fegear.contact.wide.on_shafts import LoadedShafts
+    from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.shafts.life import LifeRating
     from fegear.shafts.solution import Deflection
@@ -58,7 +65,37 @@ def _deflected(data: LoadedShafts, asked: DeflectionInputs) -> list[DeflectedSha
     return [DeflectedShaft(bent, bent.bearing_loads(lives), name, bearings) for name, bent, bearings, lives in rows]
 
 
+def _most_bent(seen: Seen) -> DeflectedShaft:
+    return max(seen.data, key=lambda one: float(np.hypot(one.bent.line.x, one.bent.line.y).max()))
+
+
+def _sentences(seen: Seen) -> Iterator[str]:
+    """Shortest life of a bearing, largest deflection, largest bearing force."""
+    of_bearings = [(one, k) for one in seen.data for k in range(len(one.bearings))]
+    lives = [(one.loads.life[k], one, k) for one, k in of_bearings if np.isfinite(one.loads.life[k])]
+    if lives:
+        life, one, k = min(lives, key=lambda found: found[0])
+        yield (
+            f"Bearing {one.bearings[k]} of shaft {one.name}: basic rating life L_10 {figures(life * 1e-6)} million "
+            f"revolutions{_of(len(lives), 'the shortest of')}."
+        )
+    bent = _most_bent(seen)
+    shift = float(np.hypot(bent.bent.line.x, bent.bent.line.y).max()) * 1e6
+    yield f"Shaft {bent.name}: displacement up to {figures(shift)} µm{_of(len(seen.data), 'the largest of')}."
+    if of_bearings:
+        one, k = max(of_bearings, key=lambda found: float(found[0].loads.force_radial[found[1]]))
+        yield (
+            f"Bearing {one.bearings[k]} of shaft {one.name}: radial force {figures(one.loads.force_radial[k] * 1e-3)} "
+            f"kN{_of(len(of_bearings), 'the largest of')}."
+        )
+
+
+def _of(count: int, words: str) -> str:
+    return f", {words} {count}" if count > 1 else ""
+
+
 _SHEET = Sheet(
+    answer=Answer(_sentences, figure=lambda seen: f"shaft_deflection_{_most_bent(seen).name}"),
     of=_deflected,
     name=lambda _asked: "",
     tables=(

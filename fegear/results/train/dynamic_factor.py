@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.case.built.train import motion_spec, train_inputs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
@@ -31,6 +32,8 @@ from fegear.results.train.gear_train import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.dynamics.motion.motion_spec import MotionSpec
@@ -297,8 +300,36 @@ def _speed(seen: Seen) -> Axis:
     return Axis(f"speed of {seen.data.found.speed_of}", "rpm")
 
 
+def _lowest(seen: Seen) -> Iterator[str]:
+    """Where it is lowest, of several speeds."""
+    if seen.data.several:
+        held: SpeedChart = seen.data.held
+        at = int(np.argmin(held.dynamic_factor))
+        low, high = figures(held.speeds[0] * RPM, 4), figures(held.speeds[-1] * RPM, 4)
+        yield (
+            f"Mesh {seen.name}: minimum {figures(held.dynamic_factor[at])} at {figures(held.speeds[at] * RPM, 4)} rpm "
+            f"({held.speeds.size} speeds from {low} to {high} rpm)."
+        )
+
+
+def _lost(seen: Seen) -> Iterator[str]:
+    """Whether teeth lose contact."""
+    if seen.data.chart is not None and seen.data.parting:
+        most = seen.data.largest.contact_loss
+        words = f"up to {percent(most)} of the time" if most else "at no speed"
+        yield f"Mesh {seen.name}: loss of contact {words}."
+
+
 _SHEET = Sheet(
     name=lambda asked: str(asked.mesh),
+    answer=Answer(
+        "Mesh {name}: maximum dynamic factor {v[largest_dynamic_factor]} at {v[speed_of_largest]}.",
+        _lowest,
+        _lost,
+        "Mesh {name}: without torque ripple at most {v[largest_dynamic_factor_without_ripple]}.",
+        figure="dynamic_factor_{name}", rank=lambda seen: -seen.data.largest.factor if seen.data.chart else None,
+        among="the highest of {count} meshes",
+    ),
     of=lambda data, asked: ShownFactors(data, asked.motion),
     tables=(
         Rows(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.dynamics import DynamicsPart
 from fegear.dynamics.train.gear_train import GearTrain
@@ -17,6 +19,7 @@ from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
@@ -224,7 +227,42 @@ def _crossing_notes(seen: Seen) -> dict[str, object]:
 
 
 _SPEED = Cell("speed", meaning="speed of {d.train.speed_of}")
+
+
+def _frequencies(seen: Seen) -> Iterator[str]:
+    """How many natural frequencies there are, and from where to where."""
+    natural = list(seen.data.flexible.values())
+    if len(natural) == 1:
+        yield f"One natural frequency above zero: {figures(natural[0])} Hz."
+    elif natural:
+        yield f"{len(natural)} natural frequencies above zero, {figures(natural[0])} to {figures(natural[-1])} Hz."
+
+
+def _critical(seen: Seen) -> Iterator[str]:
+    """The critical speed nearest to the speed of the case, or else the highest of the first harmonics."""
+    speed = seen.asked.part.speed
+    met = [
+        (float(at), int(n), int(mode), one.name)
+        for one in seen.data.critical for n, mode, at in zip(one.n, one.mode, one.speed, strict=True)
+    ]  # fmt: skip
+    if not met:
+        return
+    if speed is None:
+        at, n, mode, mesh = max((one for one in met if one[1] == 1), default=max(met))
+        yield f"Highest critical speed of the mesh frequency: {figures(at * RPM)} rpm (mesh {mesh}, mode {mode})."
+        return
+    at, n, mode, mesh = min(met, key=lambda one: abs(one[0] - speed))
+    yield (
+        f"Critical speed nearest to {figures(speed * RPM, 4)} rpm: {figures(at * RPM, 4)} rpm "
+        f"({percent(at / speed - 1.0, signed=True)}), harmonic {n} of mesh {mesh} with mode {mode}."
+    )
+
+
 _SHEET = Sheet(
+    answer=Answer(
+        _frequencies, _critical,
+        figure=lambda seen: "campbell" if seen.data.diagram is not None else "natural_modes",
+    ),
     name=lambda _asked: "",
     tables=(
         Rows(

@@ -1,0 +1,32 @@
+"""What one result comes to: a few sentences with rounded numbers, and one figure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+#: Sentences of one result, and of all wanted results together unless more are wanted.
+MOST = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """What one result comes to.
+
+    Parameters
+    ----------
+    sentences : tuple of str
+        The most important first, at most five.
+    figure : str
+        Key of the figure that shows it; empty for none.
+    rank : float
+        The smaller, the sooner a reader has to act, among pairs or gears with the same result; nan where they are not
+        compared.
+    among : str
+        Clause at the end of the first sentence where it is the first of several, with ``{count}``.
+    """
+
+    sentences: tuple[str, ...]
+    figure: str = ""
+    rank: float = math.nan
+    among: str = ""

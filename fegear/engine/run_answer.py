@@ -1,0 +1,103 @@
+"""What the wanted results of a run come to: a few sentences with rounded numbers, and one figure.
+
+The page of a run begins with it, the terminal ends with it, the window and Python show the same sentences. Every wanted
+result has at least one; a result without an answer of its own says its first single values. Of results that several
+pairs or gears have, the one to act on comes first and says among how many it is.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import zip_longest
+from typing import TYPE_CHECKING, NamedTuple
+
+from fegear.base.printed import rounded, unit_said
+from fegear.engine.answered import MOST, Answered
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from fegear.engine.outcome import Outcome
+    from fegear.engine.plan import Plan, Step
+    from fegear.engine.stage import Task
+    from fegear.engine.value import Value
+
+#: Values that a result without an answer of its own says.
+_FIRST = 2
+_COUNTS = ("", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+
+
+class RunAnswer(NamedTuple):
+    """What a run comes to: sentences in the order of the wanted results, and the figure that shows the first."""
+
+    sentences: tuple[str, ...]
+    figure: str
+
+
+def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence[str]) -> RunAnswer:
+    """Put the answers of the wanted results together.
+
+    Parameters
+    ----------
+    plan : Plan
+    outcomes : mapping of Task to Outcome
+    wanted : sequence of str
+        Results that the case asks for, in its order.
+    """
+    by_result = [_of_result(result, plan.steps, outcomes) for result in wanted]
+    said = _within([one.sentences for one in by_result])
+    return RunAnswer(said, next((one.figure for one in by_result if one.figure), ""))
+
+
+def _within(groups: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """One sentence of each group, further ones as long as there is room, in the order of the groups."""
+    kept = [0] * len(groups)
+    for row, sentences in enumerate(zip_longest(*groups)):
+        for k, sentence in enumerate(sentences):
+            if sentence is not None and (row == 0 or sum(kept) < MOST):
+                kept[k] += 1
+    found = (sentence for count, group in zip(kept, groups, strict=True) for sentence in group[:count])
+    return tuple(dict.fromkeys(found))
+
+
+def _of_result(result: str, steps: Sequence[Step], outcomes: Mapping[Task, Outcome]) -> Answered:
+    """Answer of one wanted result, which may be that of several stages, each for several pairs or gears."""
+    by_stage: dict[str, list[Outcome]] = {}
+    for step in steps:
+        if step.wanted and result in step.stage.results:
+            by_stage.setdefault(step.task.stage, []).append(outcomes[step.task])
+    found = [joined([one.answer for one in of if one.answer is not None]) for of in by_stage.values()]
+    found = [one for one in found if one.sentences or one.figure]
+    if not found:
+        every = [outcome for of in by_stage.values() for outcome in of]
+        figure = next((one.figures[0].key for one in every if one.figures), "")
+        return Answered(plain_sentences(value for one in every for value in one.values), figure)
+    return Answered(_within([one.sentences for one in found])[:MOST], next((o.figure for o in found if o.figure), ""))
+
+
+def joined(answers: Sequence[Answered]) -> Answered:
+    """Answers of one stage for several subjects as one: the first to act on before the others."""
+    if len(answers) < 2:
+        return answers[0] if answers else Answered(())
+    ordered = sorted(answers, key=lambda one: (math.isnan(one.rank), one.rank))
+    first = ordered[0]
+    rows = [list(one.sentences) for one in ordered]
+    if first.among and rows[0] and not math.isnan(first.rank):
+        clause = first.among.format(count=_counted(len(answers)))
+        rows[0][0] = f"{rows[0][0].removesuffix('.')}, {clause}."
+    return Answered(_within(rows)[:MOST], first.figure)
+
+
+def plain_sentences(values: Iterable[Value]) -> tuple[str, ...]:
+    """The first values as sentences, estimated ones before exact ones."""
+    known = [value for value in values if math.isfinite(value.value)]
+    known.sort(key=lambda value: not value.error)
+    return tuple(
+        f"{value.name} {rounded(value.value, value.error)} {unit_said(value.unit)}".rstrip()
+        + (f": {value.meaning.partition(';')[0]}." if value.meaning else ".")
+        for value in known[:_FIRST]
+    )
+
+
+def _counted(count: int) -> str:
+    return _COUNTS[count] if count < len(_COUNTS) else str(count)

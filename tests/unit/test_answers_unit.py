@@ -1,0 +1,106 @@
+"""What a run comes to: rounded numbers, sentences of sheets, the wanted results put together."""
+
+import math
+from dataclasses import dataclass
+
+import pytest
+
+from fegear.base.printed import rounded
+from fegear.base.shown import shown
+from fegear.engine.answered import MOST, Answered
+from fegear.engine.run_answer import joined, plain_sentences
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.engine.value import Value
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "said"),
+    [
+        (11.7345, None, "11.7"),
+        (11.7345, 0.0, "11.7"),
+        (11.7345, 0.004, "11.7"),
+        (11.7345, 0.3, "11.7"),
+        (11.7345, 2.0, "12"),
+        (1381.4, 0.1, "1380"),
+        (1381.4, 150.0, "1400"),
+        (-0.04567, 0.002, "-0.046"),
+        (1.4, 3.0, "1 +- 3"),
+        (0.0, 0.1, "0"),
+        (math.inf, 1.0, "inf"),
+    ],
+)
+def test_a_rounded_number_has_no_digit_beyond_its_error(value, error, said):
+    assert rounded(value, error) == said
+
+
+@dataclass(frozen=True)
+class _Data:
+    size: float = shown("um", "size")
+    safety: float = shown("", "safety", name="S_H")
+    name: str = "I"
+
+
+_SHEET = Sheet(
+    values=(Number("size", lambda _: 2e-6), "safety"),
+    answer=Answer(
+        "Pair {name}: size {v[size]}, {v[size]:1!} or so.",
+        "Pair {name}: {v[absent]}.",
+        Remark("Pair {name}: safe.", when=lambda seen: seen.data.safety >= 1.0),
+        lambda seen: [f"S_H {seen.data.safety:.2f}."],
+        figure="size_{name}",
+        rank="safety",
+        among="the weakest of {count}",
+    ),
+)
+
+
+def test_a_sheet_says_its_values_rounded_and_leaves_out_what_it_has_not():
+    data = _Data(11.7345e-6, 0.573)
+    found = _SHEET.present(data, data).answer
+    assert found == Answered(
+        ("Pair I: size 12 µm, 10 or so.", "S_H 0.57."), "size_I", 0.573, "the weakest of {count}"
+    )
+
+
+def test_a_sheet_without_an_answer_leaves_none():
+    assert Sheet().present(_Data(1.0, 1.0), _Data(1.0, 1.0)).answer is None
+
+
+def test_an_answer_has_at_most_five_sentences():
+    many = Answer(lambda _: [f"{n}." for n in range(9)])
+    assert many.of(Seen(None), ()).sentences == ("0.", "1.", "2.", "3.", "4.")
+
+
+def test_of_several_the_weakest_comes_first_and_says_among_how_many():
+    answers = [Answered((f"Pair {n}: S_H {r}.", f"Pair {n}: more."), n, r, "the weakest of {count} pairs")
+               for n, r in (("I", 1.2), ("II", 0.57), ("III", 0.9))]  # fmt: skip
+    found = joined(answers)
+    assert found.figure == "II"
+    assert found.sentences == (
+        "Pair II: S_H 0.57, the weakest of three pairs.", "Pair II: more.", "Pair III: S_H 0.9.", "Pair III: more.",
+        "Pair I: S_H 1.2.",
+    )  # fmt: skip
+
+
+def test_one_alone_is_not_compared():
+    assert joined([Answered(("S_H 1.2.",), "", 1.2, "the weakest of {count}")]).sentences == ("S_H 1.2.",)
+
+
+def test_many_have_five_sentences_of_which_the_first_to_act_on():
+    answers = [Answered((f"Pair {n}: {n}.",), "", float(-n), "the largest of {count}") for n in range(14)]
+    found = joined(answers).sentences
+    assert found[0] == "Pair 13: 13, the largest of 14."
+    assert len(found) == MOST
+
+
+def test_a_result_without_an_answer_says_its_first_values_estimated_before_exact():
+    values = [
+        Value("I.ratio", 1.638, "", 0.0, "contact ratio"),
+        Value("I.te", 7.6187e-6, "um", 0.04e-6, "mean; of the mesh"),
+        Value("I.nothing", math.nan, "um"),
+        Value("I.more", 1.0),
+    ]
+    assert plain_sentences(values) == ("I.te 7.62 µm: mean.", "I.ratio 1.64: contact ratio.")
