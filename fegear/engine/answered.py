@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 #: Sentences of one result, and of all wanted results together unless more are wanted.
@@ -19,8 +18,8 @@ class Answered:
         The most important first, at most five.
     figure : str
         Key of the figure that shows it; empty for none.
-    rank : float
-        The smaller, the sooner a reader has to act, among pairs or gears with the same result; nan where they are not
+    rank : float or None
+        The smaller, the sooner a reader has to act, among pairs or gears with the same result; None where they are not
         compared.
     among : str
         Clause at the end of the first sentence where it is the first of several, with ``{count}``.
@@ -28,5 +27,5 @@ class Answered:
 
     sentences: tuple[str, ...]
     figure: str = ""
-    rank: float = math.nan
+    rank: float | None = None
     among: str = ""

@@ -79,10 +79,10 @@ def joined(answers: Sequence[Answered]) -> Answered:
     """Answers of one stage for several subjects as one: the first to act on before the others."""
     if len(answers) < 2:
         return answers[0] if answers else Answered(())
-    ordered = sorted(answers, key=lambda one: (math.isnan(one.rank), one.rank))
+    ordered = sorted(answers, key=lambda one: math.inf if one.rank is None else one.rank)
     first = ordered[0]
     rows = [list(one.sentences) for one in ordered]
-    if first.among and rows[0] and not math.isnan(first.rank):
+    if first.among and rows[0] and first.rank is not None:
         clause = first.among.format(count=_counted(len(answers)))
         rows[0][0] = f"{rows[0][0].removesuffix('.')}, {clause}."
     return Answered(_within(rows)[:MOST], first.figure)

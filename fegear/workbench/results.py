@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-#: Values that the short form shows, and characters of a remark.
-_FEW, _CLAUSE = 12, 140
+#: Sentences and values that the short form shows, values at least, and characters of a remark.
+_FEW, _FEWEST, _CLAUSE = 12, 4, 140
 
 
 def _by_name(data: xr.Dataset, names: dict[str, str]) -> xr.Dataset:
@@ -85,9 +85,10 @@ class Results(Found):
     def __repr__(self) -> str:
         """What the results come to, values, and what else there is."""
         lines = [f"  {sentence}" for sentence in self.answer.sentences]
-        lines += [f"  {value!r}" for value in self.values[:_FEW]]
-        if len(self.values) > _FEW:
-            lines.append(f"  ... {len(self.values) - _FEW} more in .values")
+        few = max(_FEW - len(lines), _FEWEST)
+        lines += [f"  {value!r}" for value in self.values[:few]]
+        if len(self.values) > few:
+            lines.append(f"  ... {len(self.values) - few} more in .values")
         lines += [f"  Note: {textwrap.shorten(remark, _CLAUSE, placeholder=' ...')}" for remark in self.remarks]
         return "\n".join([self._headline(), *lines])
 

@@ -60,9 +60,7 @@ _SHEET = Sheet(
 def test_a_sheet_says_its_values_rounded_and_leaves_out_what_it_has_not():
     data = _Data(11.7345e-6, 0.573)
     found = _SHEET.present(data, data).answer
-    assert found == Answered(
-        ("Pair I: size 12 µm, 10 or so.", "S_H 0.57."), "size_I", 0.573, "the weakest of {count}"
-    )
+    assert found == Answered(("Pair I: size 12 µm, 10 or so.", "S_H 0.57."), "size_I", 0.573, "the weakest of {count}")
 
 
 def test_a_sheet_without_an_answer_leaves_none():

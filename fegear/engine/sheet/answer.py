@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -53,7 +52,7 @@ class Answer:
         seen = replace(seen, values={value.name: value for value in values})
         found = tuple(sentence for one in self.said for sentence in _sentences(one, seen) if sentence)
         rank = None if self.rank is None else seen.find(self.rank)
-        return Answered(found[:MOST], seen.said(self.figure), math.nan if rank is None else float(rank), self.among)
+        return Answered(found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among)
 
 
 def _sentences(one: str | _Says | Callable[[Seen], Iterable[str]], seen: Seen) -> Iterator[str]:
