@@ -44,7 +44,10 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
     wanted : sequence of str
         Results that the case asks for, in its order.
     """
-    by_result = [_of_result(result, plan.steps, outcomes) for result in wanted]
+    steps = [step for step in plan.steps if step.wanted and step.task in outcomes]
+    # a result that is asked for by the name it had before stands behind the others
+    former = [step.stage.results[0] for step in steps if not set(step.stage.results) & set(wanted)]
+    by_result = [_of_result(result, steps, outcomes) for result in dict.fromkeys((*wanted, *former))]
     said = _within([one.sentences for one in by_result])
     return RunAnswer(said, next((one.figure for one in by_result if one.figure), ""))
 
@@ -64,7 +67,7 @@ def _of_result(result: str, steps: Sequence[Step], outcomes: Mapping[Task, Outco
     """Answer of one wanted result, which may be that of several stages, each for several pairs or gears."""
     by_stage: dict[str, list[Outcome]] = {}
     for step in steps:
-        if step.wanted and result in step.stage.results:
+        if result in step.stage.results:
             by_stage.setdefault(step.task.stage, []).append(outcomes[step.task])
     found = [joined([one.answer for one in of if one.answer is not None]) for of in by_stage.values()]
     found = [one for one in found if one.sentences or one.figure]

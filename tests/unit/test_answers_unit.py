@@ -2,17 +2,20 @@
 
 import math
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import pytest
 
 from fegear.base.printed import rounded
 from fegear.base.shown import shown
 from fegear.engine.answered import MOST, Answered
-from fegear.engine.run_answer import joined, plain_sentences
+from fegear.engine.outcome import Outcome
+from fegear.engine.run_answer import answer_of_run, joined, plain_sentences
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.engine.stage import Task
 from fegear.engine.value import Value
 
 
@@ -102,3 +105,36 @@ def test_a_result_without_an_answer_says_its_first_values_estimated_before_exact
         Value("I.more", 1.0),
     ]
     assert plain_sentences(values) == ("I.te 7.62 µm: mean.", "I.ratio 1.64: contact ratio.")
+
+
+def run_of(*results):
+    """Plan and outcomes of tasks: stage, result that it has, whether wanted, its sentences; without them a value."""
+    steps, outcomes = [], {}
+    for stage, result, wanted, sentences in results:
+        task = Task(stage, "I")
+        steps.append(SimpleNamespace(task=task, stage=SimpleNamespace(results=(result,)), wanted=wanted))
+        answer = None if sentences is None else Answered(sentences, f"{stage}_I")
+        outcomes[task] = Outcome(values=(Value(f"{stage}.size", 1.0, "", None, "size"),), answer=answer)
+    return SimpleNamespace(steps=steps), outcomes
+
+
+def test_a_run_says_one_sentence_of_every_wanted_result_and_five_in_all():
+    plan, outcomes = run_of(
+        ("serving", "serving", False, ("not wanted.",)), ("a", "A", True, ("a1.", "a2.", "a3.", "a4.")),
+        ("b", "B", True, ("b1.", "b2.", "b3.")),
+    )  # fmt: skip
+    found = answer_of_run(plan, outcomes, ("B", "A"))
+    assert found.sentences == ("b1.", "b2.", "b3.", "a1.", "a2.")  # in the order in which they are asked for
+    assert found.figure == "b_I"
+    many = [(f"s{n}", f"R{n}", True, (f"{n}.", "more.")) for n in range(7)]
+    assert answer_of_run(*run_of(*many), [f"R{n}" for n in range(7)]).sentences == tuple(f"{n}." for n in range(7))
+
+
+def test_a_result_without_an_answer_and_one_by_its_former_name_are_said_too():
+    plan, outcomes = run_of(("plain", "plain", True, None), ("renamed", "now", True, ("now.",)))
+    assert answer_of_run(plan, outcomes, ("before", "plain")).sentences == ("plain.size 1: size.", "now.")
+
+
+def test_what_has_no_outcome_yet_is_not_said():
+    plan, _ = run_of(("a", "A", True, ("a1.",)))
+    assert answer_of_run(plan, {}, ("A",)) == ((), "")
