@@ -157,7 +157,7 @@ _SHEET = Sheet(
     answer=Answer(
         "Pair {name} at {d.torque:.3g}: one tooth pair carries at most {v[largest_share]:%} of the load, "
         "{v[largest_load]}.",
-        "Pair {name}: maximum Hertzian pressure {v[largest_hertz_pressure]}, {d.history.hardest_pressed_at}.",
+        "Pair {name}: maximum Hertzian pressure {v[largest_hertz_pressure]}.",
         _alone,
         figure="load_sharing_{name}",
     ),
