@@ -29,6 +29,15 @@ def test_a_ball_on_a_plate_and_two_crossed_cylinders():
         assert point_contact(crossed, plane) == pytest.approx(2 / 3 * plane * math.sqrt(radius), rel=1e-12)
 
 
+def test_constants_of_steel_are_the_printed_ones():
+    """ISO/TS 16281: 35948 L^(8/9) delta^(10/9) in N and mm; Harris: K = 2.15e5 (sum of curvatures)^-1/2 N/mm^1.5."""
+    in_mm = ROLLER.constant * 1e-3 ** (10 / 9)
+    assert in_mm == pytest.approx(35948 * 12 ** (8 / 9), rel=1e-12)
+    of_sphere = point_contact((1 / 5e-3, 1 / 5e-3, 0.0, 0.0)) * 1e-3**1.5
+    assert of_sphere == pytest.approx(2.15e5 * (2 / 5) ** -0.5, rel=0.01)
+    assert of_sphere == pytest.approx(2 / 3 * 206e3 / 0.91 * math.sqrt(5), rel=1e-12)
+
+
 @pytest.mark.parametrize("ratio", [1.1, 1.5, 6.7, 40.0])
 def test_an_elliptic_contact_is_the_potential_of_its_pressure(ratio):
     """Hertz's pressure over the ellipse of semi-axes a = 1, b = 1/ratio: deflection and curvatures by quadrature.
@@ -74,6 +83,58 @@ def test_stiffness_is_the_derivative_of_the_force_and_symmetric(bearing):
     assert np.abs(stiffness - stiffness.T).max() <= 1e-12 * np.abs(stiffness).max()
 
 
+@pytest.mark.parametrize("bearing", [BALL, ANGULAR, ROLLER, TAPERED])
+def test_a_motion_turned_by_one_element_loads_the_next_ones_alike(bearing):
+    c, s = math.cos(2 * math.pi / bearing.count), math.sin(2 * math.pi / bearing.count)
+    turn = np.array([[c, -s], [s, c]])
+    u = np.array([22e-6, -9e-6, -15e-6 if bearing.contact_angle < 0 else 15e-6, 6e-4, -8e-4])
+    turned = np.concatenate([turn @ u[:2], u[2:3], turn @ u[3:]])
+    loads, force = bearing.loads(u), bearing.reaction(u)[0]
+    assert np.count_nonzero(loads) >= 3
+    assert bearing.loads(turned) == pytest.approx(np.roll(loads, 1), rel=1e-9, abs=1e-9 * loads.max())
+    again = np.concatenate([turn @ force[:2], force[2:3], turn @ force[3:]])
+    assert bearing.reaction(turned)[0] == pytest.approx(again, rel=1e-9, abs=1e-9 * np.abs(force).max())
+
+
+def test_a_roller_that_tilts_is_pressed_at_one_half_by_the_integral_of_its_law():
+    """Half a roller under an approach theta cos(phi) z: moment c/L theta^n int z^(n+1) dz abs(cos(phi))^(n+1)."""
+    theta, n, half = 1e-3, 10 / 9, 0.5 * ROLLER.roller_length
+    phi = 2 * math.pi * np.arange(ROLLER.count) / ROLLER.count
+    one = ROLLER.constant / ROLLER.roller_length * theta**n * half ** (n + 2) / (n + 2)
+    about_y = ROLLER.reaction(np.array([0, 0, 0, 0, theta]))[0]
+    about_x = ROLLER.reaction(np.array([0, 0, 0, theta, 0]))[0]
+    assert about_y[4] == pytest.approx(one * (np.abs(np.cos(phi)) ** (n + 1)).sum(), rel=2e-3)
+    assert about_x[3] == pytest.approx(one * (np.abs(np.sin(phi)) ** (n + 1)).sum(), rel=2e-3)
+
+
+def test_the_usual_stiffness_is_that_of_all_elements_under_an_approach_of_a_two_thousandth_of_their_diameter():
+    """Springs of one slope around: Z/2 of it across, Z along, and an arm's square more for tilting.
+
+    Balls without a contact angle stand in for their lean under an axial force with a fifth of the slope's root.
+    """
+    for bearing in (BALL, ANGULAR, ROLLER):
+        delta, n, angle = bearing.element_diameter / 2000, bearing.exponent, bearing.contact_angle
+        slope = n * bearing.constant * delta ** (n - 1) * bearing.count
+        radius = bearing.pitch_diameter / 2
+        along = math.sin(angle) ** 2 + (0.04 if bearing is BALL else 0.0)
+        of_tilt = along * radius**2 + (bearing.roller_length**2 / 12 if bearing.kind == "roller" else 0.0)
+        expected = np.diag([math.cos(angle) ** 2 / 2, math.cos(angle) ** 2 / 2, along, of_tilt / 2, of_tilt / 2])
+        mixed = math.sin(angle) * math.cos(angle) * radius / 2
+        expected[0, 4] = expected[4, 0] = -mixed
+        expected[1, 3] = expected[3, 1] = mixed
+        assert bearing.usual == pytest.approx(slope * expected, rel=1e-9, abs=1e-9 * slope * radius**2)
+
+
+def test_grooves_are_those_of_usual_bearings_where_nothing_is_said():
+    """Radii of 0.52 of the ball's diameter, inside and outside; an axial approach opens the contact angle with them."""
+    assert ANGULAR.constant == RollingBearing("ball", 14, 10e-3, 60e-3, ANGULAR.contact_angle, (0.52, 0.52)).constant
+    apart, angle, axial = 0.04 * 10e-3, math.radians(25), 30e-6
+    length = math.hypot(apart * math.cos(angle), apart * math.sin(angle) + axial)
+    load = 14 * ANGULAR.constant * (length - apart) ** 1.5
+    force = ANGULAR.reaction(np.array([0, 0, axial, 0, 0]))[0][2]
+    assert force == pytest.approx(load * (apart * math.sin(angle) + axial) / length, rel=1e-12)
+
+
 def test_a_shaft_on_two_tapered_bearings_and_one_on_balls_with_clearance_balance():
     shaft = Shaft((Section(0.3, 0.045),))
     mirrored = RollingBearing("roller", 18, 9e-3, 60e-3, contact_angle=math.radians(14), roller_length=14e-3)
@@ -94,6 +155,7 @@ def test_basic_rating_lives():
     assert plain.equivalent_load(4000.0, -2000.0) == pytest.approx(0.56 * 4000 + 1.6 * 2000)
     assert LifeRating(1e5, "roller").revolutions(2e4, 0.0) == pytest.approx(1e6 * 5 ** (10 / 3), rel=1e-12)
     assert plain.revolutions(0.0, 0.0) == math.inf
+    assert LifeRating(1e4).equivalent_load(300.0, 700.0) == 300.0  # without factors the radial load alone
 
 
 def test_elements_that_do_not_fit_are_refused():

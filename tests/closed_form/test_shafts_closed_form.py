@@ -122,6 +122,80 @@ def test_a_clearance_is_passed_before_the_bearing_carries():
     assert found.at(0.1)[0, 2] == pytest.approx(10e-6 + 500 / 2e8, rel=1e-9)
 
 
+@pytest.mark.parametrize("off", [0.0, 20e-6, 70e-6])
+@pytest.mark.parametrize("clearance", [0.0, 30e-6])
+def test_a_loose_bearing_pushes_back_by_what_is_beyond_its_clearance_and_its_stiffness_is_the_derivative(
+    off, clearance
+):
+    k, axial, tilting = 2e8, 5e7, 3e4
+    bearing = LooseBearing(k, axial, tilting, clearance, 10e-6)
+    u = np.array([0.6 * off, -0.8 * off, -off, 1e-4, -2e-4])
+    force, stiffness = bearing.reaction(u)
+    beyond = max(off - clearance, 0.0)
+    assert force == pytest.approx(
+        [0.6 * k * beyond, -0.8 * k * beyond, -axial * max(off - 10e-6, 0.0), tilting * 1e-4, -tilting * 2e-4],
+        rel=1e-12,
+        abs=1e-9,
+    )
+    step = np.diag([1e-9, 1e-9, 1e-9, 1e-7, 1e-7])
+    slopes = [(bearing.reaction(u + one)[0] - bearing.reaction(u - one)[0]) / (2 * one.sum()) for one in step]
+    np.testing.assert_allclose(stiffness, np.array(slopes).T, rtol=1e-6, atol=1e-5 * k)
+    assert np.diag(bearing.usual) == pytest.approx([k, k, axial, tilting, tilting])
+    assert not bearing.rigid.any()
+
+
+def test_a_bearing_carries_only_what_it_was_given_a_stiffness_for():
+    np.testing.assert_array_equal(stiff(3.0).matrix, np.diag([3.0, 3.0, 0.0, 0.0, 0.0]))
+    np.testing.assert_array_equal(LooseBearing(3.0).usual, stiff(3.0).matrix)
+    np.testing.assert_array_equal(LooseBearing(3.0).reaction(np.array([0.0, 2.0, 5.0, 7.0, 9.0]))[0], [0, 6, 0, 0, 0])
+    assert LooseBearing(1.0, 1.0).reaction(np.array([0, 0, 1e-9, 0, 0]))[0][2] == 1e-9  # no clearance unless given
+    with pytest.raises(FegearError, match="axial_clearance"):
+        LooseBearing(1.0, axial_clearance=-1e-9)
+    with pytest.raises(FegearError, match="radial"):
+        LooseBearing(math.inf)
+
+
+def test_a_matrix_is_symmetric_and_takes_no_energy_but_for_round_off():
+    def matrix(beside=0.0, tilt=3e4):
+        found = np.diag([2e8, 2e8, 1e8, tilt, tilt])
+        found[0, 4], found[4, 0] = 1e6, 1e6 * (1.0 + beside)
+        return found
+
+    StiffBearing(matrix(1e-12))
+    StiffBearing(np.zeros((5, 5)))
+    StiffBearing(matrix(tilt=1e12 / 2e8))  # 1e6^2 = 2e8 * 5e3: energy nil in one motion
+    with pytest.raises(InputError, match="must be symmetric"):
+        StiffBearing(matrix(1e-7))
+    with pytest.raises(InputError, match="not positive semi-definite"):
+        StiffBearing(matrix(tilt=0.99 * 1e12 / 2e8))
+
+
+def test_a_torque_is_balanced_to_round_off():
+    shaft, seats = _shaft((0.2, 0.05)), ((PIN, 0.0), (ROLLER, 0.2))
+    for off, word in ((1e-11, ""), (1e-6, "is an unbalanced torque")):
+        loads = (0, 0, 0, 0, 0, 500.0), (0, 0, 0, 0, 0, -500.0 * (1.0 + off))
+        if not word:
+            twist = _one(shaft, seats, [0.05, 0.15], *loads).at(0.2)[0, 5]
+            assert twist == pytest.approx(-500.0 * 0.1 / (_bending(0.05) / (1 + NU)), rel=1e-9)
+        else:
+            with pytest.raises(InputError, match=word):
+                _one(shaft, seats, [0.05, 0.15], *loads)
+
+
+@pytest.mark.parametrize("length", [1e-3, 0.2, 30.0])
+def test_what_is_loose_does_not_hang_on_the_size_of_the_shaft(length):
+    """Two bearings hold a shaft of any length, and a short seat on one side does not hold its tilt."""
+    shaft, load = _shaft((length, 0.2 * length)), (1.0, 0, 0, 0, 0, 0)
+    soft = stiff(1e6 * length, 1e6 * length)
+    found = _one(shaft, ((soft, 0.0), (stiff(1e6 * length), length)), 0.5 * length, load)
+    assert found.bearing_forces[:, 0] == pytest.approx([-0.5, -0.5])
+    assert _one(shaft, ((PIN, 0.0), (ROLLER, length)), 0.5 * length, load).bearing_forces[:, 0] == pytest.approx(
+        [-0.5, -0.5]
+    )
+    with pytest.raises(InputError, match=r"1 in number.*in tilt about [xy]"):
+        _one(shaft, ((soft, 0.3 * length),), 0.5 * length, load)
+
+
 def test_housing_and_bearing_are_springs_in_series_and_seats_push_each_other():
     shaft = Shaft((Section(0.4, 0.05),), INF)
     held = LoadedShaft(
