@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from fegear.base.errors import FegearError, InputError
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import LooseBearing, StiffBearing, stiff
 from fegear.shafts.held import Around, LoadedShaft, Seat
+from fegear.shafts.life import LifeRating
 from fegear.shafts.solution import deflect
 
 E, NU, INF = 206e9, 0.3, math.inf
@@ -235,6 +237,37 @@ def test_shafts_without_sections_or_wall_are_refused():
         Shaft(())
     with pytest.raises(FegearError, match="no wall"):
         Section(0.1, 0.05, 0.05)
+
+
+def test_what_a_bearing_carries_is_told_column_by_column():
+    """A hypotenuse of its own for radial force, shift and tilt; lives by radial and axial force."""
+    shaft, bearing = _shaft((0.3, 0.04)), StiffBearing(np.diag([1e8, 2e8, 5e7, 2e4, 4e4]))
+    held = LoadedShaft(
+        shaft, (Seat(bearing, 0.03), Seat(bearing, 0.26)), np.array([0.11]),
+        np.array([[3000.0, -1700.0, 900.0, 12.0, -31.0, 0.0]]),
+    )  # fmt: skip
+    found = deflect((held,))[0]
+    rating = LifeRating(30e3, "ball", 0.56, 1.6, 0.05)
+    told = found.bearing_loads((rating, None))
+    np.testing.assert_array_equal(told.at, [0.03, 0.26])
+    forces = np.column_stack([told.force_x, told.force_y, told.force_axial])
+    np.testing.assert_array_equal(forces, found.bearing_forces[:, :3])
+    assert len({*np.abs(forces).ravel()}) == 6
+    np.testing.assert_allclose(told.force_radial**2, forces[:, 0] ** 2 + forces[:, 1] ** 2, rtol=1e-12)
+    moved = found.at([0.03, 0.26])
+    np.testing.assert_allclose(told.shift**2, moved[:, 0] ** 2 + moved[:, 1] ** 2, rtol=1e-9)
+    np.testing.assert_allclose(told.tilt**2, moved[:, 3] ** 2 + moved[:, 4] ** 2, rtol=1e-9)
+    assert told.life[0] == rating.revolutions(told.force_radial[0], forces[0, 2])
+    assert told.life[0] != pytest.approx(rating.revolutions(told.force_radial[0], 0.0), rel=0.1)
+    assert math.isnan(told.life[1])
+    assert found.balance.max() < 1e-12
+    # What is left over is said as a share of the largest force, and of the largest moment about the left end.
+    more = held.loads + np.array([5.0, 0, 0, 0, 25.0, 0])
+    moments = [0.03 * forces[0], 0.26 * forces[1], 0.11 * more[0, :3]]
+    largest = max(np.abs(one[:2]).max() for one in moments)
+    off = replace(found, loaded=replace(held, loads=more)).balance
+    assert off[0] == pytest.approx(5.0 / 3005.0, rel=1e-9)
+    assert off[1] == pytest.approx((25.0 + 0.11 * 5.0) / largest, rel=0.15)
 
 
 def _sag(length, a, z, force, d, h):

@@ -90,6 +90,47 @@ def test_were_a_relief_to_start_at_a_change_of_pairs(pair, loads):
                 np.testing.assert_allclose(slopes[c, :, column], wanted, rtol=1e-10, atol=1e-14)
 
 
+def test_where_all_pairs_change_at_once_nothing_hands_over_and_places_beside_stay_as_they_are(pair):
+    """Between two positions at which no pair bears at both there is no load sharing to follow; elsewhere there is."""
+    trials = Trials(_even(pair, 12), np.array([0.6 * LOAD]), 1.0, "peak_to_peak")
+    p = np.array([[18e-6, 0.3, 25e-6, 0.4], [12e-6, 0.35, 9e-6, 0.25]])
+    shared = trials._shared(trials._removed(p)[0]).loads
+    loads = np.moveaxis(shared.reshape(*shared.shape[:2], 2, 1), 1, 2)
+    between = trials._between
+    usual = between._handing_over(loads > 0.0, loads, p)
+    assert usual.pair.size > 1
+    assert usual.met.any()
+    # A pair that parts bears before its place and not after it; both sides' loads of the others are shared by weights.
+    c, i, load = usual.at.where
+    bears = loads > 0.0
+    np.testing.assert_array_equal(usual.leaves, bears[usual.pair, c, i, load])
+    np.testing.assert_array_equal(usual.leaves, ~bears[usual.pair, c, i + 1, load])
+    x = trials._positions.x
+    assert ((x[i] <= usual.at.x) & (usual.at.x <= x[i + 1])).all()
+    met = np.flatnonzero(usual.met)
+    assert np.abs(usual.found.off[usual.pair[met], met]).max() < 1e-9 * usual.found.error.min()
+    np.testing.assert_allclose(usual.weight.sum(axis=0), 1.0, rtol=1e-12)
+    assert (usual.weight[usual.pair, np.arange(c.size)] > 0.0).all()
+    np.testing.assert_allclose(usual.found.loads.sum(axis=0), 0.6 * LOAD, rtol=1e-9)
+    assert len(met) == c.size
+    one = loads[:, 1, :, 0] > 0.0
+    inside = [i for i in range(one.shape[1] - 1) if between._first[i] >= 0 and (one[:, i] == one[:, i + 1]).all()]
+    at = next(i for i in inside if one[:, i].sum() == 1)  # one pair alone at both: let another carry it after
+    swapped = loads.copy()
+    j = int(np.flatnonzero(one[:, at])[0])
+    other = (j + 1) % len(one)
+    swapped[other, 1, at + 1 :, 0], swapped[j, 1, at + 1 :, 0] = loads[j, 1, at + 1 :, 0], loads[other, 1, at + 1 :, 0]
+    assert not ((swapped[:, 1, at, 0] > 0.0) & (swapped[:, 1, at + 1, 0] > 0.0)).any()
+    with np.errstate(all="raise"):
+        found = between._handing_over(swapped > 0.0, swapped, p)
+    assert (1, at, 0) not in set(map(tuple, found.at.where.T))
+    first, again = (np.flatnonzero(met.at.where[0] == 0) for met in (usual, found))
+    np.testing.assert_array_equal(usual.at.where[:, first], found.at.where[:, again])
+    np.testing.assert_array_equal(usual.pair[first], found.pair[again])
+    np.testing.assert_allclose(usual.at.x[first], found.at.x[again], rtol=1e-14)
+    np.testing.assert_allclose(usual.weight[:, first], found.weight[:, again], rtol=1e-12)
+
+
 def _of(gear):
     return ((np.arange(4) // 2) == gear)[:, None].astype(float)
 
