@@ -1,7 +1,7 @@
 """Parts of the studies by themselves: what an effect changes, one setting at a time, references and what they miss."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,6 +13,7 @@ from fegear.engine.table import Column, Table
 from fegear.studies import effects
 from fegear.studies.cost import knobs, measure
 from fegear.studies.cost.answers import Quantity
+from fegear.studies.cost.ladder import ALONE, FlankConfiguration
 from fegear.studies.cost.quantities import miss
 from fegear.studies.cost.result import Seconds
 from fegear.studies.effects import Measured, Switched
@@ -273,3 +274,75 @@ def test_what_is_missed_is_relative_to_each_reference_but_for_c_1():
     assert found.rms == pytest.approx(math.sqrt((0.1**2 + 2.5**2) / 3.0))
     assert found.answered == 0.75
     assert miss("c_1", values, reference).largest == pytest.approx(5.0 / 7.0)
+
+
+@dataclass(frozen=True)
+class MeshOfFace:
+    """Into what a face is divided."""
+
+    source: str
+    panels: int
+
+
+@dataclass(frozen=True)
+class WideCase:
+    """What of a pair's spec a study changes."""
+
+    face: MeshOfFace
+    misalignment: bool
+    wide: object = None
+    neighbour_coupling: bool | None = None
+    loads: tuple = (1.0, 2.0, 3.0)
+    nominal: float = 70.0
+    gaps: object = None
+
+    def on(self, gaps):
+        return replace(self, gaps=gaps)
+
+
+@pytest.mark.parametrize("misaligned", [False, True])
+@pytest.mark.parametrize(("carried", "coupled"), [(False, True), (True, False)])
+def test_a_pair_is_loaded_as_its_case_has_it_but_for_panels_and_neighbours(misaligned, carried, coupled, monkeypatch):
+    """At its nominal load; on shafts with the gaps of even loads, where the case moves its flanks with them."""
+    case = WideCase(MeshOfFace("both", 9), misaligned)
+    asked, loaded = SimpleNamespace(scene="scene", pair="I"), []
+    monkeypatch.setattr(measure, "pair_spec", lambda *given, over_face: given == ("scene", "I") and over_face and case)
+    monkeypatch.setattr(measure, "on_shafts", lambda *given: given == ("scene", "I") and carried)
+    monkeypatch.setattr(measure, "gearbox_of", lambda scene: f"gearbox of {scene}")
+    monkeypatch.setattr(measure, "gaps_of_even_loads", lambda *given: given)
+
+    def load(spec, bodies, cache):
+        loaded.append((spec, bodies, cache.__class__.__name__))
+        return "first", "second", "flanks"
+
+    monkeypatch.setattr(measure, "load_flanks", load)
+    configuration = FlankConfiguration("solid" if coupled else "solid" + ALONE, panels=24)
+    assert measure._load(asked, configuration, "bodies") == "flanks"
+    ((spec, bodies, cache),) = loaded
+    assert (bodies, cache) == ("bodies", "SolutionCache")
+    assert spec.wide == MeshOfFace("both", 24)
+    assert (spec.neighbour_coupling, spec.loads) == (coupled, (70.0,))
+    assert spec.gaps == (("gearbox of scene", "I") if misaligned and carried else None)
+
+
+def test_bodies_of_a_pair_are_made_of_its_gears_in_modules_and_slices_know_no_web(monkeypatch):
+    tooth = SimpleNamespace(label="teeth")
+    gear = SimpleNamespace(
+        module=0.004, tooth=tooth, twist=5.0, face_width=0.03, bore_radius=0.01, body_in_modules="body",
+        support_in_modules="support", material=SimpleNamespace(poisson_ratio=0.29),
+    )  # fmt: skip
+    scene = SimpleNamespace(case=SimpleNamespace(pair={"I": SimpleNamespace(driver="a", driven="b")}))
+    monkeypatch.setattr(
+        measure, "solid_gear_to_solve",
+        lambda scene, name: SimpleNamespace(gear=gear, reach={"a": 2, "b": 3}[name]),
+    )  # fmt: skip
+    for body in ("thin-slices", "coupled-slices", "solid"):
+        asked = []
+        monkeypatch.setitem(
+            measure._SOLVERS, body, lambda *given, asked=asked, **more: (asked.append((given, more)), len(asked))[1]
+        )
+        assert measure.solve_bodies(scene, "I", body, "settings") == {"driver": 1, "driven": 2}
+        more = {"body": "body", "support": "support"} if body == "solid" else {}
+        for (given, keys), reach in zip(asked, (2, 3), strict=True):
+            assert given == (tooth, pytest.approx(0.02), pytest.approx(7.5), 0.29, pytest.approx(2.5), "settings")
+            assert keys == {"reach": reach, **more}
