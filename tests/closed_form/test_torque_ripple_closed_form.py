@@ -20,7 +20,7 @@ from fegear.dynamics.train.matrices import damping_matrix, elements, mass_matrix
 from fegear.dynamics.train.modes import modes, ripple_critical
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.torque_response import ripple_spectrum, torque_response
-from fegear.dynamics.train.torque_ripple import TorqueRipple, common_period, ripple_of_curve
+from fegear.dynamics.train.torque_ripple import TorqueRipple, _exact, _whole_cycles, common_period, ripple_of_curve
 from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train
 
 R = 0.05
@@ -346,3 +346,21 @@ def test_two_discs_carry_the_external_torque_of_the_helical_pair():
         moment = Line(0.0, w, on_driver=(0.0, 0.0, 0.0, 0.0, 1.0))
         force = abs(pair_forces(pair, [moment], [100.0]).mesh[0, 0, 0])
         assert abs(torque_response(train, w, "1").forces[0]) == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("cycles", [7.0 / 3.0, 1501.0 / 3.0, 0.01])
+def test_a_frequency_means_a_ratio_of_whole_numbers_to_the_digits_of_a_double(cycles):
+    ripple = TorqueRipple("pump", "1", (1.0,), (0.0,), None, 5.0)
+    meant = Fraction(cycles).limit_denominator(1000)
+    for off, found in ((0.0, meant), (3e-12, meant), (-3e-12, meant), (3e-11, None), (-3e-11, None)):
+        assert _whole_cycles(ripple, Fraction(1, 21), cycles * (1.0 + off), 2000) == found
+    assert _whole_cycles(ripple, Fraction(1, 21), math.pi, 2000) is None
+    of_order = TorqueRipple("pump", "1", (1.0,), (0.0,), (5, 2))
+    assert _whole_cycles(of_order, Fraction(1, 21), math.nan, 1) == Fraction(5, 42)
+
+
+def test_a_span_is_the_ratio_that_its_digits_mean():
+    for span, ratio in ((0.33333333, Fraction(1, 3)), (2.0, Fraction(2)), (0.0416666667, Fraction(1, 24))):
+        assert _exact(span) == ratio
+    assert _exact(0.33333) == Fraction(33333, 100000)  # too few digits for a third: it is what is written
+    assert _exact(1e-4) == Fraction(1, 10000)

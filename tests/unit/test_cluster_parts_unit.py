@@ -72,3 +72,52 @@ def test_scheduler_and_workers_must_have_fegear_of_the_same_code():
 
     with pytest.raises(InputError, match="has no workers"):
         cluster._check_workers(client(wait_for_workers=none), "tcp://there")
+
+
+@pytest.fixture
+def computed(monkeypatch):
+    """What comes back of points by what becomes of each."""
+
+    def run(outcomes):
+        class Client:
+            def __enter__(self):
+                return self
+
+            def __exit__(self, *given):
+                return False
+
+            def as_current(self):
+                return self
+
+            def submit(self, job, point, *, pure):
+                assert (job, pure) == ("job", False)
+                future = type("Future", (), {})()
+                future.result = lambda: result(point)
+                return future
+
+        def result(point):
+            if isinstance(outcomes[point], Exception):
+                raise outcomes[point]
+            return outcomes[point]
+
+        monkeypatch.setattr(cluster, "_connected", lambda address: Client())
+        monkeypatch.setattr(cluster, "_check_workers", lambda client, address: None)
+        monkeypatch.setattr(cluster, "_finished", lambda client, futures, address: reversed(futures))
+        return list(cluster._computed("job", {7: "a", 9: "b"}, "tcp://there"))
+
+    return run
+
+
+def test_points_come_back_under_their_numbers_and_those_of_a_killed_worker_are_tried_again_by_the_next_sweep(computed):
+    from dask.distributed import CancelledError, KilledWorker
+
+    assert computed({"a": "first", "b": "second"}) == [(9, "second"), (7, "first")]
+    (number, reply), other = computed({"a": "first", "b": KilledWorker("b", SimpleNamespace(address="w1"), 3)})
+    assert (number, other) == (9, (7, "first"))
+    assert not reply.lasting
+    with pytest.raises(
+        InputError, match=r"tcp://there.*is no longer available; start it again; finished points are kept"
+    ):
+        computed({"a": "first", "b": CancelledError("b")})
+    with pytest.raises(MissingLibraryError, match=r"the workers of tcp://there cannot import fegear \(no module\)"):
+        computed({"a": "first", "b": ImportError("no module")})

@@ -282,3 +282,18 @@ def test_the_docs_list_every_unit():
     section = page[page.index("## Quantities") : page.index("## The case itself")]
     listed = set(re.findall(r"[A-Za-z]+", " ".join(re.findall(r"`([^`]+)`", section))))
     assert set(UNITS) <= listed
+
+
+@pytest.mark.parametrize(
+    ("text", "thousands"),
+    [("1,234 mm", True), ("123,456 mm", True), ("-12,500 mm", True), ("1234,567 mm", False), ("0,125 mm", False),
+     ("1,25 mm", False), ("1,2345 mm", False)],
+)  # fmt: skip
+def test_a_comma_may_separate_thousands_only_behind_three_digits_at_most(text, thousands):
+    number, unit = text.split()
+    with pytest.raises(InputError, match="contains a comma") as refused:
+        to_si(text, "length")
+    assert f'write "{number.replace(",", ".")} {unit}"' in str(refused.value)
+    assert ("if the comma separates thousands" in str(refused.value)) == thousands
+    if thousands:
+        assert f'or "{number.replace(",", "")} {unit}"' in str(refused.value)
