@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.results.shafts.loaded_shafts import _scales
 from fegear.shafts.beam import Section, Shaft
 from fegear.shafts.bearing import LooseBearing, stiff
 from fegear.shafts.gearbox import Gearbox
@@ -167,3 +169,20 @@ def test_designs_try_modifications_at_the_gap_of_each_load(flanks):
         assert together.te[..., i] == pytest.approx(alone.te[..., 0], rel=1e-9)
         assert together.face_load_factor[:, i] == pytest.approx(alone.face_load_factor[:, 0], rel=1e-9)
         assert together.slope[..., i] == pytest.approx(alone.slope[..., 0], rel=1e-6, abs=1e-9)
+
+
+def test_shafts_are_loaded_at_every_load_of_a_pair_and_every_level_of_its_spectrum():
+    """Over the nominal load, once each: a torque is one of the driver, and a level without a load asks for none."""
+    level = SimpleNamespace
+    part = SimpleNamespace(
+        normal_load=lambda found: 500.0, all_loads=lambda found: (500.0, 200.0),
+        operation=level(spectrum=[level(torque=50.0, load_factor=None), level(torque=None, load_factor=1.3),
+                                  level(torque=None, load_factor=0.0), level(torque=5.0, load_factor=9.0)]),
+    )  # fmt: skip
+    pair = SimpleNamespace(driver=SimpleNamespace(base_radius=0.05), driven=SimpleNamespace(base_radius=0.2))
+    scene = SimpleNamespace(case=SimpleNamespace(pair={"I": part}), pairs={"I": pair})
+    assert sorted(_scales(scene, "I")) == pytest.approx([0.2, 0.4, 1.0, 1.3, 2.0])
+    part.operation.spectrum = None
+    assert sorted(_scales(scene, "I")) == pytest.approx([0.4, 1.0])
+    part.normal_load = lambda found: None
+    assert sorted(_scales(scene, "I")) == [200.0, 500.0]

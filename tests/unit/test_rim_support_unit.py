@@ -11,7 +11,7 @@ from fegear.base.errors import FegearError
 from fegear.case.reading import read_scene
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.influence import solve_influence
-from fegear.fem.plane.rim import rigid_motions
+from fegear.fem.plane.rim import _outer, rigid_motions
 from fegear.fem.plane.sector_sides import _matching_sides
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.tooth_meshing import mesh_sector
@@ -276,3 +276,24 @@ def test_external_gears_have_no_rim_support(tmp_path):
     )
     with pytest.raises(FegearError, match="internal"):
         read_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("place", "half"), [(2.1, 0.7), (1.9, 0.7), (2.5, 0.05), (-0.2, 0.4), (0.0, 3.3), (23.45, 0.2)]
+)
+def test_a_pin_moves_with_a_ring_that_moves_as_a_body(place, half):
+    """Weights of each pin over all sectors add up to one, out and along, wherever its arc begins and ends."""
+    outer, radius = _outer(assemble(MESHES[1.0], NU, "strain", 3)), TOOTH.root_radius + 1.0
+    pitch = 2.0 * math.pi / TEETH
+    support = RimSupport(2, 2.0 * half * pitch * radius, place * pitch)
+    weights = outer.held(TEETH, support, radius)
+    assert weights.shape == (TEETH, outer.dofs.size, 4)
+    turned = np.array([outer.motion[:, :2] @ to_sector(k) for k in range(TEETH)])
+    moved = np.einsum("knp,knt->pt", weights, turned).reshape(2, 2, 2)
+    for pin, found in enumerate(moved):
+        m = support.angle + math.pi * pin
+        np.testing.assert_allclose(found, [[math.sin(m), math.cos(m)], [math.cos(m), -math.sin(m)]], atol=1e-9)
+    touched = {k for k in range(TEETH) if weights[k, :, :2].any()}
+    centre = np.arange(-5, TEETH + 5)
+    within = centre[(centre + 0.5 > place - half) & (centre - 0.5 < place + half)]
+    assert touched == {int(k) % TEETH for k in within}
