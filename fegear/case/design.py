@@ -128,6 +128,11 @@ class DesignPart(Part):
 
     pair: str | None = Field(default=None, description="Pair. Default: the only pair.")
     load: PositiveForce | None = Field(default=None, description="Design load. Default: nominal load of the pair.")
+    over: Literal["torques", "load"] | None = Field(
+        default=None,
+        description="What grindable tip relief is designed for: `torques` (all torques or loads of the pair, with "
+        "their weights) or `load` (the design load only). Default: `torques` if the pair has them.",
+    )
     length: ZoneLength = None
     contact_ratio: ZoneRatio = None
     centre: ZoneCentre = None

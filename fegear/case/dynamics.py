@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from fegear.base.given import all_given
+from fegear.case.evenly_spaced import EvenlySpaced
 from fegear.case.part import (
     Number,
     Part,
@@ -21,7 +22,6 @@ from fegear.case.part import (
     quantity,
     refuse,
     refuse_more,
-    spelt_also,
 )
 from fegear.geometry.relief import Shape
 from fegear.geometry.relief_spec import EndReliefSpec
@@ -29,10 +29,10 @@ from fegear.geometry.relief_spec import EndReliefSpec
 Frequency = Annotated[float, quantity("frequency", positive=True)]
 
 
-class SpeedsPart(Part):
+class SpeedsPart(EvenlySpaced):
     """``speeds = { start, stop, count }``, evenly spaced, or a list."""
 
-    model_config = spelt_also(lambda table: table["properties"]["values"])
+    example = 'write { start = "2000 rpm", stop = "16000 rpm", count = 57 }, or a list of speeds'
 
     values: Annotated[list[PositiveSpeed], Field(min_length=1), at_most(100_000, "speeds")] | None = Field(
         default=None, description="Speeds as a list (instead of the table)."
@@ -42,32 +42,6 @@ class SpeedsPart(Part):
     count: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
         default=None, description="Number of equally spaced speeds."
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _list_alone(cls, value: Any) -> Any:
-        return {"values": value} if isinstance(value, list) else value
-
-    @model_validator(mode="after")
-    def _one_way(self) -> Self:
-        given = [key for key in ("start", "stop", "count") if getattr(self, key) is not None]
-        if self.values is not None and given:
-            raise refuse("contradicts the list of values", "specify only one", key=given[0])
-        if self.values is None and len(given) < 3:
-            raise refuse(
-                "is incomplete", 'write { start = "2000 rpm", stop = "16000 rpm", count = 57 }, or a list of speeds',
-                value=", ".join(given) or "(not given)",
-            )  # fmt: skip
-        if self.start is not None and self.stop is not None and self.stop <= self.start:
-            raise refuse("must be greater than start", key="stop")
-        return self
-
-    @property
-    def array(self) -> NDArray[np.float64]:
-        """All speeds, increasing [rad/s]."""
-        if self.values is not None:
-            return np.unique(np.array(self.values))
-        return np.linspace(self.start or math.nan, self.stop or math.nan, self.count or 0)
 
 
 class FrequenciesPart(Part):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.base.errors import InputError
+from fegear.case.evenly_spaced import EvenlySpaced
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
 from fegear.case.loading import LineErrorPart
 from fegear.case.operation import OperationPart, ShaftsPart
@@ -123,6 +124,32 @@ class IsoPart(Part):
 Width = Literal["plane", "slices", "solid"]
 
 
+#: Keys of a range of torques as some write it, and what they are here.
+_ALSO = {"from": "start", "to": "stop", "steps": "count"}
+
+
+class TorquesPart(EvenlySpaced):
+    """``torques = { start, stop, count }``, evenly spaced, or a list; ``{ from, to, steps }`` says the same."""
+
+    example = 'write { start = "150 N*m", stop = "300 N*m", count = 4 }, or a list of torques'
+
+    values: Annotated[list[PositiveTorque], Field(min_length=1), at_most(1000, "torques")] | None = Field(
+        default=None, description="Torques as a list (instead of the table)."
+    )
+    start: PositiveTorque | None = Field(default=None, description="Minimum torque; also written `from`.")
+    stop: PositiveTorque | None = Field(default=None, description="Maximum torque; also written `to`.")
+    count: Annotated[int, Field(ge=2, le=1000)] | None = Field(
+        default=None, description="Number of equally spaced torques, both ends included; also written `steps`."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _other_words(cls, value: Any) -> Any:
+        if not isinstance(value, dict):
+            return value
+        return {_ALSO.get(key, key) if _ALSO.get(key) not in value else key: one for key, one in value.items()}
+
+
 class PairPart(Part):
     """Two gears in mesh and the load between them."""
 
@@ -142,6 +169,16 @@ class PairPart(Part):
         default=None,
         description="Additional loads along the line of action. Without `load` or `torque` the largest is the "
         "nominal load.",
+    )
+    torques: Table[TorquesPart] | None = Field(
+        default=None,
+        description="Torques on the driver at which the pair runs, in place of `loads`: a list or an evenly spaced "
+        "range. Relief is designed for all of them (`design.over`).",
+    )
+    weights: Annotated[list[Annotated[Number, Field(ge=0.0)]], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Weight of each of `torques` or `loads` in the design of relief; 0: not included. "
+        "Default: equal weights.",
     )
     speed: PositiveSpeed | None = Field(
         default=None, description="Speed of the driver, for example for the time column of root-stress histories."
@@ -200,6 +237,26 @@ class PairPart(Part):
             raise refuse(
                 "contradicts load", "specify either the load along the line of action or the torque", key="torque"
             )
+        if self.loads is not None and self.torques is not None:
+            raise refuse("contradicts loads", "specify either loads along the line of action or torques", key="torques")
+        return self
+
+    @model_validator(mode="after")
+    def _a_weight_each(self) -> Self:
+        if self.weights is None:
+            return self
+        values = self.loads if self.torques is None else self.torques.in_order.tolist()
+        if values is None:
+            raise refuse("requires torques or loads", 'set torques = ["150 N*m", "300 N*m"]', key="weights")
+        if len(values) != len(self.weights):
+            rule = (
+                f"must have one weight for each of the {len(values)} {'loads' if self.torques is None else 'torques'}"
+            )
+            raise refuse(rule, key="weights", value=self.weights)
+        if len(set(values)) < len(values):
+            raise refuse("contradicts a value that is given twice", "specify each torque or load once", key="weights")
+        if not any(self.weights):
+            raise refuse("must contain a weight above zero", key="weights", value=self.weights)
         return self
 
     def build(self, gears: dict[str, Gear], prefix: str) -> GearPair:
@@ -258,13 +315,19 @@ class PairPart(Part):
         """The same, errors in the words of the flanks."""
         return build_pair(design, self.misalignment if misaligned else None, self.modification, self.axial_offset)
 
+    def several_loads(self, pair: GearPair) -> tuple[float, ...]:
+        """What `loads` or `torques` say, as loads along the line of action [N] in the order of the case."""
+        if self.torques is not None:
+            return tuple(torque / pair.driver.base_radius for torque in self.torques.in_order.tolist())
+        return tuple(self.loads or ())
+
     def normal_load(self, pair: GearPair) -> float | None:
-        """Load along the line of action [N]: the load, the driver's torque, or the largest of loads; None without."""
+        """Load along the line of action [N]: the load, the driver's torque, or the largest of several; None without."""
         if self.torque is not None:
             return self.torque / pair.driver.base_radius
-        return max(self.loads) if self.load is None and self.loads else self.load
+        return max(self.several_loads(pair), default=None) if self.load is None else self.load
 
     def all_loads(self, pair: GearPair) -> tuple[float, ...]:
         """Every load of the case along the line of action [N], ascending, the nominal one among them."""
         nominal = self.normal_load(pair)
-        return tuple(sorted({*(self.loads or ()), *(() if nominal is None else (nominal,))}))
+        return tuple(sorted({*self.several_loads(pair), *(() if nominal is None else (nominal,))}))

@@ -58,6 +58,7 @@ class ReliefChart:
         label="effective transmission error A_{e}", table="chart",
     )  # fmt: skip
     peak_to_peak: Array = shown("um", "peak-to-peak value", name="te_peak_to_peak", table="chart")
+    weights: Array | None = None
 
     @property
     @shows("", "length with minimum A_e", table="optimum")
@@ -91,15 +92,21 @@ class ReliefChart:
         return np.asarray(np.where(at_end, self.lengths[i], np.clip(vertex, h[0], h[2])))
 
     def best(self, metric: Metric = "effective_error") -> tuple[float, float]:
-        """Amount [m] and length whose worst excitation over the loads, relative to the load, is least."""
+        """Amount [m] and length whose worst excitation over the loads, over the load and by its weight, is least."""
         values = self.effective_error if metric == "effective_error" else self.peak_to_peak
-        worst = (values / self.loads).max(axis=2)
+        part = values / self.loads
+        worst = (part if self.weights is None else part * self.weights).max(axis=2)
         a, b = np.unravel_index(int(worst.argmin()), worst.shape)
         return float(self.amounts[a]), float(self.lengths[b])
 
 
 def relief_chart(
-    engagement: Engagement, amounts: ArrayLike, lengths: ArrayLike, loads: ArrayLike, shape: Shape = "linear"
+    engagement: Engagement,
+    amounts: ArrayLike,
+    lengths: ArrayLike,
+    loads: ArrayLike,
+    shape: Shape = "linear",
+    weights: ArrayLike | None = None,
 ) -> ReliefChart:
     """Try equal tip reliefs on both gears over amount, length and load.
 
@@ -115,6 +122,8 @@ def relief_chart(
     loads : array_like, shape (L,)
         [N].
     shape : {"linear", "parabolic"}
+    weights : array_like, shape (L,), optional
+        What each load counts for the single best; all the same by default.
     """
     a, b, w = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (amounts, lengths, loads))
     if (b <= 0.0).any():
@@ -136,7 +145,10 @@ def relief_chart(
     flat = cases.reshape(*contacts.x.shape, -1)
     metrics = table.errors(flat, np.broadcast_to(w, (a.size, b.size, w.size)).ravel())
     shape3 = (a.size, b.size, w.size)
-    return ReliefChart(a, b, w, unit, metrics.effective_error.reshape(shape3), metrics.peak_to_peak.reshape(shape3))
+    counts = None if weights is None else np.asarray(weights, dtype=float)
+    return ReliefChart(
+        a, b, w, unit, metrics.effective_error.reshape(shape3), metrics.peak_to_peak.reshape(shape3), counts
+    )  # fmt: skip
 
 
 def meaning_of_unit(pair: GearPair) -> str:

@@ -19,7 +19,7 @@ from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, relief_nodes, relief_table
 from fegear.design.oil_film import OilFilm
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
-from fegear.design.tip_relief.grindable import TipReliefPair, grindable
+from fegear.design.tip_relief.grindable import LoadRange, TipReliefPair, grindable
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 
@@ -52,6 +52,8 @@ class DesignTask:
         With it pressure counts in that choice too.
     film : OilFilm, optional
         Between the flanks at the design load; the reliefs make up for it, and everything runs with it.
+    over : LoadRange, optional
+        Loads that reliefs to grind are designed for in place of the design load only.
     """
 
     loading: LoadingFunction
@@ -64,6 +66,11 @@ class DesignTask:
     harmonics: int
     allowed: Allowed | None = None
     film: OilFilm | None = None
+    over: LoadRange | None = None
+
+    def grind_on(self, engagement: Engagement, shape: Shape) -> TipReliefPair:
+        """The reliefs of a shape to grind, for the range or for the design load."""
+        return grindable(engagement, self.load if self.over is None else self.over, shape, self.metric)
 
 
 @dataclass(frozen=True)
@@ -98,11 +105,16 @@ class ReliefDesign:
         With the relief of (4.6) by the full influence matrix.
     reliefs : mapping of member to MemberRelief
     ground : mapping of shape to TipReliefPair
-        What a shop can grind.
+        What a shop can grind: for the range of the task, or for the design load.
+    for_one_load : mapping of shape to TipReliefPair
+        The same for the design load only; empty without a range.
     te : mapping of str to TransmissionError
-        At the design load: "no relief", "designed", "diagonal only", and each shape ground.
+        At the design load: "no relief", "designed", "diagonal only", and each shape ground; with a range also each
+        shape for the design load only ("linear tip relief for one load"), and "present relief" where the pair has one.
     curves : mapping of str to Loaded
         The same over roll positions, for every load.
+    over_range : mapping of str to tuple of TransmissionError
+        The same as `te` at each load of the range; empty without one.
     left : float or None
         Transmission error, peak to peak, that a design with compliances off by their errors leaves on true teeth [m].
     tables_leave : float
@@ -114,8 +126,10 @@ class ReliefDesign:
     designed: Engagement
     reliefs: Mapping[Member, MemberRelief]
     ground: Mapping[Shape, TipReliefPair]
+    for_one_load: Mapping[Shape, TipReliefPair]
     te: Mapping[str, TransmissionError]
     curves: Mapping[str, Loaded]
+    over_range: Mapping[str, tuple[TransmissionError, ...]]
     left: float | None
     tables_leave: float
 
@@ -136,7 +150,8 @@ def design_relief(
     Parameters
     ----------
     engagement : Engagement
-        Reliefs and spacing errors of its own are left aside: they are what the design replaces.
+        Reliefs and spacing errors of its own are left aside: they are what the design replaces. A relief of its own is
+        compared with what is designed for a range.
     shifted : sequence of Engagement
         The same with one compliance each off by its estimated error.
     task : DesignTask
@@ -162,13 +177,27 @@ def design_relief(
     reliefs = _reliefs(designed, states.get("diagonal only"), others)
     report(0.3)
     ground: dict[Shape, TipReliefPair] = {}
+    for_one_load: dict[Shape, TipReliefPair] = {}
     for number, shape in enumerate(dict.fromkeys(task.grind)):
-        ground[shape] = grindable(designed, load, shape, task.metric)
+        ground[shape] = task.grind_on(designed, shape)
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
+        if task.over is not None:
+            for_one_load[shape] = grindable(designed, load, shape, task.metric)
+            states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))
+    if task.over is not None and (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):
+        states["present relief"] = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
     if film is not None:
         states = {label: film.between(state) for label, state in states.items()}
     te = {label: transmission_error(state, load, task.harmonics) for label, state in states.items()}
+    over_range = (
+        {
+            label: tuple(transmission_error(state, one, task.harmonics) for one in task.over.loads)
+            for label, state in states.items()
+        }
+        if task.over is not None
+        else {}
+    )
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
     left = None
@@ -179,7 +208,9 @@ def design_relief(
     driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
-    return ReliefDesign(task, chosen, designed, reliefs, ground, te, curves, left, tables_leave)
+    return ReliefDesign(
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, left, tables_leave
+    )  # fmt: skip
 
 
 def relief_at(designed: Engagement, member: Member, roll_angles: ArrayLike) -> ReliefTable:

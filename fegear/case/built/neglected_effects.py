@@ -108,7 +108,6 @@ def neglected_in_design(
     """
     from fegear.contact.plane.neglected_effects import COUNTED, changes, effects_off, with_effect
     from fegear.design.excitation_relief import MinimumExcitationRelief
-    from fegear.design.tip_relief.grindable import grindable
 
     load = task.load
     found: dict[str, tuple[str, ...]] = {}
@@ -134,7 +133,7 @@ def neglected_in_design(
                     sizes.append(f"the {member}'s relief by {figures(size * 1e6, signed=True)} um ({where})")
         if effect == CORNER_CONTACT.name and ground is not None:
             shape, best = ground
-            other_best = grindable(other, load, shape, task.metric)
+            other_best = task.grind_on(other, shape)
             if abs(other_best.objective - best.objective) > max(tolerance, _EQUALLY_GOOD) * best.objective:
                 to_grind = f"{_to_grind(other_best)}, instead of {_to_grind(best)}"
                 sizes.append(f"the best {shape} tip relief to grind: {to_grind}")

@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, Mask
 from fegear.base.errors import InputError
 from fegear.contact.fourier import effective_error
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import Metric
 from fegear.design.tip_relief.search import SHARE, search
+from fegear.design.tip_relief.trials import proportions
 from fegear.geometry.gear import Gear
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 
@@ -22,6 +23,22 @@ from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 REPEATED = 1e-6
 #: What is left below this is nothing [m].
 _NOTHING = 1e-15
+
+
+@dataclass(frozen=True)
+class LoadRange:
+    """Loads that a relief is designed for together.
+
+    Parameters
+    ----------
+    loads : tuple of float
+        [N], ascending.
+    weights : tuple of float, optional
+        What each counts, over the largest; all the same by default.
+    """
+
+    loads: tuple[float, ...]
+    weights: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -38,7 +55,7 @@ class TipReliefPair:
     before : ndarray, shape (L,)
         The metric of the unmodified pair [m].
     objective : float
-        Worst metric over the loads, each in proportion to its load, at the largest load [m].
+        Worst metric over the loads, each in proportion to its load and times its weight, at the largest load [m].
     least : float
         What the best of all reliefs of this shape leave [m], by the search's own roll positions. These, and all up to
         1 % above, count as equally good: of them the one with the least removal is taken, and of two such the longer.
@@ -97,7 +114,11 @@ class TipReliefPair:
 
 
 def optimise_tip_relief(
-    engagement: Engagement, loads: ArrayLike, shape: Shape = "linear", metric: Metric = "effective_error"
+    engagement: Engagement,
+    loads: ArrayLike,
+    shape: Shape = "linear",
+    metric: Metric = "effective_error",
+    weights: ArrayLike | None = None,
 ) -> TipReliefPair:
     """Find amount and length of tip relief on both gears for the least excitation over a range of loads.
 
@@ -112,11 +133,13 @@ def optimise_tip_relief(
         [N]; the worst of them counts, each excitation in proportion to its load.
     shape : {"linear", "parabolic"}
     metric : {"effective_error", "peak_to_peak"}
+    weights : array_like, shape (L,), optional
+        What each load counts, over the largest of them; one of weight zero does not count. All the same by default.
 
     Raises
     ------
     InputError
-        Without loads, or with one that is not positive.
+        Without loads, or with one that is not positive; with weights that are not one for each load, or none positive.
     """
     w = np.atleast_1d(np.asarray(loads, dtype=float))
     if w.size == 0:
@@ -125,7 +148,8 @@ def optimise_tip_relief(
         raise InputError("design.loads", f"{w.min()} N", "must be positive and finite")
     power = 1.0 if shape == "linear" else 2.0
     begun = time.process_time()
-    found = search(engagement, w, power, metric)
+    weight, counts = _weights(weights, w)
+    found = search(engagement, w[counts], power, metric, weight)
     seconds = time.process_time() - begun
     pair = engagement.pair
     gears = pair.driver, pair.driven
@@ -137,7 +161,7 @@ def optimise_tip_relief(
     plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
     before = _left(replace(plain, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED), w)
     after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
-    objective = float((after[metric] * w.max() / w).max())
+    objective = float((after[metric][counts] * proportions(w[counts], weight)).max())
     # More may be left than the search saw, or less: what is allowed moves by as much; over the whole band it is SHARE.
     off = max(abs(objective - found.left), REPEATED * objective)
     per_left = np.abs(found.band - found.best).max(axis=0) / max(SHARE * found.least, _NOTHING)
@@ -148,6 +172,20 @@ def optimise_tip_relief(
         driver_band, driven_band, error, found.band_error * by_roll, found.candidates, found.evaluations, found.starts,
         max(found.spread, off), off, seconds,
     )  # fmt: skip
+
+
+def _weights(weights: ArrayLike | None, loads: Array) -> tuple[Array | None, Mask]:
+    """Weights of the loads that count, None where all count the same, and which do."""
+    every = np.ones(loads.size, dtype=bool)
+    if weights is None:
+        return None, every
+    given = np.atleast_1d(np.asarray(weights, dtype=float))
+    if given.shape != loads.shape:
+        raise InputError("weights", given.tolist(), f"must have one weight for each of the {loads.size} loads")
+    if not (np.isfinite(given).all() and (given >= 0.0).all() and given.any()):
+        raise InputError("weights", given.tolist(), "must be finite and not negative, one of them positive")
+    counts = given > 0.0
+    return (None if (given[counts] == given.max()).all() else given[counts]), counts
 
 
 def relief_over_path(gear: Gear, path: float, amount: float, length: float, power: float) -> EndRelief:
@@ -166,17 +204,18 @@ def _left(engagement: Engagement, loads: Array) -> dict[str, Array]:
 
 
 def grindable(
-    engagement: Engagement, load: float, shape: Shape = "linear", metric: Metric = "peak_to_peak"
+    engagement: Engagement, load: float | LoadRange, shape: Shape = "linear", metric: Metric = "peak_to_peak"
 ) -> TipReliefPair:
-    """Find the straight or parabolic tip reliefs that leave the least error at the design load.
+    """Find the straight or parabolic tip reliefs that leave the least error at the design load, or over a range.
 
     Parameters
     ----------
     engagement : Engagement
         Its reliefs, those of (4.6) say, are replaced.
-    load : float
-        Design load [N].
+    load : float or LoadRange
+        Design load [N], or the loads of a range.
     shape : {"linear", "parabolic"}
     metric : {"peak_to_peak", "effective_error"}
     """
-    return optimise_tip_relief(engagement, [load], shape, metric)
+    over = load if isinstance(load, LoadRange) else LoadRange((load,))
+    return optimise_tip_relief(engagement, over.loads, shape, metric, over.weights)

@@ -169,7 +169,9 @@ class Found:
     starts: int
 
 
-def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> Found:
+def search(
+    engagement: Engagement, loads: Floats, power: float, metric: str, weights: Floats | None = None
+) -> Found:  # fmt: skip
     """Find the tip reliefs of both gears that leave the least over all amounts and lengths.
 
     Parameters
@@ -182,9 +184,11 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         1 for straight, 2 for parabolic relief.
     metric : str
         `effective_error` or `peak_to_peak`.
+    weights : ndarray, shape (L,), optional
+        What each load counts, positive; all the same by default.
     """
     pair = engagement.pair
-    coarse = Trials(bench(engagement, 5, 6), loads, power, metric)
+    coarse = Trials(bench(engagement, 5, 6), loads, power, metric, weights)
     # Several loads and many sets of pairs cost as much as many candidates: fewer of these keep the time.
     work = sum(s.base.size for s in coarse.quick.sets) / coarse.bench.points.x.size
     thrift = 1.0 if work < _WORK else max(math.sqrt(2.6 / work), 0.4)
@@ -202,7 +206,8 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
     valleys, trials, now = p, coarse, -1
     for step, (positions, followed, trust, rounds) in enumerate(_STAGES[metric]):
         if positions != now:
-            now, trials = positions, Trials(_set_up(engagement, positions, loads.size), loads, power, metric)
+            now = positions
+            trials = Trials(_set_up(engagement, positions, loads.size), loads, power, metric, weights)
         p, of = _followed(p, values, of, limits, math.ceil(followed * thrift))
         p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
         solved += count if step else 0

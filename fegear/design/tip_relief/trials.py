@@ -20,6 +20,15 @@ from fegear.geometry.relief import roll_of_radius
 _HARMONICS = 12
 
 
+def proportions(loads: Floats, weights: Floats | None = None) -> Floats:
+    """By what the excitation at each load is multiplied before the worst is taken, shape (L,).
+
+    In proportion to the load, at the largest; and to its weight, over the largest weight.
+    """
+    part = loads.max() / loads
+    return part if weights is None else np.asarray(part * (weights / weights.max()))
+
+
 @dataclass(frozen=True, slots=True)
 class Tried:
     """What excites, of C candidates at each of L loads, and its derivatives by the four numbers.
@@ -78,12 +87,19 @@ class Trials:
         1 for straight, 2 for parabolic relief.
     metric : str
         `effective_error` or `peak_to_peak`.
+    weights : ndarray, shape (L,), optional
+        What each load counts, positive; all the same by default.
     """
 
     bench: Bench
     loads: Floats
     power: float
     metric: str
+    weights: Floats | None = None
+
+    @cached_property
+    def _counts(self) -> Floats:
+        return proportions(self.loads, self.weights)
 
     @property
     def harmonics(self) -> int:
@@ -144,9 +160,7 @@ class Trials:
         """What the metric looks at, shape (..., L, M), of approaches (..., P, L) [m] in proportion to their loads."""
         te = np.ascontiguousarray(np.moveaxis(zeta, -1, -2))
         te = te @ self._kernel.astype(te.dtype) if self.metric == "effective_error" else te
-        return (
-            te if self.loads.size == 1 else np.asarray(te * (self.loads.max() / self.loads)[:, None].astype(te.dtype))
-        )
+        return te if self.loads.size == 1 else np.asarray(te * self._counts[:, None].astype(te.dtype))
 
     @cached_property
     def _of_kinks(self) -> KinkQuadrature:
@@ -159,7 +173,7 @@ class Trials:
         moved = (
             bends.moved[:, :, None] * (bends.jump[:, None] * rise)[:, None] + bends.grown[:, :, None] * more[:, None]
         )
-        part = self.loads.max() / self.loads[load]
+        part = self._counts[load]
         np.subtract.at(parts, (c, load), (part * bends.jump)[:, None] * more)
         np.subtract.at(np.moveaxis(slopes, 2, 1), (c, load), part[:, None, None] * moved)
 

@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
+from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_in_design
 from fegear.case.built.pair_spec import pair_spec
@@ -70,6 +71,7 @@ def _check(scene: Scene, name: str) -> None:
         rule = "is below 1: relief design requires at least 1"
         raise InputError(f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", rule, "increase the contact ratio")
     refuse_beyond_path(_loading(part, pair), pair)
+    design_range(scene, name)
     for member in MEMBERS:
         ends = [float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)]
         for roll in design_part(scene).roll_angles or ():
@@ -85,7 +87,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     case = scene.case
     return ReliefInputs(
-        design_part(scene), pair_spec(scene, name), case.accuracy.tolerance, case.effects,
+        design_part(scene), pair_spec(scene, name), design_range(scene, name), case.accuracy.tolerance, case.effects,
         scene.sizes_neglected, table_names(scene, name), gears,
     )  # fmt: skip
 
@@ -105,6 +107,7 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
     task = DesignTask(
         _loading(part, pair.engagement.pair), load, isinstance(part.peak, str), tuple(part.grind), part.metric,
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
+        inputs.over,
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
     best = design.best_ground if design.ground else None
@@ -120,7 +123,9 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     """Reliefs to grind, fitted by repeated load sharing."""
     design = scene.case.design
     grind = len(design.grind) if design else 2
-    return forecasts.constant(0.3 + 1.2 * grind * (1.3 if forecasts.engagements(scene, name) > 1 else 1.0))
+    over = design_range(scene, name)
+    searches = 1.0 if over is None else 1.0 + 0.7 * len(over.loads)
+    return forecasts.constant(0.3 + 1.2 * grind * searches * (1.3 if forecasts.engagements(scene, name) > 1 else 1.0))
 
 
 RELIEF = relief_stage(

@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.printed import percent
 from fegear.base.shown import shown
+from fegear.case.built.design_range import design_range
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.charts import Metric, ReliefChart
     from fegear.design.held_relief import Robustness
-    from fegear.design.tip_relief.grindable import TipReliefPair
+    from fegear.design.tip_relief.grindable import LoadRange, TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.relief_data import ReliefData
 
@@ -114,29 +115,32 @@ class ChartInputs:
 
     part: ChartPart
     metric: Metric
+    over: LoadRange | None
     name: str = field(compare=False)
 
 
 def _chart_inputs(scene: Scene, name: str) -> ChartInputs:
     part = design_part(scene)
-    return ChartInputs(part.chart, part.metric, name)
+    over = None if part.chart.loads else design_range(scene, name)
+    return ChartInputs(part.chart, part.metric, over, name)
 
 
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
     from fegear.design.charts import relief_chart, unit_amount
-    from fegear.design.tip_relief.grindable import optimise_tip_relief
+    from fegear.design.tip_relief.grindable import LoadRange, grindable
 
     pair: LoadedPair
     (pair,) = upstream.values()
     asked, e = inputs.part, pair.engagement.unmodified()
-    loads = np.array(asked.loads or pair.loads)
+    over = inputs.over or LoadRange(tuple(asked.loads or pair.loads))
+    loads = np.array(over.loads)
     delta = unit_amount(e, pair.nominal)
     shares = asked.amounts_over_delta or np.linspace(0.1, 1.6, 16)
     amounts = np.array(asked.amounts) if asked.amounts else delta * np.array(shares)
     lengths = np.array(asked.lengths) if asked.lengths else np.linspace(0.05, 1.3, 26)
-    chart = relief_chart(e, np.sort(amounts), np.sort(lengths), loads, asked.shape)
+    chart = relief_chart(e, np.sort(amounts), np.sort(lengths), loads, asked.shape, over.weights)
     work.progress(0.5)
-    return ReliefChartData(pair, chart, optimise_tip_relief(e, loads, asked.shape, inputs.metric), delta)
+    return ReliefChartData(pair, chart, grindable(e, over, asked.shape, inputs.metric), delta)
 
 
 def unit_in_words(seen: Seen) -> str:
@@ -243,6 +247,9 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
 
     designed: ReliefData = next(found for task, found in upstream.items() if task.stage == "relief")
     asked, design = inputs.part, designed.design
+    factors = asked.load_factors
+    if design.task.over is not None and "load_factors" not in asked.given:
+        factors = [load / design.task.load for load in design.task.over.loads]
     states = {"designed": design.designed}
     states |= {f"{shape} tip relief": g.applied(design.designed) for shape, g in design.ground.items()}
     if inputs.own_relief:
@@ -251,7 +258,7 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
     found: dict[str, Robustness] = {}
     for label, state in states.items():
         found[label] = robustness(
-            state, design.task.load, asked.load_factors, asked.spacing_errors, asked.relief_errors, inputs.metric
+            state, design.task.load, factors, asked.spacing_errors, asked.relief_errors, inputs.metric
         )
         work.progress(len(found) / len(states))
     return RobustnessData(found)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.minimum_excitation import ReliefTable
     from fegear.design.relief_design import ReliefDesign
+    from fegear.design.tip_relief.grindable import LoadRange
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class ReliefInputs:
     ----------
     part : DesignPart
     asked : PairSpec
+    over : LoadRange or None
+        Loads that reliefs to grind are designed for together.
     tolerance : float
         That neglected effects are compared with.
     effects : EffectsPart
@@ -38,6 +41,7 @@ class ReliefInputs:
 
     part: DesignPart
     asked: PairSpec
+    over: LoadRange | None
     tolerance: float
     effects: EffectsPart = field(compare=False)
     neglected: bool

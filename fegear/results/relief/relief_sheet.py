@@ -26,6 +26,16 @@ from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
 from fegear.results.relief.harris import OVER_ROLL, HarrisMap
 from fegear.results.relief.relief_answer import RELIEF_ANSWER
+from fegear.results.relief.relief_over_range import (
+    GRINDING,
+    OVER_RANGE,
+    RANGE_CHART,
+    GrindingRow,
+    LeftOverRange,
+    grinding_rows,
+    left_over_range,
+    said_of_range,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -200,10 +210,24 @@ class ReliefShown:
         )
 
     @cached_property
+    def over_range(self) -> dict[str, LeftOverRange]:
+        """What each relief leaves at each torque of a range; empty without one."""
+        return left_over_range(self.data.design, self.data.pair.pair)
+
+    @cached_property
+    def grinding(self) -> tuple[GrindingRow, ...]:
+        """The best shape for a range, as a grinder is given it; empty without a range."""
+        design = self.data.design
+        if design.task.over is None or not design.ground:
+            return ()
+        return grinding_rows(self.tips, self.asked.gears, design.best_ground[0])
+
+    @cached_property
     def left(self) -> dict[str, Leaves]:
         """What each relief leaves."""
         design, pair, found = self.data.design, self.data.pair.pair, {}
         searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
+        searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
         for label, te in design.te.items():
             curve, ground = design.curves[label], searched.get(label)
             error = design.left if label == "designed" else None if ground is None else ground.objective_error
@@ -262,6 +286,8 @@ RELIEF_SHEET = Sheet(
     of=ReliefShown,
     name=lambda asked: asked.asked.name,
     tables=(
+        GRINDING,
+        OVER_RANGE,
         Rows(
             "loading_candidates_{name}", "Loadings of {name} evaluated for minimum stress",
             ("family", "peak", "root_tension", "hertz_pressure"), of="tried", when="tried",
@@ -322,6 +348,7 @@ RELIEF_SHEET = Sheet(
                name="largest_relief", meaning="over the path", each="reliefs"),
     ),
     figures=(
+        RANGE_CHART,
         Chart(
             "relief_{name}", "Profile relief of pair {name}",
             "Pair {name}: relief of both gears for {d.load:.5g} N over the active profile, and the load "
@@ -382,6 +409,7 @@ RELIEF_SHEET = Sheet(
         ),
     ),
     remarks=(
+        said_of_range,
         Remark(
             "Pair {name}: each relief compensates half the oil film at the design load; the remaining transmission "
             "error includes the film, assumed equally thick at all loads. Grindable tip reliefs are searched without "

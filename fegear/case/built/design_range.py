@@ -1,0 +1,41 @@
+"""The loads that the reliefs of a pair are designed for together: what ``torques``, ``loads`` and ``weights`` say."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.case.design import DesignPart
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.design.tip_relief.grindable import LoadRange
+
+
+def design_range(scene: Scene, name: str) -> LoadRange | None:
+    """Loads and weights of a pair's design range; None where its reliefs are for the design load only.
+
+    One torque that is the design load too is no range.
+
+    Raises
+    ------
+    InputError
+        If a range is asked for and the pair has none.
+    """
+    from fegear.design.tip_relief.grindable import LoadRange
+
+    part, pair = scene.case.pair[name], scene.pairs[name]
+    design = scene.case.design or DesignPart()
+    if (design.over or ("torques" if part.torques is not None else "load")) == "load":
+        return None
+    loads = part.several_loads(pair)
+    if not loads:
+        raise InputError(
+            "design.over", '"torques"', f"requires pair.{name}.torques",
+            f'set pair.{name}.torques = ["150 N*m", "300 N*m"]',
+        )  # fmt: skip
+    given = dict(zip(loads, part.weights or [1.0] * len(loads), strict=True))
+    if set(given) == {design.load or part.normal_load(pair)}:
+        return None
+    ordered = tuple(sorted(given))
+    return LoadRange(ordered, None if part.weights is None else tuple(given[load] for load in ordered))
