@@ -15,11 +15,12 @@ from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.design.charts import Metric
 from fegear.design.excitation_relief import MinimumExcitationRelief
+from fegear.design.load_range import LoadRange
 from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, relief_nodes, relief_table
 from fegear.design.oil_film import OilFilm
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
-from fegear.design.tip_relief.grindable import LoadRange, TipReliefPair, grindable
+from fegear.design.tip_relief.grindable import TipReliefPair, grindable
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 

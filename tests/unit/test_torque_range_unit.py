@@ -20,8 +20,9 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.load_range import LoadRange
 from fegear.design.relief_bench import bench
-from fegear.design.tip_relief.grindable import LoadRange, grindable, optimise_tip_relief, relief_over_path
+from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief, relief_over_path
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.design import DesignPart
+from fegear.design.load_range import LoadRange
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
-    from fegear.design.tip_relief.grindable import LoadRange
 
 
 def design_range(scene: Scene, name: str) -> LoadRange | None:
@@ -22,8 +22,6 @@ def design_range(scene: Scene, name: str) -> LoadRange | None:
     InputError
         If a range is asked for and the pair has none.
     """
-    from fegear.design.tip_relief.grindable import LoadRange
-
     part, pair = scene.case.pair[name], scene.pairs[name]
     design = scene.case.design or DesignPart()
     if (design.over or ("torques" if part.torques is not None else "load")) == "load":

@@ -14,6 +14,7 @@ from fegear.contact.fourier import effective_error
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import Metric
+from fegear.design.load_range import LoadRange
 from fegear.design.tip_relief.search import SHARE, search
 from fegear.design.tip_relief.trials import proportions
 from fegear.geometry.gear import Gear
@@ -23,22 +24,6 @@ from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 REPEATED = 1e-6
 #: What is left below this is nothing [m].
 _NOTHING = 1e-15
-
-
-@dataclass(frozen=True)
-class LoadRange:
-    """Loads that a relief is designed for together.
-
-    Parameters
-    ----------
-    loads : tuple of float
-        [N], ascending.
-    weights : tuple of float, optional
-        What each counts, over the largest; all the same by default.
-    """
-
-    loads: tuple[float, ...]
-    weights: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)

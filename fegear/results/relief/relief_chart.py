@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.charts import Metric, ReliefChart
     from fegear.design.held_relief import Robustness
-    from fegear.design.tip_relief.grindable import LoadRange, TipReliefPair
+    from fegear.design.load_range import LoadRange
+    from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.relief_data import ReliefData
 
@@ -127,7 +128,8 @@ def _chart_inputs(scene: Scene, name: str) -> ChartInputs:
 
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
     from fegear.design.charts import relief_chart, unit_amount
-    from fegear.design.tip_relief.grindable import LoadRange, grindable
+    from fegear.design.load_range import LoadRange
+    from fegear.design.tip_relief.grindable import grindable
 
     pair: LoadedPair
     (pair,) = upstream.values()

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.design.load_range import LoadRange
     from fegear.design.minimum_excitation import ReliefTable
     from fegear.design.relief_design import ReliefDesign
-    from fegear.design.tip_relief.grindable import LoadRange
 
 
 @dataclass(frozen=True)

@@ -122,7 +122,7 @@ class GrindingRow:
         return self.tip.relief.start
 
     @property
-    @shows("mm", "length of the relief on the line of action")
+    @shows("mm", "length of the relief on the line of action", name="length_on_path")
     def length(self) -> float:
         """[m]."""
         return self.tip.base_radius * (self.tip.relief.end - self.tip.relief.start)
