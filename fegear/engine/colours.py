@@ -48,7 +48,10 @@ ROLES: dict[str, Look] = {
     "diagonal only": Look("red", "dash", "square"),
     "linear tip relief": Look("orange", "dashdot", "triangle-up"),
     "parabolic tip relief": Look("green", "longdashdot", "diamond"),
+    "linear tip relief for one load": Look("sky", "dashdot", "triangle-up"),
+    "parabolic tip relief for one load": Look("sky", "longdashdot", "diamond"),
     "relief of the case": Look("purple", "dash", "triangle-down"),
+    "present relief": Look("purple", "dash", "triangle-down"),
     "over map": Look("white"),
     # motion
     "static": Look("grey", "dash"),

@@ -230,7 +230,9 @@ RANGE_CHART = Chart(
     "design load only (for one load), and without.",
     (
         Over(
-            "torque", (Line("peak_to_peak", each=Family("over_range"), look={"markers": True}),), options={"zero": True}
+            "torque",
+            (Line("peak_to_peak", each=Family("over_range", role="{key}"), look={"markers": True}),),
+            options={"zero": True},
         ),
     ),
     of=_first, when="over_range",
