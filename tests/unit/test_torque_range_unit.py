@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.optimize import differential_evolution
+from scipy.optimize import differential_evolution, minimize
 
 import fegear
 from fegear.base.errors import InputError
@@ -204,8 +204,10 @@ def test_differential_evolution_finds_no_better_relief_for_a_range(seed):
         many, [(0.0, 3.0), (0.02, 1.0)] * 2, popsize=16, maxiter=100, tol=1e-4, seed=seed, polish=False,
         vectorized=True, updating="deferred",
     )  # fmt: skip
-    assert found.least <= 1.01 * left(own.x)
-    assert left(own.x) <= 1.03 * found.least
+    # Positions of the table miss the kinks by some percent: a simplex with every kink goes on from there.
+    best = minimize(left, own.x, method="Nelder-Mead", options={"maxfev": 250, "xatol": 1e-4, "fatol": 1e-10}).fun
+    assert found.least <= 1.01 * best
+    assert best <= 1.03 * found.least
     own_of_found = [
         value for tip, gear in zip((found.driver, found.driven), gears, strict=True)
         for value in (tip.amount / unit, (tip.end - tip.start) * gear.base_radius / pair.path_length)
