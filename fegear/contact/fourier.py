@@ -47,12 +47,15 @@ class Panels:
         """Largest value of a function known at the points, shape (Q,), and between them where it turns smoothly.
 
         Between three points of one piece, the highest in the middle, it is the vertex of the parabola through them;
-        not where they stand too unevenly for that, beside break points, where they are close together anyway.
+        not where they stand too unevenly for that, beside break points, where they are close together anyway, and not
+        in a piece so narrow that one of its points may belong to the other side of a jump (`SIDE`).
         """
         i = int(np.argmax(values))
         top = float(values[i])
         piece = np.searchsorted(self.breaks, self.x[max(i - 1, 0) : i + 2], side="right")
         if piece.size < 3 or piece[0] != piece[2]:
+            return top
+        if 0 < piece[0] < self.breaks.size and np.ptp(self.breaks[piece[0] - 1 : piece[0] + 1]) < _NARROW * self.period:
             return top
         before, after = self.x[i] - self.x[i - 1], self.x[i + 1] - self.x[i]
         falls, rises = (top - values[i + 1]) / after, (top - values[i - 1]) / before
@@ -61,6 +64,10 @@ class Panels:
             return top
         slope = (rises * after - falls * before) / (before + after)
         return top + float(slope * slope / (4.0 * bend))
+
+
+#: Pieces narrower than this have no points that surely lie beyond the slack at both of their ends [periods].
+_NARROW = 4e-9
 
 
 #: Distance from break points at which both sides of them are looked at [periods]: beyond the slack that a pair at the

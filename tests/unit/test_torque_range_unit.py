@@ -5,7 +5,6 @@ Gears are 25/67 and random pairs with compliances by Weber and Banaschek, which 
 
 import tomllib
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from scipy.optimize import differential_evolution, minimize
 
 import fegear
 from fegear.base.errors import InputError
+from fegear.base.keys import content_key
 from fegear.case.built.design_range import design_range
 from fegear.case.reading import build_scene
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
@@ -27,6 +27,8 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.relief import EndRelief
+from fegear.results.relief.relief import RELIEF
 
 GEARS = """
 results = ["relief"]
@@ -144,24 +146,20 @@ def test_a_range_is_refused_where_a_pair_has_one_load():
         design_range(scene('torque = "300 N*m"', 'over = "torques"'), "I")
 
 
+@pytest.mark.dear
 def test_equal_weights_of_any_size_and_loads_without_weight_change_nothing():
     e, load = engaged(24, 36, 0.2)
     loads = [0.5 * load, load]
     plain = optimise_tip_relief(e, loads, "linear", "peak_to_peak")
-    for others, weights in ((loads, [7.0, 7.0]), ([*loads, 2.0 * load], [0.3, 0.3, 0.0])):
-        found = optimise_tip_relief(e, others, "linear", "peak_to_peak", weights)
-        assert (found.driver, found.driven, found.objective) == (plain.driver, plain.driven, plain.objective)
+    found = optimise_tip_relief(e, [*loads, 2.0 * load], "linear", "peak_to_peak", [0.3, 0.3, 0.0])
+    assert (found.driver, found.driven, found.objective) == (plain.driver, plain.driven, plain.objective)
 
 
+@pytest.mark.dear
 def test_a_load_that_counts_more_is_left_less():
     e, load = engaged(24, 36, 0.2)
     loads = [0.5 * load, load]
-    low, even, high = (
-        optimise_tip_relief(e, loads, "linear", "peak_to_peak", w).peak_to_peak for w in ([4, 1], [1, 1], [1, 4])
-    )
-    for one, other in pairwise((low, even, high)):
-        assert one[0] < 1.02 * other[0]
-        assert one[1] > 0.98 * other[1]
+    low, high = (optimise_tip_relief(e, loads, "linear", "peak_to_peak", w).peak_to_peak for w in ([4, 1], [1, 4]))
     assert low[0] < 0.8 * high[0]
     assert high[1] < 0.8 * low[1]
 
@@ -173,54 +171,79 @@ def test_weights_that_are_none_are_refused(weights):
         optimise_tip_relief(e, [0.5 * load, load], "linear", "peak_to_peak", weights)
 
 
-@pytest.mark.dear
-@pytest.mark.parametrize("seed", [1, 2])
-def test_differential_evolution_finds_no_better_relief_for_a_range(seed):
-    """It tries reliefs by exact load sharing and knows nothing of the search; both are judged with every kink."""
-    random = np.random.default_rng(seed)
-    e, load = engaged(int(random.integers(18, 40)), int(random.integers(30, 90)), float(random.uniform(0.0, 0.3)))
-    part, weights = np.array([0.5, 0.75, 1.0]), random.uniform(0.5, 2.0, 3)
-    found = grindable(e, LoadRange(tuple(part * load), tuple(weights)), "linear")
-    pair, unit = e.pair, 2.0 * found.before.max()
-    gears = pair.driver, pair.driven
+def test_a_relief_that_starts_at_a_change_of_pairs_but_for_round_off_leaves_what_one_that_starts_there_does():
+    """Both sides of a jump in one piece of 1e-9 pitches made a parabola through them: 3.25 um were said for 2.73."""
+    e, load = engaged(24, 36, 0.2)
+    pair = e.pair
+    change = float(pair.roll_angle(pair.x_end - pair.base_pitch, "driver"))
+    driver, driven = (EndRelief(*numbers) for numbers in ((25.71e-6, change, 0.60852), (30.72e-6, 0.26828, 0.48516)))
+    by = pair.base_pitch / pair.driver.base_radius * np.array([-3.9, -1.0, -0.3, 0.0, 0.3, 1.0, 2.0, 3.9]) * 1e-9
+    ends = [
+        peaks(replace(e, driver_relief=replace(driver, start=start), driven_relief=driven), [load])[0]
+        for start in change + by
+    ]
+    assert np.ptp(ends) < 1e-5 * ends[0]
+
+
+def own_search(e, loads, weights, seed):
+    """Least that differential evolution finds for linear tip relief [m], by exact load sharing; and its aim.
+
+    Positions of a table miss the kinks by some percent: a simplex with every kink goes on from there.
+    """
+    pair, part = e.pair, loads / loads.max()
+    gears, unit = (pair.driver, pair.driven), 2.0 * peaks(e, loads).max()
 
     def tips(p):
         return [
-            relief_over_path(gear, pair.path_length, p[2 * k] * unit, p[2 * k + 1], 1.0)
+            relief_over_path(gear, pair.path_length, p[2 * k] * unit, np.clip(p[2 * k + 1], 0.02, 1.0), 1.0)
             for k, gear in enumerate(gears)
         ]  # fmt: skip
 
     def left(p):
+        if p[0] < 0.0 or p[2] < 0.0:
+            return np.inf
         ground = replace(e, driver_relief=tips(p)[0], driven_relief=tips(p)[1])
-        return float((peaks(ground, part * load) / part * weights).max() / weights.max())
+        return float((peaks(ground, loads) / part * weights).max() / weights.max())
 
     def many(some):
         removals = np.stack([table.removal(*tips(p)) for p in some.T for _ in part], axis=2)
-        seen = table.errors(removals, np.tile(part * load, some.shape[1])).peak_to_peak.reshape(-1, 3)
+        seen = table.errors(removals, np.tile(loads, some.shape[1])).peak_to_peak.reshape(-1, part.size)
         return (seen / part * weights).max(axis=1) / weights.max()
 
-    table = bench(e, waves=24)
+    table = bench(e, order=6, waves=8)
     own = differential_evolution(
-        many, [(0.0, 3.0), (0.02, 1.0)] * 2, popsize=16, maxiter=100, tol=1e-4, seed=seed, polish=False,
+        many, [(0.0, 3.0), (0.02, 1.0)] * 2, popsize=12, maxiter=40, tol=1e-4, seed=seed, polish=False,
         vectorized=True, updating="deferred",
     )  # fmt: skip
-    # Positions of the table miss the kinks by some percent: a simplex with every kink goes on from there.
-    best = minimize(left, own.x, method="Nelder-Mead", options={"maxfev": 250, "xatol": 1e-4, "fatol": 1e-10}).fun
-    assert found.least <= 1.01 * best
-    assert best <= 1.03 * found.least
-    own_of_found = [
-        value for tip, gear in zip((found.driver, found.driven), gears, strict=True)
+    best = minimize(left, own.x, method="Nelder-Mead", options={"maxfev": 200, "xatol": 1e-4, "fatol": 1e-10}).fun
+    return best, left, unit
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 13))])
+def test_differential_evolution_finds_no_better_relief_for_a_range(seed):
+    """It tries reliefs by exact load sharing and knows nothing of the search; both are judged with every kink."""
+    random = np.random.default_rng(seed)
+    e, load = engaged(int(random.integers(18, 40)), int(random.integers(30, 90)), float(random.uniform(0.0, 0.3)))
+    loads, weights = load * np.array([0.5, 0.75, 1.0]), random.uniform(0.5, 2.0, 3)
+    found = grindable(e, LoadRange(tuple(loads), tuple(weights)), "linear")
+    best, left, unit = own_search(e, loads, weights, seed)
+    pair = e.pair
+    numbers = [
+        value for tip, gear in zip((found.driver, found.driven), (pair.driver, pair.driven), strict=True)
         for value in (tip.amount / unit, (tip.end - tip.start) * gear.base_radius / pair.path_length)
     ]  # fmt: skip
-    assert left(own_of_found) == pytest.approx(found.objective, rel=1e-9)
+    assert left(numbers) == pytest.approx(found.objective, rel=1e-9)
+    assert found.least <= 1.005 * best
 
 
 def test_a_range_of_one_torque_is_the_design_for_that_load():
-    one = fegear.run(case('torques = ["300 N*m"]'))
-    other = fegear.run(case('torque = "300 N*m"'))
-    assert dict(one.values) == dict(other.values)
+    inputs = (RELIEF.inputs(scene(pair), "I") for pair in ('torques = ["300 N*m"]', 'torque = "300 N*m"'))
+    one, other = (content_key(each) for each in inputs)
+    assert one == other
 
 
+@pytest.mark.dear
 def test_the_grinding_table_typed_into_a_fresh_case_gives_what_it_states():
     found = fegear.run(case())
     ground, stated = found.tables["grinding_I"], found.tables["relief_over_torque_I"]
