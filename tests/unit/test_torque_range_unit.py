@@ -259,4 +259,5 @@ def test_the_grinding_table_typed_into_a_fresh_case_gives_what_it_states():
     assert np.asarray(peaks_again["te_peak_to_peak"]) == pytest.approx(
         np.asarray(stated["te_peak_to_peak_linear_tip_relief"]), rel=1e-5
     )
-    assert any(note.startswith("Pair I: grind ") for note in found.remarks)
+    assert found.answer.sentences[0].startswith("Pair I: grind ")
+    assert found.answer.figure == "relief_over_torque_I"

@@ -8,6 +8,7 @@ import numpy as np
 
 from fegear.base.printed import figures
 from fegear.engine.sheet.answer import Answer
+from fegear.results.relief.relief_over_range import said_of_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,7 +37,10 @@ def _best(seen: Seen) -> str:
 
 
 def _grind(seen: Seen) -> Iterator[str]:
-    """What to grind, and what it changes at the design load."""
+    """What to grind, and what it changes at the design load, or from end to end of a range."""
+    if seen.data.grinding:
+        yield from said_of_range(seen)
+        return
     shape, left = _best(seen), seen.data.left
     if not shape:
         return
@@ -57,7 +61,7 @@ def _grind(seen: Seen) -> Iterator[str]:
 def _at_half_load(seen: Seen) -> Iterator[str]:
     """What the same relief does near half of the design load, where such a load is in the map."""
     shape, left = _best(seen), seen.data.left
-    if not shape:
+    if not shape or seen.data.grinding:
         return
     plain, ground = left["no relief"].map, left[f"{shape} tip relief"].map
     share = plain.load / seen.data.load
@@ -82,4 +86,8 @@ def _exact(seen: Seen) -> Iterator[str]:
         )
 
 
-RELIEF_ANSWER = Answer(_grind, _at_half_load, _exact, figure="relief_{name}")
+def _figure(seen: Seen) -> str:
+    return f"relief_over_torque_{seen.name}" if seen.data.grinding else f"relief_{seen.name}"
+
+
+RELIEF_ANSWER = Answer(_grind, _at_half_load, _exact, figure=_figure)

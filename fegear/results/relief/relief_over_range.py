@@ -154,7 +154,7 @@ class GrindingRow:
     @property
     def words(self) -> str:
         """As a sentence says it."""
-        return f"{figures(self.amount * 1e6, 2)} um from d {self.start_diameter * 1e3:.1f} mm (gear {self.gear})"
+        return f"{figures(self.amount * 1e6, 2)} µm from d {self.start_diameter * 1e3:.1f} mm on gear {self.gear}"
 
 
 def grinding_rows(tips: tuple[GroundTip, ...], gears: Mapping[Member, str], shape: str) -> tuple[GrindingRow, ...]:
@@ -174,20 +174,20 @@ def said_of_range(seen: Seen) -> Iterator[str]:
     ground = [row.words for row in d.grinding if row.amount > _NOTHING]
     ends = dict.fromkeys((best.torque.size - 1, 0))
     left = ", ".join(
-        f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} um at "
+        f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} µm at "
         f"{figures(best.torque[i], 4)} N m"
         for i in ends
     )
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
-    yield f"Pair {seen.name}: {do}: peak-to-peak transmission error {left}."
+    yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
     worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak)
     if worse.size:
         i = int(worse[np.argmax((single.peak_to_peak / none.peak_to_peak)[worse])])
         nominal = d.load * d.data.pair.pair.driver.base_radius
         yield (
             f"Pair {seen.name}: tip relief designed for {figures(nominal, 4)} N m only gives "
-            f"{figures(single.peak_to_peak[i] * 1e6)} um peak-to-peak at {figures(single.torque[i], 4)} N m, "
-            f"more than without relief ({figures(none.peak_to_peak[i] * 1e6)} um)."
+            f"{figures(single.peak_to_peak[i] * 1e6)} µm peak-to-peak at {figures(single.torque[i], 4)} N m, "
+            f"more than without relief ({figures(none.peak_to_peak[i] * 1e6)} µm)."
         )
 
 

@@ -34,7 +34,6 @@ from fegear.results.relief.relief_over_range import (
     LeftOverRange,
     grinding_rows,
     left_over_range,
-    said_of_range,
 )
 
 if TYPE_CHECKING:
@@ -409,7 +408,6 @@ RELIEF_SHEET = Sheet(
         ),
     ),
     remarks=(
-        said_of_range,
         Remark(
             "Pair {name}: each relief compensates half the oil film at the design load; the remaining transmission "
             "error includes the film, assumed equally thick at all loads. Grindable tip reliefs are searched without "
