@@ -63,9 +63,9 @@ class GearPair:
     Raises
     ------
     GeometryError
-        If both gears are internal, hands, helix angles or base pitches do not go together, the teeth jam or never
-        meet, or the faces stand beside each other. Tips of an internal pair that meet what they must not leave a pair
-        that can be drawn, not run (`refuse_fouling`).
+        If both gears are internal, a gear has no fewer teeth than its ring gear, hands, helix angles or base pitches do
+        not go together, the teeth jam or never meet, or the faces stand beside each other. Tips of an internal pair
+        that meet what they must not leave a pair that can be drawn, not run (`refuse_fouling`).
     """
 
     driver: Gear
@@ -86,6 +86,7 @@ class GearPair:
                 "must be equal for the gears to mesh",
                 "use the same module and pressure angle for both gears",
             )
+        self._check_room_in_ring()
         tight = self.tight_centre_distance
         if math.isnan(self.centre_distance):
             nominal = self._base_radii / math.cos(self._working_angle(allowance=False))
@@ -135,6 +136,15 @@ class GearPair:
                 f"parallel axes require {hands}, or two spur gears",
                 "change the hand of one gear",
             )
+
+    def _check_room_in_ring(self) -> None:
+        """Refuse a gear that is as large as the ring gear in which it is to run."""
+        planet, ring = sorted((self.driver.tooth, self.driven.tooth), key=lambda tooth: tooth.internal)
+        if ring.internal and planet.teeth >= ring.teeth:
+            raise GeometryError(
+                "teeth", planet.teeth, f"must be below the {ring.teeth} of the ring gear in which the gear runs",
+                "reduce it, or give the ring gear more teeth",
+            )  # fmt: skip
 
     def refuse_fouling(self) -> None:
         """Refuse gears inside ring gears whose tips meet what they must not: they can be drawn, not run.

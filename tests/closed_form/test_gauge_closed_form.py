@@ -96,14 +96,17 @@ def test_stated_errors_cover_what_a_finer_mesh_gives(solved):
     finer = solve_gear(solved.gear, MeshSettings().scaled(0.7), estimate_error=False)
     low, high = solved.gear.involute_radii
     radius, length = np.linspace(low + 0.15 * 2e-3, high - 0.02 * 2e-3, 9), 2e-3 * solved.fine.fillets["tension"].length
+    generous = []
     for side in ("tension", "compression"):
         for half in (0.0, 0.1e-3):
             grid, arc = Grid(2.0 * half, 0.0, 0.0), np.array([0.25, 0.4, 0.55, 0.7]) * length
             mine, theirs = (GaugesOnFillet(one, side, grid, arc) for one in (solved, finer))
             for k in (0, 1, -1):
                 off, stated = np.abs(mine.stress(k, radius) - theirs.stress(k, radius)), mine.stress_error(k, radius)
-                assert (off < 1.5 * stated).all(), (side, half, k)
+                assert (off < stated).all(), (side, half, k)
+                generous += list(np.sqrt(np.mean(stated**2, axis=1) / np.mean(off**2, axis=1)))
             assert stated.max() < 0.02 * np.abs(theirs.stress(0, radius)).max()
+    assert np.median(generous) < 10.0  # 7.5; as the largest stress errs: 14
 
 
 def test_places_of_the_drawn_and_the_meshed_fillet_agree(solved):

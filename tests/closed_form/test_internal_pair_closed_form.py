@@ -194,6 +194,15 @@ def test_two_ring_gears_make_no_pair():
         GearPair(ring, ring)
 
 
+@pytest.mark.parametrize("teeth", [60, 61, 90])
+@pytest.mark.parametrize("reverse", [False, True])
+def test_a_gear_as_large_as_its_ring_gear_makes_no_pair(teeth, reverse):
+    """Equal numbers divided by zero, larger ones were drawn."""
+    ring, gear = the_pair().driven, Gear(Tooth(teeth), MODULE, 60e-3, 20e-3)
+    with pytest.raises(GeometryError, match=f"teeth = {teeth}: must be below the 60 of the ring gear"):
+        GearPair(*((ring, gear) if reverse else (gear, ring)))
+
+
 @cache
 def solved() -> tuple:
     pair = the_pair()

@@ -59,7 +59,9 @@ _ROUGH = 2e-5
 _DIGITS = 1e-7
 #: Places on either side of a crossing that belong to it, at least.
 _BESIDE = 2
-KINDS = ("gear", "ring", "pair", "internal pair", "body", "wide pair")
+KINDS = ("gear", "ring", "pair", "internal pair", "body", "wide pair", "planetary set")
+#: First of these columns that a table has says where its rows stand.
+PLACES = ("radius", "x", "n", "t", "speed", "mode")
 EFFECTS = {"neighbour_coupling": True, "hertz": "load-dependent"}
 
 
@@ -109,9 +111,13 @@ def drawn(kind, rng):
     if kind in ("gear", "ring"):
         gear = external(rng) if kind == "gear" else internal(rng)
         return {"results": ["stiffness"], "gear": {"a": gear}, "stiffness": {"positions": 31}}
+    if kind == "planetary set":
+        return planetary_set(rng)
     if kind == "body":
-        gear = external(rng, "12 mm", 40) | {"bore_radius": "5 mm"}
-        gear["body"] = {"rim_thickness": "7 mm", "web_thickness": "5 mm", "hub_radius": "9 mm"}
+        gear = external(rng, f"{rng.uniform(6.0, 12.0):.2f} mm", 28) | {"bore_radius": "5 mm"}
+        gear["body"] = {"rim_thickness": f"{rng.uniform(4.5, 8.0):.3f} mm",
+                        "web_thickness": f"{rng.uniform(0.2, 0.7) * float(gear['face_width'].split()[0]):.3f} mm",
+                        "hub_radius": "9 mm"}  # fmt: skip
         gear.pop("plane")
         return {
             "results": ["stiffness"], "gear": {"a": gear},
@@ -129,15 +135,18 @@ def drawn(kind, rng):
         first = external(rng, long=long)
         second = external(rng, long=long) | {key: first[key] for key in ("rack", "pressure_angle")}
         gears = {"a": first, "b": second}
+    helix, face = rng.choice([0.0, 12.0]), rng.choice([6.0, 9.0])
     for gear in gears.values():
         if rng.random() < 0.5 and not gear.get("internal"):
             gear["relief"] = {"tip": {"amount": f"{rng.uniform(2.0, 25.0):.2f} um", "length": "2 mm"}}
         if kind == "wide pair":
-            gear |= {"normal_module": gear.pop("module"), "helix_angle": "12 deg", "teeth": min(gear["teeth"], 40),
-                     "bore_radius": "9 mm", "face_width": "12 mm"}  # fmt: skip
+            gear |= {"teeth": min(gear["teeth"], 28), "bore_radius": "9 mm", "face_width": f"{face} mm"}
             gear.pop("plane")
+            if helix:
+                gear |= {"normal_module": gear.pop("module"), "helix_angle": f"{helix} deg"}
     if kind == "wide pair":
-        gears["a"]["hand"], gears["b"]["hand"] = "right", "left"
+        if helix:
+            gears["a"]["hand"], gears["b"]["hand"] = "right", "left"
         results = ["load-distribution", "transmission-error", "root-stress-history"]
     load = 10.0 ** rng.uniform(2.9, 4.1)
     return {
@@ -145,6 +154,43 @@ def drawn(kind, rng):
         "pair": {"I": {"driver": "a", "driven": "b", "loads": [f"{load:.1f} N"], "load": f"{load:.1f} N"}},
         "effects": {**EFFECTS, "relief": True, "corner_contact": bool(rng.random() < 0.5)},
     }  # fmt: skip
+
+
+def planetary_set(rng):
+    """Three or four planets between a sun and a ring, of known stiffness or a gear, with errors of their pins."""
+    sun, planet, count = int(rng.integers(15, 32)), int(rng.integers(16, 36)), int(rng.integers(3, 5))
+    ring = sun + 2 * planet
+    while (sun + ring) % count:
+        sun, ring = sun + 1, ring + 1
+    shifts = [round(rng.uniform(0.1, 0.4), 3) for _ in range(2)]
+    gears = {
+        name: {"teeth": z, "module": "3 mm", "profile_shift": x, "bore_radius": f"{rng.uniform(0.3, 0.6) * 1.5 * z:.3f} mm",
+               "face_width": "25 mm"}
+        for name, z, x in (("sun", sun, shifts[0]), ("planet", planet, shifts[1]))
+    }  # fmt: skip
+    if rng.random() < 0.5:
+        gears["planet"]["relief"] = {"tip": {"amount": f"{rng.uniform(2.0, 25.0):.2f} um", "length": "2 mm"}}
+    part = {
+        "sun": "sun", "planet": "planet", "planets": count, "fixed": "ring", "input": "sun", "speed": "1800 rpm",
+        "torque": f"{10.0 ** rng.uniform(2.0, 3.2):.1f} N*m", "floating": ["sun"],
+        "speeds": {"start": f"{rng.uniform(50.0, 400.0):.1f} rpm", "stop": f"{rng.uniform(3e3, 9e3):.1f} rpm", "count": 31},
+        "stiffness": {"pin": f"{10.0 ** rng.uniform(2.0, 3.0):.1f} N/um", "carrier": "150 N/um"},
+        "pin_errors": {"tangential": [f"{one:.1f} um" for one in rng.uniform(-15.0, 15.0, count)]},
+        "body": {"carrier": {"mass": "5 kg", "inertia": "0.02 kg*m^2"}},
+    }  # fmt: skip
+    if rng.random() < 0.5:
+        x = -(shifts[0] + 2.0 * shifts[1])
+        gears["ring"] = {
+            "internal": True, "teeth": ring, "module": "3 mm", "profile_shift": round(x, 3), "face_width": "25 mm",
+            "cutter": {"teeth": 25, "addendum": 1.25, "tip_radius": 0.2}, "thickness_allowance": "80 um",
+            "tip_diameter": f"{3.0 * (ring - 2.0 * x - 1.8):.4f} mm", "rim_thickness": f"{rng.uniform(5.0, 20.0):.3f} mm",
+        }  # fmt: skip
+        part["ring"] = "ring"
+    else:
+        part |= {"ring_teeth": ring}
+        part["stiffness"]["ring_mesh"] = f"{rng.uniform(300.0, 700.0):.1f} N/um"
+    effects = {**EFFECTS, "relief": True, "corner_contact": bool(rng.random() < 0.5)}
+    return {"results": ["planet-vibration"], "gear": gears, "planetary": {"P": part}, "effects": effects}
 
 
 def possible(kind, count, seed):
@@ -174,7 +220,7 @@ def answers(case, accuracy, cache=None):
     found = {}
     for outcome in results.outcomes.values():
         for table in outcome.tables:
-            place = next((c.si for c in table.columns if c.name in ("radius", "x", "n", "t")), None)
+            place = next((c.si for c in table.columns if c.name in PLACES), None)
             for name, error in error_columns(table).items():
                 column, off = table.column(name), table.column(error)
                 if column.si.dtype.kind == "f" and place is not None:
@@ -198,7 +244,7 @@ def of_elements(case, accuracy):
 def both_answers(case, accuracy):
     """`answers`, and the same `of_elements`, which of gears by themselves is None: no tip touches."""
     found = answers(case, accuracy)
-    return found, of_elements(case, accuracy) if case.get("pair") else None
+    return found, of_elements(case, accuracy) if case.get("pair") or case.get("planetary") else None
 
 
 @dataclass

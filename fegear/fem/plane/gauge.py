@@ -41,6 +41,12 @@ ISO_TANGENT_INTERNAL = math.radians(60.0)
 _SLACK = 1e-6
 #: Part of the fillet below which a grid is none.
 _SHORT = 0.02
+#: Both orders have the edges' own curves in common. They scatter the stress at the points of a fillet about its smooth
+#: curve; so many times what that scatter is under a grid, the points' each by itself, is the least error of its mean.
+_SCATTERED = 3.5
+#: Beside an end of the fillet, nearer than these parts of its length, the smooth curve is fitted from one side: there a
+#: grid errs by no less than the largest stress does (fading in between).
+_AT_END, _OFF_END = 0.1, 0.2
 
 
 @dataclass(frozen=True)
@@ -279,7 +285,10 @@ class GaugesOnFillet:
         return np.asarray(self.weights() @ self.influence.fillet_stress(k, self.side, radius))
 
     def stress_error(self, k: int, radius: ArrayLike) -> Array:
-        """Estimated error of `stress`: a share of what elements one order lower give otherwise; NaN if unknown."""
+        """Estimated error of `stress`; NaN if unknown.
+
+        A share of what elements one order lower give otherwise, and no less than what both orders have in common.
+        """
         r, known = np.atleast_1d(np.asarray(radius, dtype=float)), self.influence
         if known.estimate is None:
             return np.full((self.arc.size, r.size), np.nan)
@@ -287,8 +296,23 @@ class GaugesOnFillet:
         clipped = np.clip(r, known.lowest_radius, known.highest_radius)
         other = self.weights(coarse) @ coarse.fillet_stress(k, self.side, clipped / m) / m
         by_order = known.estimate.place_error(self.stress(k, clipped), np.asarray(other))
-        # What both orders have in common, the edges' own curves, is part of the largest stress's error only.
-        return np.maximum(by_order, known.root_stress_error(k, self.side, clipped))
+        in_common = np.maximum(
+            self._scattered(k, clipped), self._beside_end[:, None] * known.root_stress_error(k, self.side, clipped)
+        )
+        return np.maximum(by_order, in_common)
+
+    def _scattered(self, k: int, radius: Array) -> Array:
+        """What the scatter of the stress at the fillet's points makes of its mean under the grids, shape (G, P)."""
+        stress = self.influence.fillet_stress(k, self.side, radius)
+        off = stress - smooth_curve(self.influence.fine.fillets[self.side].arc)[0] @ stress
+        return np.asarray(_SCATTERED * np.sqrt(self.weights() ** 2 @ off**2))
+
+    @property
+    def _beside_end(self) -> Array:
+        """How much the fillet's ends count: one at them, nothing in the middle, shape (G,)."""
+        length = self.influence.fine.fillets[self.side].length * self.influence.gear.module
+        off = np.minimum(self.arc, length - self.arc) / length
+        return np.interp(off, [_AT_END, _OFF_END], [1.0, 0.0])
 
     @property
     def strain_per_stress(self) -> float:
