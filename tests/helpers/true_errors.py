@@ -164,8 +164,8 @@ def planetary_set(rng):
         sun, ring = sun + 1, ring + 1
     shifts = [round(rng.uniform(0.1, 0.4), 3) for _ in range(2)]
     gears = {
-        name: {"teeth": z, "module": "3 mm", "profile_shift": x, "bore_radius": f"{rng.uniform(0.3, 0.6) * 1.5 * z:.3f} mm",
-               "face_width": "25 mm"}
+        name: {"teeth": z, "module": "3 mm", "profile_shift": x, "face_width": "25 mm",
+               "bore_radius": f"{rng.uniform(0.3, 0.6) * 1.5 * z:.3f} mm"}
         for name, z, x in (("sun", sun, shifts[0]), ("planet", planet, shifts[1]))
     }  # fmt: skip
     if rng.random() < 0.5:
@@ -173,7 +173,8 @@ def planetary_set(rng):
     part = {
         "sun": "sun", "planet": "planet", "planets": count, "fixed": "ring", "input": "sun", "speed": "1800 rpm",
         "torque": f"{10.0 ** rng.uniform(2.0, 3.2):.1f} N*m", "floating": ["sun"],
-        "speeds": {"start": f"{rng.uniform(50.0, 400.0):.1f} rpm", "stop": f"{rng.uniform(3e3, 9e3):.1f} rpm", "count": 31},
+        "speeds": {"start": f"{rng.uniform(50.0, 400.0):.1f} rpm", "stop": f"{rng.uniform(3e3, 9e3):.1f} rpm",
+                   "count": 31},
         "stiffness": {"pin": f"{10.0 ** rng.uniform(2.0, 3.0):.1f} N/um", "carrier": "150 N/um"},
         "pin_errors": {"tangential": [f"{one:.1f} um" for one in rng.uniform(-15.0, 15.0, count)]},
         "body": {"carrier": {"mass": "5 kg", "inertia": "0.02 kg*m^2"}},
@@ -183,7 +184,8 @@ def planetary_set(rng):
         gears["ring"] = {
             "internal": True, "teeth": ring, "module": "3 mm", "profile_shift": round(x, 3), "face_width": "25 mm",
             "cutter": {"teeth": 25, "addendum": 1.25, "tip_radius": 0.2}, "thickness_allowance": "80 um",
-            "tip_diameter": f"{3.0 * (ring - 2.0 * x - 1.8):.4f} mm", "rim_thickness": f"{rng.uniform(5.0, 20.0):.3f} mm",
+            "tip_diameter": f"{3.0 * (ring - 2.0 * x - 1.8):.4f} mm",
+            "rim_thickness": f"{rng.uniform(5.0, 20.0):.3f} mm",
         }  # fmt: skip
         part["ring"] = "ring"
     else:
