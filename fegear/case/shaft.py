@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.base.errors import GeometryError
+from fegear.base.errors import GeometryError, InputError
 from fegear.case.derived import keys_of
 from fegear.case.gear import MaterialPart
 from fegear.case.part import (
@@ -30,6 +30,7 @@ from fegear.shafts.life import LifeRating
 
 if TYPE_CHECKING:
     from fegear.shafts.bearing import Bearing
+    from fegear.shafts.catalogue_bearing import CatalogueBearing
 
 Torque = Annotated[float, quantity("torque")]
 
@@ -172,8 +173,35 @@ class BearingLifePart(_LifeKeys):  # type: ignore[misc]  # frozen by pydantic
         return LifeRating(self.dynamic_rating, self.kind, self.radial_factor, self.axial_factor, self.limit)
 
 
+class CataloguePart(Part):
+    """``catalogue = { kind = "ball", bore = "30 mm", outside_diameter = "62 mm", width = "16 mm", ... }``."""
+
+    kind: Literal["ball", "cylindrical", "tapered"] | None = Field(
+        default=None,
+        description="Deep groove or angular contact ball, cylindrical or tapered roller bearing. Default: that of the "
+        "designation.",
+    )
+    bore: PositiveLength | None = Field(default=None, description="Bore d. Default: that of the designation.")
+    outside_diameter: PositiveLength | None = Field(
+        default=None, description="Outside diameter D. Default: that of the designation."
+    )
+    width: PositiveLength | None = Field(
+        default=None, description="Width B (of the inner ring). Default: that of the designation."
+    )
+    dynamic_rating: PositiveForce | None = Field(
+        default=None, description="Basic dynamic load rating C. Default: that of `life`, if specified."
+    )
+    static_rating: PositiveForce | None = Field(default=None, description="Basic static load rating C_0.")
+    contact_angle: Angle | None = Field(
+        default=None,
+        description="Contact angle, positive if axial load towards +z is supported. Default: that of the designation, "
+        "14 deg for other tapered bearings, 0 for others.",
+    )
+    clearance: Length = Field(default=0.0, description="Diametral clearance as mounted; negative for preload.")
+
+
 class BearingPart(Part):
-    """A bearing: stiffness with or without clearance, or its elements; rigid radially where nothing is said."""
+    """A bearing: stiffness with or without clearance, its elements, or what a catalogue prints; rigid otherwise."""
 
     radial: StiffnessOrZero | None = Field(default=None, description="Radial stiffness. Default: rigid.")
     axial: StiffnessOrZero | None = Field(default=None, description="Axial stiffness. Default: none, unless `fixed`.")
@@ -185,6 +213,14 @@ class BearingPart(Part):
         default=None, description="5 x 5 stiffness matrix (x, y, z and tilt about x and y) in N, m, rad."
     )
     elements: RollingElementsPart | None = Field(default=None, description="Rolling elements, for nonlinear stiffness.")
+    designation: str | None = Field(
+        default=None,
+        description="Designation, such as 6206, 30206 or NU206: rolling elements are estimated from its dimensions "
+        "(ISO 15, ISO 355) and the ratings of `catalogue`.",
+    )
+    catalogue: CataloguePart | None = Field(
+        default=None, description="Dimensions and load ratings of a catalogue, from which rolling elements are estimated."
+    )
     housing_radial: StiffnessOrZero | None = Field(
         default=None, description="Radial stiffness of the bearing seat in the housing. Default: rigid."
     )
@@ -197,8 +233,15 @@ class BearingPart(Part):
     def _one_way(self) -> Self:
         stiffness = {"radial", "axial", "tilting", "fixed", "radial_clearance", "axial_clearance"}
         ways = [key for key in ("matrix", "elements") if getattr(self, key) is not None]
+        printed = [key for key in ("designation", "catalogue") if getattr(self, key) is not None]
+        ways += printed[:1]
         if len(ways) + bool(stiffness & self.given) > 1:
-            raise refuse("contradicts other keys", "specify stiffness, a matrix, or elements", key=ways[0])
+            raise refuse(
+                "contradicts other keys", "specify stiffness, a matrix, elements, or a designation or catalogue",
+                key=ways[0],
+            )  # fmt: skip
+        if printed:
+            self._refuse_printed()
         if self.matrix is not None and any(len(row) != 5 for row in self.matrix):
             raise refuse("must have 5 numbers per row", "specify five numbers per row", key="matrix", value="(rows)")
         if (self.radial_clearance or self.axial_clearance) and (self.radial is None or self.fixed):
@@ -212,8 +255,47 @@ class BearingPart(Part):
             raise refuse("is required for rollers", 'set roller_length = "12 mm"', key="elements.roller_length")
         return self
 
+    def _refuse_printed(self) -> None:
+        """Refuse a designation that none has, and dimensions from which no bearing can be estimated."""
+        if self.designation is None and self.catalogue is not None:
+            for key in ("kind", "bore", "outside_diameter", "width"):
+                if getattr(self.catalogue, key) is None:
+                    raise refuse("is required without a designation", "specify it", key=f"catalogue.{key}")
+        try:
+            printed = self.printed
+            assert printed is not None  # noqa: S101
+            _ = printed.inside
+        except InputError as error:
+            key = error.key if error.key == "designation" else f"catalogue.{error.key}"
+            if error.key == "dynamic_rating" and not (self.catalogue and self.catalogue.dynamic_rating):
+                key = "life.dynamic_rating"
+            raise refuse(error.rule, error.remedy, key=key, value=error.value) from None
+
+    @property
+    def printed(self) -> CatalogueBearing | None:
+        """What a catalogue prints of it: the keys given, the rest from the designation."""
+        from fegear.shafts.catalogue_bearing import CatalogueBearing
+        from fegear.shafts.designations import envelope_of
+
+        if self.designation is None and self.catalogue is None:
+            return None
+        known = envelope_of(self.designation) if self.designation is not None else None
+        said = self.catalogue or CataloguePart()
+        kind = said.kind or (known.kind if known else "ball")
+        angle = said.contact_angle
+        if angle is None and known is not None and kind == known.kind == "tapered":
+            angle = known.contact_angle
+        rated = said.dynamic_rating or (self.life.dynamic_rating if self.life else None)
+        bore, outside, width = (
+            getattr(said, key) or (getattr(known, key) if known else 0.0)
+            for key in ("bore", "outside_diameter", "width")
+        )
+        return CatalogueBearing(kind, bore, outside, width, rated, said.static_rating, angle, said.clearance)
+
     def build(self, *, mirrored: bool = False) -> Bearing:
         """Make the bearing."""
+        from dataclasses import replace
+
         import numpy as np
 
         from fegear.shafts.bearing import LooseBearing, StiffBearing, stiff
@@ -222,6 +304,9 @@ class BearingPart(Part):
         if self.matrix is not None:
             sign = np.array([1.0, 1.0, -1.0, -1.0, -1.0] if mirrored else [1.0] * 5)
             return StiffBearing(np.array(self.matrix) * np.outer(sign, sign))
+        if (printed := self.printed) is not None:
+            made = printed.inside
+            return replace(made, contact_angle=-made.contact_angle) if mirrored else made
         if self.elements is not None:
             e = self.elements
             return RollingBearing(

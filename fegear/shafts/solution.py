@@ -147,6 +147,19 @@ class Deflection:
         )  # fmt: skip
 
     @property
+    def radial_stiffness(self) -> Array:
+        """Slope of the radial force of every bearing along itself, shape (b,) [N/m]; NaN unloaded or rigid."""
+        found = np.full(len(self.rings), np.nan)
+        for n, (seat, ring, force) in enumerate(
+            zip(self.loaded.seats, self.rings, self.bearing_forces[:, :2], strict=True)
+        ):
+            size = float(np.hypot(*force))
+            if size > 0.0 and not seat.bearing.rigid[:2].any():
+                along = force / size
+                found[n] = along @ seat.bearing.reaction(ring)[1][:2, :2] @ along
+        return found
+
+    @property
     def balance(self) -> Array:
         """Sum of all forces, and of all moments about the left end, over the largest: round-off, shape (2,)."""
         at, loads = self._all

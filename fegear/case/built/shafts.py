@@ -173,6 +173,13 @@ def said_of_bodies(scene: Scene) -> tuple[str, ...]:
     return tuple(part for one in _stiffened(scene, mesh_places(scene)) for part in one.said)
 
 
+def said_of_bearings(scene: Scene) -> tuple[str, ...]:
+    """What is assumed of bearings on shafts of which only a catalogue is known."""
+    used = dict.fromkeys(place.bearing for part in scene.case.shaft.values() for place in part.bearings)
+    printed = {name: scene.case.bearing[name].printed for name in used if name in scene.case.bearing}
+    return tuple(f"bearing {name}: {one.said}" for name, one in printed.items() if one is not None)
+
+
 def _stiffened(scene: Scene, meshes: tuple[MeshPlace, ...]) -> list[StiffenedShaft]:
     from fegear.case.built.gears_on_shafts import stiffened
 

@@ -9,7 +9,7 @@ from fegear.base.effects import MISALIGNMENT, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
-from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bodies
+from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bearings, said_of_bodies
 from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
 from fegear.contact.wide.shaft_gaps import RIGID
@@ -43,7 +43,7 @@ class LoadedShaftsInputs:
     scales : tuple of float
         Loads over the nominal ones, ascending.
     said : tuple of str
-        What is assumed of gears on their shafts.
+        What is assumed of gears on their shafts, and of bearings of which only a catalogue is known.
     """
 
     gearbox: Gearbox
@@ -86,7 +86,7 @@ def _inputs(scene: Scene, _name: str) -> LoadedShaftsInputs:
     box = gearbox_of(scene)
     flanks = tuple(pair_spec(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
     scales = {1.0}.union(*(_scales(scene, mesh.pair) for mesh in box.meshes))
-    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), said_of_bodies(scene))
+    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), (*said_of_bodies(scene), *said_of_bearings(scene)))
 
 
 def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> LoadedShafts:
@@ -103,9 +103,9 @@ def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> Load
     return LoadedShafts(inputs.gearbox, states, tuple(one is not None for one in inputs.flanks))
 
 
-def _remarks(data: LoadedShafts, bodies: tuple[str, ...]) -> list[str]:
+def _remarks(data: LoadedShafts, assumed: tuple[str, ...]) -> list[str]:
     """What the model assumes and neglects, and what is not from a print at hand."""
-    said = [f"Shafts: {one}." for one in bodies]
+    said = [f"Shafts: {one}." for one in assumed]
     if any(one.shaft.gears for one in data.gearbox.shafts):
         said.append(
             "Shafts: gear bodies are treated as rigidly connected to the shaft over their seats and stiffen it in "

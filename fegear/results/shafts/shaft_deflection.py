@@ -12,7 +12,7 @@ from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
-from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage
 from fegear.results import forecasts
@@ -22,6 +22,7 @@ from fegear.shafts.solution import BearingLoads
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.engine.sheet.seen import Seen
@@ -32,10 +33,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DeflectionInputs:
-    """Names of the bearings and ratings of their lives, in the order of shafts and bearings."""
+    """Names of the bearings, ratings of their lives and errors of their stiffness, by shafts and bearings.
+
+    Errors are relative; None where what rolls in a bearing is not estimated from a catalogue.
+    """
 
     bearings: tuple[tuple[str, ...], ...]
     lives: tuple[tuple[LifeRating | None, ...], ...]
+    errors: tuple[tuple[float | None, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -46,13 +51,20 @@ class DeflectedShaft:
     loads: BearingLoads
     name: str = shown("", "name of the shaft", name="shaft")
     bearings: tuple[str, ...] = shown("", "name", name="bearing")
+    stiffness: Array | None = shown(
+        "N/um", "slope of the radial bearing force", name="radial_stiffness", default=None
+    )
+    stiffness_error: Array | None = None
 
 
 def _inputs(scene: Scene, _name: str) -> DeflectionInputs:
     names = tuple(tuple(one.bearing for one in part.bearings) for part in scene.case.shaft.values())
     known = scene.case.bearing
     lives = tuple(tuple(life.build() if (life := known[one].life) else None for one in row) for row in names)
-    return DeflectionInputs(names, lives)
+    errors = tuple(
+        tuple(printed.error if (printed := known[one].printed) else None for one in row) for row in names
+    )
+    return DeflectionInputs(names, lives, errors)
 
 
 def _compute(_inputs: DeflectionInputs, upstream: Upstream, _work: Work) -> LoadedShafts:
@@ -60,9 +72,16 @@ def _compute(_inputs: DeflectionInputs, upstream: Upstream, _work: Work) -> Load
 
 
 def _deflected(data: LoadedShafts, asked: DeflectionInputs) -> list[DeflectedShaft]:
-    """Every shaft."""
-    rows = zip(data.gearbox.names, data.nominal.bent, asked.bearings, asked.lives, strict=True)
-    return [DeflectedShaft(bent, bent.bearing_loads(lives), name, bearings) for name, bent, bearings, lives in rows]
+    """Every shaft; stiffness with its error where a bearing is estimated."""
+    estimated = any(error is not None for row in asked.errors for error in row)
+    found = []
+    for name, bent, bearings, lives, errors in zip(
+        data.gearbox.names, data.nominal.bent, asked.bearings, asked.lives, asked.errors, strict=True
+    ):
+        slope = bent.radial_stiffness if estimated else None
+        off = None if slope is None else slope * np.array([np.nan if one is None else one for one in errors])
+        found.append(DeflectedShaft(bent, bent.bearing_loads(lives), name, bearings, slope, off))
+    return found
 
 
 def _most_bent(seen: Seen) -> DeflectedShaft:
@@ -105,7 +124,11 @@ _SHEET = Sheet(
         ),
         Rows(
             "bearing_forces", "Forces and lives of the bearings",
-            ("name", "bearings", *(f"loads.{key}" for key in BearingLoads.__dataclass_fields__)), stacked="",
+            (
+                "name", "bearings", *(f"loads.{key}" for key in BearingLoads.__dataclass_fields__),
+                Cell("stiffness", error="stiffness_error"),
+            ),
+            stacked="",
         ),
     ),
     figures=(

@@ -1,0 +1,280 @@
+"""Bearings from what catalogues print: the envelope d, D, B and the ratings C_0 and C give what rolls inside, estimated.
+
+The elements run on the mean of bore and outside diameter. How many fit follows from the filling: balls go in by eccentric
+rings, which leaves them some 187 degrees of the pitch circle; rollers take some 0.83 of it, tapered ones 0.88. Their
+diameter is a share of the section (D - d)/2, their length a share of B; each rating given replaces one of these shares, so
+that the inside has exactly that rating (ISO 76, ISO 281). Of both given, C_0 does: a maker's C holds a factor b_m of steel
+and finish, which is then what is left.
+
+The error is that of the radial stiffness K without clearance, K ~ (Z c cos(alpha)^(n+1))^(1/n) for elements Q = c
+delta^n: each assumed share is moved to the ends of its range, and the squares of the larger changes are summed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from fegear.base.errors import RangeError
+from fegear.base.printed import percent
+from fegear.shafts.designations import Kind
+from fegear.shafts.load_ratings import RATING_FACTOR, dynamic_rating, static_rating
+from fegear.shafts.rolling_bearing import RollingBearing
+
+
+@dataclass(frozen=True)
+class Shares:
+    """What is assumed of the inside of a bearing, each relative to its envelope.
+
+    Parameters
+    ----------
+    filling : float
+        Of balls the angle that their centres span when put in [rad]; of rollers their share of the pitch circle.
+    thickness : float
+        Diameter of an element over the section (D - d)/2.
+    length : float
+        Length of a roller over the width of the inner ring along the roller.
+    grooves : float
+        Change of both groove radii from 0.52 and 0.53 of the ball's diameter.
+    rating_factor : float
+        b_m over that of ISO 281.
+    angle : float
+        Change of an assumed contact angle [rad].
+    """
+
+    filling: float
+    thickness: float
+    length: float
+    grooves: float = 0.0
+    rating_factor: float = 1.0
+    angle: float = 0.0
+
+
+#: What is assumed, and how far it may be off to either side: bearings of many makers lie within.
+_ASSUMED: dict[Kind, tuple[Shares, Shares]] = {
+    "ball": (Shares(math.radians(187.0), 0.605, 0.0, 0.0, 1.05), Shares(math.radians(12.0), 0.05, 0.0, 0.007, 0.15)),
+    "cylindrical": (Shares(0.83, 0.55, 0.6, 0.0, 1.1), Shares(0.07, 0.04, 0.1, 0.0, 0.2)),
+    "tapered": (Shares(0.88, 0.45, 0.68, 0.0, 1.1, 0.0), Shares(0.06, 0.06, 0.1, 0.0, 0.2, math.radians(3.0))),
+}
+#: Contact angle of tapered bearings of which none is given [rad].
+_TAPERED_ANGLE = math.radians(14.0)
+#: Elements are no smaller and no larger than these shares of the section, rollers no shorter and no longer than these of
+#: the width: beyond, rings would have no thickness, or rating and envelope are of two bearings.
+_THICKNESS, _LENGTH = (0.3, 0.85), (0.3, 1.0)
+#: b_m over that of ISO 281 within which C and C_0 can belong to one bearing.
+_FACTORS = (0.6, 1.8)
+
+
+@dataclass(frozen=True)
+class CatalogueBearing:
+    """A bearing of one row as a catalogue prints it.
+
+    Parameters
+    ----------
+    kind : {"ball", "cylindrical", "tapered"}
+    bore, outside_diameter, width : float
+        d, D and B [m].
+    dynamic_rating, static_rating : float, optional
+        C and C_0 [N].
+    contact_angle : float, optional
+        Of tapered bearings, or of angular contact ball bearings [rad].
+    clearance : float
+        Diametral, as mounted [m].
+
+    Raises
+    ------
+    RangeError
+        If the dimensions leave no bearing, or a rating does not belong to them.
+    """
+
+    kind: Kind
+    bore: float
+    outside_diameter: float
+    width: float
+    dynamic_rating: float | None = None
+    static_rating: float | None = None
+    contact_angle: float | None = None
+    clearance: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no envelope."""
+        if not 0.0 < self.bore < self.outside_diameter:
+            raise RangeError(
+                "outside_diameter", f"{self.outside_diameter * 1e3:.6g} mm",
+                f"must be larger than the bore of {self.bore * 1e3:.6g} mm", "correct one of them",
+            )  # fmt: skip
+        if not self.width > 0.0:
+            raise RangeError("width", f"{self.width * 1e3:.6g} mm", "must be positive")
+
+    @property
+    def said(self) -> str:
+        """What is assumed of its inside, and the error of the stiffness that comes of it."""
+        made, rollers = self.inside, self.kind != "ball"
+        size = f"{made.element_diameter * 1e3:.3g} mm" + (f" x {made.roller_length * 1e3:.3g} mm" if rollers else "")
+        rated = "C_0" if self.static_rating is not None else "C" if self.dynamic_rating is not None else ""
+        whence = f"{rated} and the envelope" if rated else "the envelope"
+        angle = f" at {math.degrees(made.contact_angle):.3g} deg" if made.contact_angle else ""
+        return (
+            f"{made.count} {'rollers' if rollers else 'balls'} of {size} on {self._pitch * 1e3:.4g} mm{angle} assumed, "
+            f"estimated from {whence}; error of its radial stiffness {percent(self.error)}, at a clearance of "
+            f"{self.clearance * 1e6:.3g} um"
+        )
+
+    @property
+    def _section(self) -> float:
+        return 0.5 * (self.outside_diameter - self.bore)
+
+    @property
+    def _pitch(self) -> float:
+        return 0.5 * (self.outside_diameter + self.bore)
+
+    @property
+    def given_angle(self) -> float:
+        """Contact angle, assumed for tapered bearings without one [rad]."""
+        assumed = _TAPERED_ANGLE if self.kind == "tapered" else 0.0
+        return assumed if self.contact_angle is None else self.contact_angle
+
+    @cached_property
+    def inside(self) -> RollingBearing:
+        """What rolls in it, estimated.
+
+        Raises
+        ------
+        RangeError
+            If a rating is not possible within the envelope.
+        """
+        made = self._with(_ASSUMED[self.kind][0])
+        self._refuse(made)
+        return made
+
+    @cached_property
+    def error(self) -> float:
+        """Estimated relative error of the radial stiffness at a load, without clearance."""
+        assumed, ranges = _ASSUMED[self.kind]
+        nominal = _stiffness(self.inside)
+        squares = 0.0
+        for name, width in vars(ranges).items():
+            if name == "filling" or not width or (name == "angle" and self.contact_angle is not None):
+                continue
+            moved = (
+                replace(assumed, **{name: getattr(assumed, name) + way * width}) for way in (-1.0, 1.0)
+            )  # the count stays: its own range follows
+            squares += max(abs(_stiffness(self._with(one, self.inside.count)) / nominal - 1.0) for one in moved) ** 2
+        few = max(1, round(ranges.filling / assumed.filling * self.inside.count))
+        counts = [n for n in (self.inside.count - few, self.inside.count + few) if n >= 3]
+        squares += max(abs(_stiffness(self._with(assumed, n)) / nominal - 1.0) for n in counts) ** 2
+        return math.sqrt(squares)
+
+    @cached_property
+    def rating_factor(self) -> float | None:
+        """b_m with which the inside has the dynamic rating given; None without one."""
+        if self.dynamic_rating is None:
+            return None
+        return self.dynamic_rating / dynamic_rating(self.inside, 1.0)
+
+    def _with(self, shares: Shares, count: int | None = None) -> RollingBearing:
+        """The inside with these shares, and so many elements; as many as fit without a number."""
+        if count is None:
+            # As many as the diameter leaves room for, which the rating makes of their number: settles at once or swings
+            # by one, where the smaller number stays.
+            count, found = 0, self._with(shares, self._fitting(shares, shares.thickness * self._section))
+            for _ in range(8):
+                fits = self._fitting(shares, found.element_diameter)
+                if fits == found.count or found.count == count:
+                    break
+                count, found = found.count, self._with(shares, fits)
+            return found
+        return self._ball(shares, count) if self.kind == "ball" else self._roller(shares, count)
+
+    def _fitting(self, shares: Shares, diameter: float) -> int:
+        half = math.asin(min(diameter / self._pitch, 0.9))
+        room = 1.0 + 0.5 * shares.filling / half if self.kind == "ball" else shares.filling * math.pi / half
+        return max(3, round(room))
+
+    def _ball(self, shares: Shares, count: int) -> RollingBearing:
+        def made(diameter: float) -> RollingBearing:
+            grooves = 0.52 + shares.grooves, 0.53 + shares.grooves
+            return RollingBearing(
+                "ball", count, diameter, self._pitch, self.given_angle + shares.angle, grooves, 0.0, self.clearance
+            )
+
+        most = 0.999 * self._pitch * math.sin(math.pi / count)
+        if self.static_rating is not None:
+            return made(_solved(lambda d: static_rating(made(d)), self.static_rating, most))
+        if self.dynamic_rating is not None:
+            factor = shares.rating_factor * RATING_FACTOR["ball"]
+            return made(_solved(lambda d: dynamic_rating(made(d), factor), self.dynamic_rating, most))
+        return made(min(shares.thickness * self._section, most))
+
+    def _roller(self, shares: Shares, count: int) -> RollingBearing:
+        angle = self.given_angle + shares.angle
+        diameter = min(shares.thickness * self._section, 0.999 * self._pitch * math.sin(math.pi / count))
+        whole = self.width / math.cos(angle)
+        unit = RollingBearing(
+            "roller", count, diameter, self._pitch, angle, roller_length=whole, clearance=self.clearance
+        )
+        share = shares.length
+        if self.static_rating is not None:
+            share = self.static_rating / static_rating(unit)
+        elif self.dynamic_rating is not None:
+            factor = shares.rating_factor * RATING_FACTOR["roller"]
+            share = (self.dynamic_rating / dynamic_rating(unit, factor)) ** (9.0 / 7.0)
+        return replace(unit, roller_length=share * whole)
+
+    def _refuse(self, made: RollingBearing) -> None:
+        """Refuse elements that have no room between the rings, and ratings that do not belong together."""
+        key = "dynamic_rating" if self.static_rating is None else "static_rating"
+        rating = getattr(self, key)
+        if self.kind == "ball":
+            share, (least, most) = made.element_diameter / self._section, _THICKNESS
+            across = made.element_diameter <= self.width
+            size = f"{made.count} balls of {made.element_diameter * 1e3:.3g} mm"
+        else:
+            share, (least, most) = made.roller_length * math.cos(made.contact_angle) / self.width, _LENGTH
+            across = True
+            size = (
+                f"{made.count} rollers of {made.element_diameter * 1e3:.3g} mm x {made.roller_length * 1e3:.3g} mm"
+            )
+        envelope = (
+            f"{self.bore * 1e3:.6g} x {self.outside_diameter * 1e3:.6g} x {self.width * 1e3:.6g} mm"
+        )
+        if not (least <= share <= most and across) and rating is not None:
+            raise RangeError(
+                key, f"{rating * 1e-3:.6g} kN",
+                f"is not possible within the envelope {envelope} (it requires {size})",
+                "correct the rating or the dimensions",
+            )  # fmt: skip
+        if not (least <= share <= most and across):
+            raise RangeError(
+                "width", f"{self.width * 1e3:.6g} mm",
+                f"is too small for the envelope {envelope} (typical are {size})", "specify static_rating",
+            )  # fmt: skip
+        if self.static_rating is not None and self.dynamic_rating is not None:
+            relative = self.dynamic_rating / of_iso if (of_iso := dynamic_rating(made)) else math.inf
+            if not _FACTORS[0] <= relative <= _FACTORS[1]:
+                raise RangeError(
+                    "dynamic_rating", f"{self.dynamic_rating * 1e-3:.6g} kN",
+                    f"contradicts static_rating = {self.static_rating * 1e-3:.6g} kN: with it, ISO 281 gives "
+                    f"{of_iso * 1e-3:.3g} kN",
+                    "correct one of them",
+                )  # fmt: skip
+
+
+def _solved(rating: Callable[[float], float], wanted: float, most: float) -> float:
+    """Diameter with which a bearing has a rating; the largest that fits where that is too small."""
+    from scipy.optimize import brentq
+
+    least = 1e-3 * most
+    if rating(most) <= wanted:
+        return most
+    if rating(least) >= wanted:
+        return least
+    return float(brentq(lambda d: rating(d) - wanted, least, most, xtol=1e-18, rtol=1e-14))
+
+
+def _stiffness(bearing: RollingBearing) -> float:
+    """Radial stiffness at a load without clearance, up to a factor that depends on the load only."""
+    n = bearing.exponent
+    return float((bearing.count * bearing.constant * math.cos(bearing.contact_angle) ** (n + 1.0)) ** (1.0 / n))
