@@ -219,7 +219,8 @@ class BearingPart(Part):
         "(ISO 15, ISO 355) and the ratings of `catalogue`.",
     )
     catalogue: CataloguePart | None = Field(
-        default=None, description="Dimensions and load ratings of a catalogue, from which rolling elements are estimated."
+        default=None,
+        description="Dimensions and load ratings of a catalogue, from which rolling elements are estimated.",
     )
     housing_radial: StiffnessOrZero | None = Field(
         default=None, description="Radial stiffness of the bearing seat in the housing. Default: rigid."

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, inline, listed, number, quantity, text
+from fegear.exchange.rexs.catalogue_bearings import catalogue_table, printed_bearing
 from fegear.exchange.rexs.places import BEARINGS
 from fegear.exchange.rexs.said import RIGID
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from fegear.exchange.rexs.model import Component
     from fegear.exchange.rexs.places import Place
     from fegear.exchange.rexs.said import Said
+    from fegear.shafts.catalogue_bearing import CatalogueBearing
 
 _BOTH, _NONE, _PLUS, _MINUS = "both_directions", "no_direction", "positive", "negative"
 #: Distance of axes that are one [m].
@@ -95,6 +97,8 @@ class Rows:
         Of each row whether it holds to -u in place of +u.
     about : str
         Where it comes from.
+    printed : CatalogueBearing, optional
+        From what it was estimated, if the model has dimensions and ratings only.
     """
 
     count: float
@@ -105,6 +109,7 @@ class Rows:
     grooves: tuple[float, float] | None
     ways: tuple[bool, ...]
     about: str
+    printed: CatalogueBearing | None = None
 
 
 def bearings_of(
@@ -275,10 +280,10 @@ def _clearance(said: Said, one: Component) -> float | None:
 
 
 def _rows(said: Said, one: Component) -> Rows | None:
-    """What rolls in a bearing, where its rows say it; a note where that is impossible or differs."""
+    """What rolls in a bearing, where its rows say it, else estimated; a note where that is impossible or differs."""
     rows = said.linked(one, "assembly", "assembly", "part", "rolling_bearing_row")
     if not rows:
-        return None
+        return _estimated(said, one, rows)
     row = rows[0]
     count = said.number(row, "number", "number_of_rolling_elements")
     pitch = said.number(row, "length", "reference_diameter")
@@ -287,7 +292,7 @@ def _rows(said: Said, one: Component) -> Rows | None:
     roller = "roller" in (said.word(one, "bearing_type") or "")
     length = said.number(rolls[0], "length", "length_of_rolling_element") if roller and rolls else None
     if not (count and pitch and diameter) or (roller and not length):
-        return None
+        return _estimated(said, one, rows)
     if count < 3.0 or count != round(count) or diameter > pitch * math.sin(math.pi / count):
         said.notes.append(
             f"{one.said}: {count:g} elements of {diameter * 1e3:g} mm do not fit on a pitch diameter of "
@@ -310,6 +315,23 @@ def _rows(said: Said, one: Component) -> Rows | None:
     )
 
 
+def _estimated(said: Said, one: Component, rows: Sequence[Component]) -> Rows | None:
+    """What rolls in a bearing of which the model prints dimensions and ratings."""
+    printed = printed_bearing(said, one, rows, _clearance(said, one) or 0.0)
+    if printed is None:
+        return None
+    inside = printed.inside
+    angle = inside.contact_angle
+    if angle and _holds(said, one) == _NONE:
+        said.notes.append(f"{one.said} is a non-locating bearing: contact angle of {math.degrees(angle):g} deg kept.")
+    length = None if inside.kind == "ball" else inside.roller_length
+    ways = _ways(said, one, rows, angle) if rows else (bool(angle) and _holds(said, one) == _MINUS,)
+    about = "dimensions and load ratings; rolling elements estimated"
+    return Rows(
+        inside.count, inside.element_diameter, inside.pitch_diameter, angle, length, None, ways, about, printed
+    )  # fmt: skip
+
+
 def _ways(said: Said, one: Component, rows: Sequence[Component], angle: float) -> tuple[bool, ...]:
     """Of each row whether it holds to -u: as it says, else as the bearing says, else every second one."""
     if len(rows) > 1:
@@ -327,7 +349,7 @@ def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
     one, rows = held.component, held.rows
     assert rows is not None  # noqa: S101
     clearance = _clearance(said, one)
-    value = inline(
+    value = catalogue_table(rows.printed) if rows.printed else inline(
         kind=text("ball" if rows.length is None else "roller"), count=number(rows.count),
         diameter=quantity(rows.diameter, "mm"), pitch_diameter=quantity(rows.pitch, "mm"),
         contact_angle=quantity(rows.angle, "deg") if rows.angle else None,
@@ -335,7 +357,7 @@ def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
         roller_length=quantity(rows.length, "mm") if rows.length else None,
         clearance=quantity(clearance, "um") if clearance else None,
     )  # fmt: skip
-    keys = [Key("elements", value, rows.about)]
+    keys = [Key("catalogue" if rows.printed else "elements", value, rows.about)]
     if rows.length is None and not fixed and _holds(said, one) == _NONE:
         keys.append(Key("housing_axial", quantity(_SLIDES, "N/um"), "axial_force_absorption: non-locating bearing"))
     return keys

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from fegear.exchange.rexs.written import Columns, Part, Written
 
 #: Keys that are written.
-_BEARING = frozenset({"radial", "axial", "tilting", "fixed", "radial_clearance", "elements", "life"})
+_BEARING = frozenset({"radial", "axial", "tilting", "fixed", "radial_clearance", "elements", "life",
+                      "designation", "catalogue"})  # fmt: skip
 #: Stiffness of a body that does not bend [Pa]: the import takes it for rigid.
 _RIGID = 1e16
 #: Every shaft lies along u; where v begins does not matter.
@@ -89,7 +90,8 @@ def _bearing(
     elements, life = part.elements, part.life
     detailed = "rolling_bearing_with_detailed_geometry"
     rolling = detailed if elements else "rolling_bearing_with_catalog_geometry"
-    plain = elements is None and life is None and not part.radial_clearance
+    printed = part.printed
+    plain = elements is None and printed is None and life is None and not part.radial_clearance
     made = written.part("concept_bearing" if plain else rolling, seat.bearing)
     made.say("length", u_coordinate_on_shaft_inner_side=seat.at, u_coordinate_on_shaft_outer_side=outer_at)
     made.word(axial_force_absorption=_holds(part, reversed_=seat.reversed), radial_force_absorption=part.radial != 0.0)
@@ -98,7 +100,18 @@ def _bearing(
     if part.radial_clearance:
         made.say("small length", operating_radial_bearing_clearance=2.0 * part.radial_clearance)
     kind = (elements or life).kind if elements or life else None  # type: ignore[union-attr]
-    made.word(bearing_type=_TYPES.get((kind or "", bool(elements and elements.contact_angle))))
+    angle = elements.contact_angle if elements else 0.0
+    if printed is not None:
+        kind, angle = printed.inside.kind, printed.given_angle
+        made.say("length", inner_diameter=printed.bore, outer_diameter=printed.outside_diameter, width=printed.width)
+        made.say("small length", operating_radial_bearing_clearance=printed.clearance or None)
+        made.say("large force", radial_static_load_rating=printed.static_rating)
+        made.word(catalogue_designation=part.designation)
+        if life is None:
+            made.say("large force", radial_dynamic_load_rating=printed.dynamic_rating)
+        row = written.part("rolling_bearing_row").say("angle", pressure_angle=abs(angle))
+        written.relate("ordered_assembly", 1, assembly=made, part=row)
+    made.word(bearing_type=_TYPES.get((kind or "", bool(angle))))
     if life is not None:
         made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
         given = life.axial_factor or life.limit
@@ -127,11 +140,15 @@ def _bearing(
 
 def _holds(part: BearingPart, *, reversed_: bool) -> str:
     """Which way a bearing holds its shaft along the axis."""
-    if part.housing_axial is not None and part.elements is not None:
+    printed, elements = part.printed, part.elements
+    rolls = printed is not None or elements is not None
+    angle = printed.given_angle if printed else elements.contact_angle if elements else 0.0
+    balls = (printed.kind if printed else elements.kind if elements else "") == "ball"
+    if part.housing_axial is not None and rolls:
         return "no_direction"  # it slides in its seat, or nearly
-    if part.elements is not None and part.elements.contact_angle:
-        return "negative" if reversed_ != (part.elements.contact_angle < 0.0) else "positive"
-    along = part.fixed or bool(part.axial) or (part.elements is not None and part.elements.kind == "ball")
+    if angle:
+        return "negative" if reversed_ != (angle < 0.0) else "positive"
+    along = part.fixed or bool(part.axial) or balls
     return "both_directions" if along else "no_direction"
 
 

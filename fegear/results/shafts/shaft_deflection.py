@@ -51,9 +51,7 @@ class DeflectedShaft:
     loads: BearingLoads
     name: str = shown("", "name of the shaft", name="shaft")
     bearings: tuple[str, ...] = shown("", "name", name="bearing")
-    stiffness: Array | None = shown(
-        "N/um", "slope of the radial bearing force", name="radial_stiffness", default=None
-    )
+    stiffness: Array | None = shown("N/um", "slope of the radial bearing force", name="radial_stiffness", default=None)
     stiffness_error: Array | None = None
 
 
@@ -61,9 +59,7 @@ def _inputs(scene: Scene, _name: str) -> DeflectionInputs:
     names = tuple(tuple(one.bearing for one in part.bearings) for part in scene.case.shaft.values())
     known = scene.case.bearing
     lives = tuple(tuple(life.build() if (life := known[one].life) else None for one in row) for row in names)
-    errors = tuple(
-        tuple(printed.error if (printed := known[one].printed) else None for one in row) for row in names
-    )
+    errors = tuple(tuple(printed.error if (printed := known[one].printed) else None for one in row) for row in names)
     return DeflectionInputs(names, lives, errors)
 
 

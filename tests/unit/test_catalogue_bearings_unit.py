@@ -1,0 +1,113 @@
+"""Bearings by designation and from catalogues: what is read, what is refused and what a model of REXS prints of them."""
+
+from __future__ import annotations
+
+import pytest
+from rexs_cases import case, imported, same, text_of, there_and_back
+from rexs_models import part, two_stages
+
+from fegear.base.errors import InputError, RangeError
+from fegear.case.shaft import BearingPart
+from fegear.shafts.catalogue_bearing import CatalogueBearing
+from fegear.shafts.designations import KNOWN, envelope_of
+
+
+@pytest.mark.parametrize(
+    ("designation", "known"),
+    [("6206", "6206"), ("6305-2Z", "6305"), ("6206ZZ", "6206"), ("6000/C3", "6000"), ("FAG 30206-A", "30206"),
+     ("NUP204-E-XL-TVP2", "NUP204"), ("nu 2210 ecp", "NU2210"), (" NJ310.M1 ", "NJ310"), ("6303-C", "6303")],
+)  # fmt: skip
+def test_designations_are_read_with_what_makers_add(designation, known):
+    assert envelope_of(designation) is KNOWN[known]
+
+
+def test_dimensions_by_designation():
+    sizes = {
+        name: tuple(round(1e3 * one) for one in (k.bore, k.outside_diameter, k.width)) for name, k in KNOWN.items()
+    }
+    assert sizes["6206"] == sizes["30206"] == sizes["NU206"] == (30, 62, 16)
+    assert (sizes["32206"], sizes["6308"], sizes["6010"], sizes["6203"]) == (
+        (30, 62, 20), (40, 90, 23), (50, 80, 16), (17, 40, 12),
+    )  # fmt: skip
+    for one in KNOWN.values():  # each can be estimated, with an error that is of use
+        made = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, contact_angle=one.contact_angle)
+        assert 0.05 < made.error < 0.3
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("6026", "6206"), ("NUU206", "NU206"), ("33206", "32306"), ("62O6", "6")])
+def test_a_typo_suggests_a_designation(typed, meant):
+    with pytest.raises(InputError, match=rf'is not a known designation; did you mean "{meant}'):
+        envelope_of(typed)
+
+
+BALL = {"bore": 0.03, "outside_diameter": 0.062, "width": 0.016}
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "said"),
+    [("ball", {**BALL, "static_rating": 90e3}, r"static_rating = 90 kN: is not possible within the envelope 30 x 62 x 16"),
+     ("ball", {**BALL, "static_rating": 1e3}, "static_rating = 1 kN: is not possible within the envelope"),
+     ("cylindrical", {**BALL, "static_rating": 90e3}, "it requires 14 rollers of 8.8 mm x 20"),
+     ("ball", {**BALL, "static_rating": 11.2e3, "dynamic_rating": 60e3}, "contradicts static_rating = 11.2 kN"),
+     ("tapered", {**BALL, "dynamic_rating": 200e3}, "dynamic_rating = 200 kN: is not possible within the envelope"),
+     ("ball", {**BALL, "bore": 0.07}, "must be larger than the bore of 70 mm")],
+)  # fmt: skip
+def test_data_that_contradict_each_other_are_one_sentence(kind, given, said):
+    with pytest.raises(RangeError, match=said) as error:
+        _ = CatalogueBearing(kind, **given).inside
+    assert "\n" not in str(error.value)
+
+
+def test_a_bearing_of_a_case_takes_what_is_missing_from_its_designation_and_its_life():
+    one = BearingPart.model_validate({"designation": "30206", "catalogue": {"static_rating": "49 kN"},
+                                      "life": {"dynamic_rating": "46 kN", "kind": "roller"}})  # fmt: skip
+    printed = one.printed
+    assert (printed.kind, printed.static_rating, printed.dynamic_rating) == ("tapered", 49e3, 46e3)
+    assert one.build().contact_angle == -one.build(mirrored=True).contact_angle == pytest.approx(0.24498, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [({"designation": "6206", "radial": "20 N/um"}, "contradicts other keys"),
+     ({"catalogue": {"kind": "ball", "bore": "30 mm", "width": "16 mm"}}, "is required without a designation"),
+     ({"designation": "6026"}, "is not a known designation"),
+     ({"designation": "6206", "life": {"dynamic_rating": "190 kN"}}, "is not possible within the envelope")],
+)  # fmt: skip
+def test_a_bearing_of_a_case_is_refused(given, said):
+    with pytest.raises(ValueError, match=said):
+        BearingPart.model_validate(given)
+
+
+def catalogued(**changed: object) -> dict:
+    """Two stages whose first bearing is given by what a catalogue prints, as rigid as programs write it."""
+    given = {"bearing_type": "radial_grooved_ball_bearing", "axial_force_absorption": "both_directions",
+             "inner_diameter": (25.0, "mm"), "outer_diameter": (62.0, "mm"), "width": (17.0, "mm"),
+             "dynamic_capacity": (22.4, "kN"), "static_capacity": (11.4, "kN"), "name": "6305-2Z",
+             "radial_stiffness": (1e23, "N / m"), "u_coordinate_on_shaft_inner_side": (10.0, "mm"), **changed}  # fmt: skip
+    tree = two_stages()
+    made = part(51, "rolling_bearing_with_catalog_geometry", "bearing 51",
+                **{key: one for key, one in given.items() if one is not None and key != "name"})  # fmt: skip
+    made["attributes"].append({"id": "name", "value": given["name"]})
+    return {**tree, "components": [made if one["id"] == 51 else one for one in tree["components"]]}
+
+
+def test_a_bearing_of_a_model_that_prints_ratings_is_not_rigid():
+    found = case(catalogued())["bearing"]["bearing_51"]
+    assert found["catalogue"] == {
+        "kind": "ball", "bore": "25 mm", "outside_diameter": "62 mm", "width": "17 mm", "dynamic_rating": "22.4 kN",
+        "static_rating": "11.4 kN",
+    }  # fmt: skip
+    named = case(catalogued(inner_diameter=None, outer_diameter=None, width=None))["bearing"]["bearing_51"]
+    assert named["catalogue"] == found["catalogue"]
+    soft = case(catalogued(radial_stiffness=(2e8, "N / m")))["bearing"]["bearing_51"]
+    assert soft["radial"] == "200 N/um"
+    text = " ".join(text_of(catalogued(static_capacity=(114.0, "kN"))).replace("\n#", " ").split())
+    assert "rolling elements not estimated" in text
+    assert "is not possible within the envelope" in text
+
+
+def test_a_catalogue_bearing_goes_to_rexs_and_back():
+    scene = imported(catalogued())
+    again, _ = there_and_back(scene)
+    first, second = (one.case.bearing["bearing_51"].printed for one in (scene, again))
+    assert same(first, second)
