@@ -220,7 +220,7 @@ class BearingPart(Part):
     )
     catalogue: CataloguePart | None = Field(
         default=None,
-        description="Dimensions and load ratings of a catalogue, from which rolling elements are estimated.",
+        description="Dimensions and load ratings of a catalogue, to estimate rolling elements from.",
     )
     housing_radial: StiffnessOrZero | None = Field(
         default=None, description="Radial stiffness of the bearing seat in the housing. Default: rigid."

@@ -1,10 +1,11 @@
-"""Bearings from what catalogues print: the envelope d, D, B and the ratings C_0 and C give what rolls inside, estimated.
+"""Bearings from what catalogues print: the envelope d, D, B and the ratings C_0 and C give an estimate of the inside.
 
-The elements run on the mean of bore and outside diameter. How many fit follows from the filling: balls go in by eccentric
-rings, which leaves them some 187 degrees of the pitch circle; rollers take some 0.83 of it, tapered ones 0.88. Their
-diameter is a share of the section (D - d)/2, their length a share of B. C_0 of ISO 76 replaces the diameter of balls or the
-length of rollers, so that the inside has exactly that rating. A maker's C holds a factor b_m of steel and finish: with C_0
-it makes b_m what is left of ISO 281; without, it gives the diameter of balls; of rollers it says less than the envelope.
+The elements run on the mean of bore and outside diameter. How many fit follows from the filling: balls are put in
+between eccentric rings, where their centres span some 187 degrees; rollers take some 0.83 of the pitch circle, tapered
+ones 0.88. Their diameter is a share of the section (D - d)/2, their length a share of B. C_0 of ISO 76 replaces the
+diameter of balls or the length of rollers, so that the inside has exactly that rating. A maker's C holds a factor b_m
+of steel and finish: with C_0, b_m is what is left of ISO 281; without, C gives the diameter of balls; of rollers it
+says less than the envelope.
 
 The error is that of the radial stiffness K without clearance, K ~ (Z c cos(alpha)^(n+1))^(1/n) for elements Q = c
 delta^n: each assumed share is moved to the ends of its range; 1.5 times the root of the sum of squares of the larger
@@ -61,8 +62,8 @@ _ASSUMED: dict[Kind, tuple[Shares, Shares]] = {
 }
 #: Contact angle of tapered bearings of which none is given [rad].
 _TAPERED_ANGLE = math.radians(14.0)
-#: Elements are no smaller and no larger than these shares of the section, rollers no shorter and no longer than these of
-#: the width: beyond, rings would have no thickness, or rating and envelope are of two bearings.
+#: Elements are no smaller and no larger than these shares of the section, rollers no shorter and no longer than these
+#: of the width: beyond, rings would have no thickness, or rating and envelope are of two bearings.
 _THICKNESS, _LENGTH = (0.3, 0.85), (0.3, 1.0)
 #: Error over the root of the sum of squares of the changes.
 _COVERING = 1.5
@@ -253,7 +254,7 @@ class CatalogueBearing:
         if not _FACTORS[0] <= self.dynamic_rating / of_iso <= _FACTORS[1]:
             raise RangeError(
                 "dynamic_rating", f"{self.dynamic_rating * 1e-3:.6g} kN",
-                f"contradicts static_rating = {self.static_rating * 1e-3:.6g} kN: with it, ISO 281 gives {of_iso * 1e-3:.3g} kN"
+                f"contradicts static_rating = {self.static_rating * 1e-3:.6g} kN: ISO 281 gives {of_iso * 1e-3:.3g} kN"
                 if self.static_rating is not None
                 else f"is not possible within the envelope {envelope} (ISO 281 gives about {of_iso * 1e-3:.3g} kN)",
                 "correct one of them",

@@ -104,7 +104,7 @@ def _known() -> dict[str, Envelope]:
 
 #: All designations, without prefixes and suffixes.
 KNOWN = _known()
-#: Letters, digits, then whatever a maker adds (cage, seals, clearance), set off by a letter, a dash, a slash or a space.
+#: Letters, digits, then what a maker adds (cage, seals, clearance), set off by a letter, dash, slash or space.
 _FORM = re.compile(r"^(?:(?:SKF|FAG|INA|NSK|NTN|SNR|NACHI|KOYO|TIMKEN)\s+)?([A-Z]{0,3})\s?(\d{3,5})(?=$|[\s\-/.A-Z])")
 
 

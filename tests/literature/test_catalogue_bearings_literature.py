@@ -2,7 +2,7 @@
 
 Sources: number, diameter and pitch diameter of the balls of 6205 and 6203 from the bearing data center of Case Western
 Reserve University (0.3126 and 0.2656 in), of UER204 from Wang, Lei, Li, Li, IEEE Transactions on Reliability 69 (2020)
-401-412 (its inside is that of a 6204), of a bearing of the envelope of 6305 from the public repository minzhun/ISO16281.
+401-412 (its inside is that of a 6204), of a bearing with the envelope of 6305 from the repository minzhun/ISO16281.
 C and C_0 of 6205, 6305 as printed in the model of a gearbox published with REXS; of 6203 and 6204 of the catalogues.
 """
 

@@ -1,4 +1,4 @@
-"""Bearings of a REXS model of which it prints what catalogues do: dimensions and load ratings, nothing of the inside."""
+"""Bearings of a REXS model that prints of them what catalogues do: dimensions and load ratings."""
 
 from __future__ import annotations
 
