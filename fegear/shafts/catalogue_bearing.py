@@ -4,12 +4,16 @@ The elements run on the mean of bore and outside diameter. How many fit follows 
 between eccentric rings, where their centres span some 187 degrees; rollers take some 0.83 of the pitch circle, tapered
 ones 0.88. Their diameter is a share of the section (D - d)/2, their length a share of B. C_0 of ISO 76 replaces the
 diameter of balls or the length of rollers, so that the inside has exactly that rating. A maker's C holds a factor b_m
-of steel and finish: with C_0, b_m is what is left of ISO 281; without, C gives the diameter of balls; of rollers it
-says less than the envelope.
+of steel and finish: with C_0, b_m is what is left of ISO 281; without, C replaces what C_0 would, with an assumed b_m
+(not of tapered bearings, where it says less than the envelope).
 
 The error is that of the radial stiffness K without clearance, K ~ (Z c cos(alpha)^(n+1))^(1/n) for elements Q = c
 delta^n: each assumed share is moved to the ends of its range; 1.5 times the root of the sum of squares of the larger
 changes covers 99 of 100 bearings whose shares are spread evenly over their ranges.
+
+Shares of cylindrical bearings follow the raceway diameters F_w and E_w, C_0 and C that NTN prints for NU 2, 22, 3, 23
+up to a bore of 45 mm (32 bearings of two designs); those above 45 mm, and ball bearings by C_0 and f_0 of the same
+catalogue, try the estimate: see the tests. Grooves are printed nowhere; what rolls in tapered bearings was not found.
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 from fegear.base.errors import RangeError
 from fegear.base.printed import percent
@@ -41,7 +46,7 @@ class Shares:
     grooves : float
         Change of both groove radii from 0.52 and 0.53 of the ball's diameter.
     rating_factor : float
-        b_m over that of ISO 281, of balls without C_0.
+        b_m over that of ISO 281, where C is known and C_0 is not.
     angle : float
         Change of an assumed contact angle [rad].
     """
@@ -57,8 +62,8 @@ class Shares:
 #: What is assumed, and how far it may be off to either side: bearings of many makers lie within.
 _ASSUMED: dict[Kind, tuple[Shares, Shares]] = {
     "ball": (Shares(math.radians(187.0), 0.605, 0.0, 0.0, 1.05), Shares(math.radians(12.0), 0.05, 0.0, 0.007, 0.15)),
-    "cylindrical": (Shares(0.83, 0.55, 0.6), Shares(0.07, 0.04, 0.1)),
-    "tapered": (Shares(0.88, 0.45, 0.68), Shares(0.06, 0.06, 0.1, angle=math.radians(3.0))),
+    "cylindrical": (Shares(0.83, 0.52, 0.55, 0.0, 1.15), Shares(0.07, 0.05, 0.16, 0.0, 0.15)),
+    "tapered": (Shares(0.88, 0.45, 0.67), Shares(0.07, 0.1, 0.13, angle=math.radians(3.0))),
 }
 #: Contact angle of tapered bearings of which none is given [rad].
 _TAPERED_ANGLE = math.radians(14.0)
@@ -117,14 +122,20 @@ class CatalogueBearing:
         """What is assumed of its inside, and the error of the stiffness that comes of it."""
         made, rollers = self.inside, self.kind != "ball"
         size = f"{made.element_diameter * 1e3:.3g} mm" + (f" x {made.roller_length * 1e3:.3g} mm" if rollers else "")
-        rated = "C_0" if self.static_rating is not None else "C" if self.dynamic_rating and not rollers else ""
-        whence = f"{rated} and the envelope" if rated else "the envelope"
+        whence = {"static_rating": "C_0 and the envelope", "dynamic_rating": "C and the envelope", None: "the envelope"}
         angle = f" at {math.degrees(made.contact_angle):.3g} deg" if made.contact_angle else ""
         return (
             f"{made.count} {'rollers' if rollers else 'balls'} of {size} on {self._pitch * 1e3:.4g} mm{angle} assumed, "
-            f"estimated from {whence}; error of its radial stiffness {percent(self.error)}, at a clearance of "
-            f"{self.clearance * 1e6:.3g} um"
+            f"estimated from {whence[self._rating]}; error of its radial stiffness {percent(self.error)}, "
+            f"at a clearance of {self.clearance * 1e6:.3g} um"
         )
+
+    @property
+    def _rating(self) -> Literal["static_rating", "dynamic_rating"] | None:
+        """The rating that the inside is made to have."""
+        if self.static_rating is not None:
+            return "static_rating"
+        return "dynamic_rating" if self.dynamic_rating is not None and self.kind != "tapered" else None
 
     @property
     def _section(self) -> float:
@@ -222,12 +233,14 @@ class CatalogueBearing:
         share = shares.length
         if self.static_rating is not None:
             share = self.static_rating / static_rating(unit)
+        elif self.dynamic_rating is not None and self._rating:
+            factor = shares.rating_factor * RATING_FACTOR["roller"]
+            share = (self.dynamic_rating / dynamic_rating(unit, factor)) ** (9.0 / 7.0)  # C ~ L^(7/9)
         return replace(unit, roller_length=share * whole)
 
     def _refuse(self, made: RollingBearing) -> None:
         """Refuse elements that have no room between the rings, and ratings that do not belong together."""
-        key = "dynamic_rating" if self.static_rating is None else "static_rating"
-        rating = getattr(self, key) if key == "static_rating" or self.kind == "ball" else None
+        key = self._rating
         if self.kind == "ball":
             share, (least, most) = made.element_diameter / self._section, _THICKNESS
             across = made.element_diameter <= self.width
@@ -237,9 +250,9 @@ class CatalogueBearing:
             across = True
             size = f"{made.count} rollers of {made.element_diameter * 1e3:.3g} mm x {made.roller_length * 1e3:.3g} mm"
         envelope = f"{self.bore * 1e3:.6g} x {self.outside_diameter * 1e3:.6g} x {self.width * 1e3:.6g} mm"
-        if not (least <= share <= most and across) and rating is not None:
+        if not (least <= share <= most and across) and key is not None:
             raise RangeError(
-                key, f"{rating * 1e-3:.6g} kN",
+                key, f"{getattr(self, key) * 1e-3:.6g} kN",
                 f"is not possible within the envelope {envelope} (it requires {size})",
                 "correct the rating or the dimensions",
             )  # fmt: skip
@@ -248,7 +261,7 @@ class CatalogueBearing:
                 "width", f"{self.width * 1e3:.6g} mm",
                 f"is too small for the envelope {envelope} (typical are {size})", "specify static_rating",
             )  # fmt: skip
-        if self.dynamic_rating is None or (self.static_rating is None and self.kind == "ball"):
+        if self.dynamic_rating is None or key == "dynamic_rating":
             return
         of_iso = dynamic_rating(made)
         if not _FACTORS[0] <= self.dynamic_rating / of_iso <= _FACTORS[1]:

@@ -2,7 +2,8 @@
 
 Balls: C_0 = f_0 Z D_w^2 cos(alpha), C = b_m f_c cos(alpha)^0.7 Z^(2/3) D_w^1.8. Rollers: C_0 = 44 (1 - gamma) Z L D_w
 cos(alpha), C = b_m f_c (L cos(alpha))^(7/9) Z^(3/4) D_w^(29/27), all in N and mm, with gamma = D_w cos(alpha)/D_pw. The
-factors are tabulated over gamma; between the rows they are interpolated.
+factors are tabulated over gamma; between the rows they are interpolated. Every number of the tables, b_m and the limit
+of 25.4 mm were checked against the text of GOST 18855-2013 (identical to ISO 281:2007) and of GOST 18854-2013 (ISO 76).
 """
 
 from __future__ import annotations

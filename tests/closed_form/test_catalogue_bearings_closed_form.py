@@ -1,4 +1,4 @@
-"""Bearings estimated from catalogues: ratings of ISO 76 and ISO 281 are kept, known insides lie within the error."""
+"""Bearings estimated from catalogues: ratings of ISO 76 and ISO 281 are kept, drawn insides lie within the error."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 from fegear.shafts.catalogue_bearing import CatalogueBearing
+from fegear.shafts.designations import KNOWN as KNOWN_DESIGNATIONS
 from fegear.shafts.load_ratings import dynamic_rating, static_rating
 from fegear.shafts.rolling_bearing import RollingBearing
 
@@ -38,8 +39,9 @@ def test_the_inside_has_both_ratings(printed):
     assert printed.rating_factor is not None
     assert dynamic_rating(printed.inside, printed.rating_factor) == pytest.approx(printed.dynamic_rating, rel=1e-9)
     only = replace(printed, static_rating=None)
-    if printed.kind == "ball":
-        assert dynamic_rating(only.inside, 1.3 * 1.05) == pytest.approx(printed.dynamic_rating, rel=1e-9)
+    if printed.kind != "tapered":
+        usual = 1.3 * 1.05 if printed.kind == "ball" else 1.1 * 1.15
+        assert dynamic_rating(only.inside, usual) == pytest.approx(printed.dynamic_rating, rel=1e-9)
 
 
 @pytest.mark.parametrize("printed", PRINTED)
@@ -67,48 +69,52 @@ def test_a_higher_static_rating_is_a_larger_element_and_less_is_known_without_on
 
 
 def known_insides() -> list[tuple[CatalogueBearing, RollingBearing]]:
-    """Bearings whose inside is drawn first; a catalogue prints their ratings by ISO 76 and ISO 281."""
-    rng, found = np.random.default_rng(76281), []
-    for kind, bore, outside, width in (
-        ("ball", 15, 35, 11), ("ball", 25, 52, 15), ("ball", 30, 72, 19), ("ball", 50, 80, 16), ("ball", 60, 130, 31),
-        ("ball", 100, 180, 34), ("cylindrical", 20, 47, 14), ("cylindrical", 50, 110, 27), ("cylindrical", 80, 140, 26),
-        ("cylindrical", 100, 215, 47), ("tapered", 30, 62, 16), ("tapered", 40, 80, 23), ("tapered", 60, 130, 31),
-    ):  # fmt: skip
-        for _ in range(3):
-            d, large, b = bore * 1e-3, outside * 1e-3, width * 1e-3
-            pitch = 0.5 * (d + large) * rng.uniform(0.995, 1.015)
-            angle = math.radians(rng.uniform(11.0, 16.5)) if kind == "tapered" else 0.0
-            if kind == "ball":
-                size = 0.5 * (large - d) * rng.uniform(0.57, 0.64)
-                count = round(1 + 0.5 * math.radians(rng.uniform(180.0, 196.0)) / math.asin(size / pitch))
-                grooves = rng.uniform(0.514, 0.526), rng.uniform(0.524, 0.536)
-                made = RollingBearing("ball", count, size, pitch, 0.0, grooves)
-            else:
-                size = 0.5 * (large - d) * (rng.uniform(0.52, 0.58) if kind == "cylindrical" else rng.uniform(0.4, 0.5))
-                filling = rng.uniform(0.77, 0.89) if kind == "cylindrical" else rng.uniform(0.83, 0.92)
-                count = math.floor(filling * math.pi / math.asin(size / pitch))
-                length = b * rng.uniform(0.53, 0.67) + (0.1 * b if kind == "tapered" else 0.0)
-                made = RollingBearing("roller", count, size, pitch, angle, roller_length=length)
-            printed = CatalogueBearing(
-                kind, d, large, b, dynamic_rating(made), static_rating(made), angle if kind == "tapered" else None
-            )
-            found.append((printed, made))
+    """36 bearings whose inside is drawn by walls, gaps and rims, not by the shares that the estimate assumes.
+
+    The rings leave the room for elements; balls are put in until the last one just passes, rollers stand a cage bar
+    apart; rims and chamfers shorten rollers. A catalogue prints their ratings by ISO 76 and ISO 281.
+    """
+    rng, found = np.random.default_rng(20), []
+    for name in rng.choice(sorted(KNOWN_DESIGNATIONS), 36, replace=False):
+        k = KNOWN_DESIGNATIONS[name]
+        section = 0.5 * (k.outside_diameter - k.bore)
+        angle = k.contact_angle + (math.radians(rng.normal(0.0, 0.4)) if k.kind == "tapered" else 0.0)
+        thin, thick = {"ball": (0.18, 0.215), "cylindrical": (0.2, 0.27), "tapered": (0.22, 0.33)}[k.kind]
+        inner, outer = rng.uniform(thin, thick, 2) * section
+        size = (section - inner - outer) * math.cos(angle)
+        pitch = k.bore + 2.0 * inner + size / math.cos(angle)
+        if k.kind == "ball":
+            count = 1 + round(0.5 * math.radians(rng.uniform(175.0, 200.0)) / math.asin(size / pitch))
+            grooves = tuple(rng.normal(0.525, 0.003, 2))
+            made = RollingBearing("ball", count, size, pitch, 0.0, grooves)
+        else:
+            bar = size * (rng.uniform(0.03, 0.14) if k.kind == "tapered" else rng.uniform(0.12, 0.3))
+            rims = rng.uniform(0.22, 0.35) if k.kind == "tapered" else rng.uniform(0.33, 0.55)
+            length = (1.0 - rims) * k.width / math.cos(angle)
+            count = int(math.pi / math.asin((size + bar) / pitch))
+            made = RollingBearing("roller", count, size, pitch, angle, roller_length=length)
+        steel = 1.3 * rng.uniform(0.95, 1.15) if k.kind == "ball" else 1.1 * rng.uniform(1.05, 1.25)
+        printed = CatalogueBearing(
+            k.kind, k.bore, k.outside_diameter, k.width, dynamic_rating(made, steel), static_rating(made),
+            k.contact_angle if k.kind == "tapered" else None,
+        )  # fmt: skip
+        found.append((printed, made))
     return found
 
 
-KNOWN = known_insides()
+DRAWN = known_insides()
 
 
 @pytest.mark.parametrize("without", [(), ("static_rating",), ("static_rating", "dynamic_rating")])
-def test_the_stiffness_of_known_insides_is_within_the_stated_error(without):
-    """39 bearings: with C_0, with C only, from the envelope only; the errors stated are of use, below 25 %."""
+def test_the_stiffness_of_drawn_insides_is_within_the_stated_error(without):
+    """With C_0, with C only, from the envelope only."""
     shares = []
-    for printed, made in KNOWN:
+    for printed, made in DRAWN:
         estimated = replace(printed, **dict.fromkeys(without))
         load = 0.05 * static_rating(made)
         off = stiffness(estimated.inside, load) / stiffness(made, load) - 1.0
-        assert estimated.error < 0.25
+        assert estimated.error < 0.42
         shares.append(abs(off) / estimated.error)
-    assert len(shares) == 39
-    assert max(shares) <= 1.0
-    assert np.median(shares) > 0.05  # no error stated out of all proportion
+    assert np.mean(np.array(shares) <= 1.0) >= 0.95
+    assert max(shares) < 1.25
+    assert np.median(shares) > 0.1  # no error stated out of all proportion
