@@ -96,8 +96,9 @@ def printed_balls() -> list[tuple[CatalogueBearing, RollingBearing]]:
         known = envelope_of(name)
         pitch = 0.5 * (known.bore + known.outside_diameter)
 
-        sizes = {count: math.sqrt(c_0 / factor / count * 1e-3) for count in range(5, 17)}
-        made = [RollingBearing("ball", count, size, pitch, 0.0, (0.52, 0.53)) for count, size in sizes.items()]
+        sizes = {count: math.sqrt(c_0 / factor / count * 1e-3) for count in range(5, 18)}
+        made = [RollingBearing("ball", count, size, pitch, 0.0, (0.52, 0.53)) for count, size in sizes.items()
+                if size < pitch * math.sin(math.pi / count)]  # fmt: skip
         fits = [abs(static_rating(one) / (c_0 * 1e3) - 1.0) for one in made]
         assert min(fits) < 0.016  # f_0 is rounded, the pitch diameter is only near the mean of d and D
         size = known.bore, known.outside_diameter, known.width
