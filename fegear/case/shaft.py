@@ -26,11 +26,11 @@ from fegear.case.part import (
 )
 from fegear.geometry.plausible import refuse_shaft
 from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.life import LifeRating
 
 if TYPE_CHECKING:
     from fegear.shafts.bearing import Bearing
-    from fegear.shafts.catalogue_bearing import CatalogueBearing
 
 Torque = Annotated[float, quantity("torque")]
 
@@ -43,8 +43,19 @@ if TYPE_CHECKING:
     class _LifeKeys(Part, LifeRating):  # type: ignore[misc]  # frozen by pydantic
         """Keys of the spec."""
 
+    class _CatalogueKeys(Part, CatalogueBearing):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
 else:
     _SectionKeys, _LifeKeys = keys_of(Section), keys_of(LifeRating)
+    _CatalogueKeys = keys_of(
+        CatalogueBearing,
+        otherwise={
+            **dict.fromkeys(("kind", "bore", "outside_diameter", "width"), "that of the designation"),
+            "dynamic_rating": "that of `life`, if specified",
+            "contact_angle": "that of the designation, 14 deg for other tapered bearings, 0 for others",
+        },
+    )
 
 
 class SectionPart(_SectionKeys):  # type: ignore[misc]  # frozen by pydantic
@@ -173,31 +184,8 @@ class BearingLifePart(_LifeKeys):  # type: ignore[misc]  # frozen by pydantic
         return LifeRating(self.dynamic_rating, self.kind, self.radial_factor, self.axial_factor, self.limit)
 
 
-class CataloguePart(Part):
+class CataloguePart(_CatalogueKeys):  # type: ignore[misc]  # frozen by pydantic
     """``catalogue = { kind = "ball", bore = "30 mm", outside_diameter = "62 mm", width = "16 mm", ... }``."""
-
-    kind: Literal["ball", "cylindrical", "tapered"] | None = Field(
-        default=None,
-        description="Deep groove or angular contact ball, cylindrical or tapered roller bearing. Default: that of the "
-        "designation.",
-    )
-    bore: PositiveLength | None = Field(default=None, description="Bore d. Default: that of the designation.")
-    outside_diameter: PositiveLength | None = Field(
-        default=None, description="Outside diameter D. Default: that of the designation."
-    )
-    width: PositiveLength | None = Field(
-        default=None, description="Width B (of the inner ring). Default: that of the designation."
-    )
-    dynamic_rating: PositiveForce | None = Field(
-        default=None, description="Basic dynamic load rating C. Default: that of `life`, if specified."
-    )
-    static_rating: PositiveForce | None = Field(default=None, description="Basic static load rating C_0.")
-    contact_angle: Angle | None = Field(
-        default=None,
-        description="Contact angle, positive if axial load towards +z is supported. Default: that of the designation, "
-        "14 deg for other tapered bearings, 0 for others.",
-    )
-    clearance: Length = Field(default=0.0, description="Diametral clearance as mounted; negative for preload.")
 
 
 class BearingPart(Part):
@@ -275,14 +263,13 @@ class BearingPart(Part):
     @property
     def printed(self) -> CatalogueBearing | None:
         """What a catalogue prints of it: the keys given, the rest from the designation."""
-        from fegear.shafts.catalogue_bearing import CatalogueBearing
         from fegear.shafts.designations import envelope_of
 
         if self.designation is None and self.catalogue is None:
             return None
         known = envelope_of(self.designation) if self.designation is not None else None
         said = self.catalogue or CataloguePart()
-        kind = said.kind or (known.kind if known else "ball")
+        kind = said.kind if "kind" in said.given else known.kind if known else "ball"
         angle = said.contact_angle
         if angle is None and known is not None and kind == known.kind == "tapered":
             angle = known.contact_angle

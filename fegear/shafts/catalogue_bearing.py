@@ -25,6 +25,7 @@ from functools import cached_property
 from typing import Literal
 
 from fegear.base.errors import RangeError
+from fegear.base.given import given
 from fegear.base.printed import percent
 from fegear.shafts.designations import Kind
 from fegear.shafts.load_ratings import RATING_FACTOR, dynamic_rating, static_rating
@@ -80,32 +81,22 @@ _FACTORS = (0.6, 1.8)
 class CatalogueBearing:
     """A bearing of one row as a catalogue prints it.
 
-    Parameters
-    ----------
-    kind : {"ball", "cylindrical", "tapered"}
-    bore, outside_diameter, width : float
-        d, D and B [m].
-    dynamic_rating, static_rating : float, optional
-        C and C_0 [N].
-    contact_angle : float, optional
-        Of tapered bearings, or of angular contact ball bearings [rad].
-    clearance : float
-        Diametral, as mounted [m].
-
     Raises
     ------
     RangeError
         If the dimensions leave no bearing, or a rating does not belong to them.
     """
 
-    kind: Kind
-    bore: float
-    outside_diameter: float
-    width: float
-    dynamic_rating: float | None = None
-    static_rating: float | None = None
-    contact_angle: float | None = None
-    clearance: float = 0.0
+    kind: Kind = given(meaning="Deep groove or angular contact ball, cylindrical or tapered roller bearing.")
+    bore: float = given("length", "Bore d.", above=0.0)
+    outside_diameter: float = given("length", "Outside diameter D.", above=0.0)
+    width: float = given("length", "Width B (of the inner ring).", above=0.0)
+    dynamic_rating: float | None = given("force", "Basic dynamic load rating C.", default=None, above=0.0)
+    static_rating: float | None = given("force", "Basic static load rating C_0.", default=None, above=0.0)
+    contact_angle: float | None = given(
+        "angle", "Contact angle, positive if axial load towards +z is supported.", default=None
+    )
+    clearance: float = given("length", "Diametral clearance in operation; preload if negative.", default=0.0)
 
     def __post_init__(self) -> None:
         """Refuse what is no envelope."""
