@@ -1,8 +1,8 @@
 """Effects that a case switches on or off: one row each, from which every list, key, table and study of them is made.
 
 A new effect is a row here with a field of the class below it, and its place of use: a maker that reads the field.
-The fields of `ToothEffects` and `FaceEffects` are those of `fegear.contact.pair_spec.PairSpec`, where all are on
-unless said otherwise; ``[effects]`` of a case has the same keys, where all are off.
+The fields of `ToothEffects`, `RootEffects` and `FaceEffects` are those of `fegear.contact.pair_spec.PairSpec`, where
+all are on unless their rows or the caller say otherwise; ``[effects]`` of a case has the same keys, where all are off.
 """
 
 from __future__ import annotations
@@ -53,8 +53,9 @@ class Effect:
         What is assumed where it is off.
     needs : str
         What it needs.
-    kind : {"teeth", "flanks", "motion"}
-        How teeth give way and touch, without modifications and errors; what keeps flanks apart; what acts in time.
+    kind : {"teeth", "flanks", "roots", "motion"}
+        How teeth give way and touch, without modifications and errors; what keeps flanks apart; what acts on root
+        stress only, under loads that stay as they are (`fegear.contact.plane.root_stress`); what acts in time.
     plane, wide : bool
         Whether plane teeth have it, and teeth with a width.
     kernels : mapping of str to str
@@ -66,6 +67,8 @@ class Effect:
         Example case, and what is changed in it, in which nothing but the effect calls for its kernels.
     on, off : bool or str
         Values that switch it on and off.
+    usual : bool, str or None
+        What specs in Python have unless it is given; None: on.
     words : str
         What figures call it, where that is not its name.
     excludes : tuple of str
@@ -78,7 +81,7 @@ class Effect:
     about: str
     without: str
     needs: str
-    kind: Literal["teeth", "flanks", "motion"]
+    kind: Literal["teeth", "flanks", "roots", "motion"]
     kernels: Mapping[str, str]
     called: Callable[[Described], bool]
     scene: tuple[str, ...]
@@ -86,6 +89,7 @@ class Effect:
     wide: bool = True
     on: bool | str = True
     off: bool | str = False
+    usual: bool | str | None = None
     words: str = ""
     excludes: tuple[str, ...] = ()
     alone_with_it: tuple[str, ...] = ()
@@ -181,7 +185,7 @@ MISALIGNMENT = Effect(
 
 
 def _counts(effect: Effect) -> Any:
-    return field(default=effect.on, metadata={"effect": effect})
+    return field(default=effect.on if effect.usual is None else effect.usual, metadata={"effect": effect})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,6 +197,16 @@ class ToothEffects:
     hertz: Literal["load-dependent", "linear", "none"] = _counts(HERTZ)
     relief: bool = _counts(RELIEF)
     spacing_errors: bool = _counts(SPACING_ERRORS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootEffects:
+    """Which effects change root stress and nothing else."""
+
+    @classmethod
+    def of(cls, holder: object) -> RootEffects:
+        """Those of a spec, or of ``[effects]`` of a case."""
+        return cls(**{one.name: getattr(holder, one.name) for one in fields(cls)})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +227,7 @@ class FaceEffects:
 
 
 #: Classes whose fields are the effects, in the order in which a case and the pages list them.
-GROUPS = (ToothEffects, MotionEffects, FaceEffects)
+GROUPS = (ToothEffects, RootEffects, MotionEffects, FaceEffects)
 #: All effects by name.
 EFFECTS: Mapping[str, Effect] = {one.name: one.metadata["effect"] for group in GROUPS for one in fields(group)}
 
@@ -229,6 +243,8 @@ def _names(*kinds: str, **have: bool) -> tuple[str, ...]:
 AT_REST = _names("teeth")
 #: Modifications and errors of flanks, by which these leave gaps.
 GAPS = _names("flanks")
+#: Effects on root stress only, which results of a pair's root stress have besides.
+ROOT_EFFECTS = _names("roots")
 #: All that change a loaded pair, those of pairs with a width, of plane teeth, and those that change a motion.
 PAIR_EFFECTS = _names("teeth", "flanks")
 WIDE_EFFECTS = _names("teeth", "flanks", wide=True)

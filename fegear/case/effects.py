@@ -15,6 +15,7 @@ from fegear.base.effects import (
     Described,
     FaceEffects,
     MotionEffects,
+    RootEffects,
     ToothEffects,
 )
 from fegear.case.part import Part
@@ -49,7 +50,7 @@ class _Switches(Part):
 
 if TYPE_CHECKING:
 
-    class EffectsPart(_Switches, ToothEffects, MotionEffects, FaceEffects):  # type: ignore[misc]  # frozen by pydantic
+    class EffectsPart(_Switches, ToothEffects, RootEffects, MotionEffects, FaceEffects):  # type: ignore[misc]  # frozen by pydantic
         """Physical effects by name."""
 
 else:  # the same fields, all off

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, get_args
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.effects import EFFECTS, MISALIGNMENT, RELIEF, SPACING_ERRORS, FaceEffects, ToothEffects
+from fegear.base.effects import EFFECTS, MISALIGNMENT, RELIEF, SPACING_ERRORS, FaceEffects, RootEffects, ToothEffects
 from fegear.base.errors import InputError
 from fegear.geometry.flank_modification import FlankModification, Topography
 from fegear.geometry.pair import GearPair, Member
@@ -143,10 +143,10 @@ def _refuse_odd_flank(pair: GearPair, member: Member, parts: tuple[FlankModifica
 
 
 @dataclass(frozen=True)
-class PairSpec(ToothEffects, FaceEffects):
+class PairSpec(ToothEffects, RootEffects, FaceEffects):
     """Two gears in mesh, what their flanks have, their loads, and which effects count.
 
-    Effects are those of `fegear.base.effects`, each a keyword: all on but for what is given.
+    Effects are those of `fegear.base.effects`, each a keyword: on unless their rows say otherwise.
 
     Parameters
     ----------

@@ -13,10 +13,9 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.contact.plane.compliance import largest_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.design.loading import LoadingFunction, Ramp
-from fegear.fem.plane.root_stress import CutFillet, FilletCurve
 from fegear.geometry.pair import MEMBERS, Member
 
 
@@ -26,28 +25,26 @@ class DesignStress:
 
     Parameters
     ----------
-    kernels : mapping of member to list of (x of the load, ndarray (points, P))
+    roots : mapping of member to RootStress
+    rows : mapping of member to list of (x of the load, ndarray (P, points))
         Fillet stress of the tooth at x per unit line load on the pair at x + k A.
-    curves : mapping of member to FilletCurve or None
-        How the largest stress of a fillet is found.
     """
 
     compliance: PairCompliance
     x: Array
-    kernels: dict[Member, list[tuple[Array, Array]]]
-    curves: dict[Member, FilletCurve | CutFillet | None]
+    roots: dict[Member, RootStress]
+    rows: dict[Member, list[tuple[Array, Array]]]
 
     def largest(self, loading: LoadingFunction, member: Member) -> float:
         """Largest root tension over the path [Pa] for a design load of 1 N."""
-        total: Array = np.zeros(1)
-        for where, kernel in self.kernels[member]:
-            total = total + kernel * (loading.fraction(where) / self.compliance.face_width)
-        radius = self.compliance.pair.radius(self.x, member)
-        return float(largest_stress(self.curves[member], total, "tension", radius).max())
+        roots, rows = self.roots[member], self.rows[member]
+        felt = [Felt(loading.fraction(where) / self.compliance.face_width, row) for where, row in rows]
+        total = roots.superposed(felt, rows[0][1].shape)
+        return float(roots.largest(0, total, self.compliance.pair.radius(self.x, member)).max())
 
     def worst(self, loading: LoadingFunction) -> float:
         """The larger of both gears."""
-        return max(self.largest(loading, member) for member in self.kernels)
+        return max(self.largest(loading, member) for member in self.roots)
 
     def pressure(self, loading: LoadingFunction) -> float:
         """Largest Hertzian pressure over the path [Pa] for a design load of 1 N; it grows like the root of the load."""
@@ -80,7 +77,7 @@ class Allowed:
 
 
 def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStress:
-    """Collect the root-stress kernels along the path once; then any loading costs a few products.
+    """Collect the rows of root stress along the path once; then any loading costs a few products.
 
     Raises
     ------
@@ -90,23 +87,21 @@ def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStr
     compliance.refuse_unequal("loadings by root stress")
     pair = compliance.pair
     x = np.linspace(pair.x_start, pair.x_end, positions)
-    kernels: dict[Member, list[tuple[Array, Array]]] = {}
-    for member in MEMBERS:
-        source, sign = compliance.source(member), 1 if member == "driver" else -1
-        reach = source.reach if compliance.coupling else 0
+    rows: dict[Member, list[tuple[Array, Array]]] = {}
+    roots = {member: RootStress.of(compliance, member) for member in MEMBERS}
+    for member, of_gear in roots.items():
         found = []
-        for ahead in range(-reach, reach + 1):
+        for ahead in range(-of_gear.reach, of_gear.reach + 1):
             there = x + ahead * pair.base_pitch
             radius = pair.radius(np.clip(there, pair.x_start, pair.x_end), member)
-            kernel = source.root_stress(-sign * ahead, 0, radius, "tension")
-            if kernel is not None:
-                found.append((there, kernel))
+            row = of_gear.row(0, of_gear.tooth(ahead), radius)
+            if row is not None:
+                found.append((there, row))
         if found:
-            kernels[member] = found
-    if not kernels:
+            rows[member] = found
+    if not rows:
         raise InputError("design", "root stress", "is not available with these compliance sources", 'set source = "fe"')
-    curves = {member: compliance.source(member).fillet_curve(0, "tension") for member in kernels}
-    return DesignStress(compliance, x, kernels, curves)
+    return DesignStress(compliance, x, {member: roots[member] for member in rows}, rows)
 
 
 @dataclass(frozen=True)

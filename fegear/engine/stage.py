@@ -221,4 +221,6 @@ class Stage:
 
     def effects_on(self, scene: Scene, subject: str) -> tuple[str, ...]:
         """Effects that change what it computes for a subject."""
-        return self.effects if self.effects_of is None else self.effects_of(scene, subject)
+        if self.effects_of is None:
+            return self.effects
+        return tuple(effect for effect in self.effects_of(scene, subject) if effect in self.effects)

@@ -16,11 +16,17 @@ from fegear.base.effects import (
     NEIGHBOUR_COUPLING,
     PAIR_EFFECTS,
     PLANE_EFFECTS,
+    ROOT_EFFECTS,
     TORQUE_RIPPLE,
     WIDE_EFFECTS,
 )
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage
+
+#: Effects on loads in mesh and on root stress under them, of results on root stress.
+_STRESS, _PLANE_STRESS = (*PAIR_EFFECTS, *ROOT_EFFECTS), (*PLANE_EFFECTS, *ROOT_EFFECTS)
+#: Effects on root stress under forces that are given by a train.
+_MOVING_STRESS = (NEIGHBOUR_COUPLING.name, *ROOT_EFFECTS)
 
 # fmt: off
 #: Every stage by the subject of its results, in the order in which plans list those that they skip.
@@ -70,13 +76,13 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               quantities=("te-peak-to-peak",), internal=True),
         Entry("root-stress-history", "pair.root_stress_history.ROOT_STRESS_HISTORY",
               "Root stress over the mesh cycle", ("root-stress-history",),
-              "root stress history of both gears during one engagement", effects=PAIR_EFFECTS,
+              "root stress history of both gears during one engagement", effects=_STRESS,
               quantities=("root-stress",), internal=True),
         Entry("gauge", "pair.gauge.GAUGE", "Strain of gauges in root fillets", ("gauge",),
               "strain and stress under strain gauges over the rotation; comparison with measured strain",
-              effects=PLANE_EFFECTS, internal=True),
+              effects=_PLANE_STRESS, internal=True),
         Entry("stress-in-mesh", "pair.stress_in_mesh.STRESS_IN_MESH", "Root stress of the gears in mesh",
-              effects=PAIR_EFFECTS, internal=True),
+              effects=_STRESS, internal=True),
         Entry("outline-motion", "pair.deformed_in_mesh.OUTLINE_MOTION",
             "Displacement of the tooth outline", internal=True),
         Entry("deformed-in-mesh", "pair.deformed_in_mesh.DEFORMED_IN_MESH", "Deformed teeth of the gears in mesh",
@@ -121,7 +127,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     "Profile modification": (
         Entry("relief", "relief.relief.RELIEF", "Profile modification for minimum excitation", ("relief",),
               "profile modification for zero transmission error at the design load; best grindable tip relief",
-              effects=AT_REST, quantities=("te-peak-to-peak",),
+              effects=(*AT_REST, *ROOT_EFFECTS), quantities=("te-peak-to-peak",),
               internal=True),
         Entry("relief-curves", "relief.relief_curves.RELIEF_CURVES",
               "Transmission error and load sharing for a series of tip reliefs", ("relief-curves",),
@@ -138,7 +144,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("tolerance-robustness", "relief.tolerance_robustness.TOLERANCE_ROBUSTNESS",
               "Effect of tolerances", ("robustness",),
               "scatter of transmission error, root stress, pressure and K_Hbeta within the tolerance class",
-              effects=PAIR_EFFECTS, internal=True),
+              effects=_STRESS, internal=True),
         Entry("loading-spectrum", "relief.loading_spectrum.LOADING_SPECTRUM",
               "Tooth loading functions and spectra", ("loading-spectrum",),
               "tooth loading functions with constant total load, and their excitation spectra",
@@ -186,7 +192,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("planet-root-stress", "planetary.planet_root_stress.PLANET_ROOT_STRESS",
               "Root stress of planet teeth over one revolution", ("planet-root-stress",),
               "root stress of planet (alternating bending), sun and ring: range, mean, stress ratio R",
-              internal=True),
+              effects=ROOT_EFFECTS, internal=True),
         Entry("planet-modes", "planetary.planet_vibration.PLANET_MODES",
               "Natural modes of a planetary gear set", ("planet-modes",),
               "natural frequencies of a planetary gear set: rotational, translational and planet modes", internal=True),
@@ -233,12 +239,12 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               quantities=("tooth-force",), internal=True),
         Entry("dynamic-root-stress", "train.dynamic_root_stress.DYNAMIC_ROOT_STRESS",
               "Dynamic root stress", ("dynamic-root-stress",),
-              "dynamic root stress of one tooth during engagement", effects=(NEIGHBOUR_COUPLING.name,),
+              "dynamic root stress of one tooth during engagement", effects=_MOVING_STRESS,
               quantities=("root-stress", "tooth-force"), internal=True),
         Entry("dynamic-strain", "train.dynamic_strain.DYNAMIC_STRAIN",
               "Dynamic strain of gauges in root fillets", ("dynamic-strain",),
               "strain under strain gauges in the vibrating train; comparison with measured strain",
-              effects=(NEIGHBOUR_COUPLING.name,), internal=True),
+              effects=_MOVING_STRESS, internal=True),
         Entry("tooth-friction", "pair.tooth_friction.TOOTH_FRICTION",
               "Tooth friction over the path of contact", ("tooth-friction",),
               "coefficient of friction, friction torques and power loss of a tooth pair over the path of contact",

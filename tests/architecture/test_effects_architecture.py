@@ -85,7 +85,8 @@ def test_a_row_and_its_field_say_the_same():
         for one in fields(group):
             row = EFFECTS[one.name]
             assert row.name == one.name
-            assert one.default == row.on != row.off
+            assert one.default == (row.on if row.usual is None else row.usual)
+            assert row.on != row.off
             assert row.plane or row.wide
             assert row.kernels
             assert all(other in EFFECTS for other in row.excludes)

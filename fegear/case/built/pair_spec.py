@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fegear.base.effects import EFFECTS, PAIR_EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS
+from fegear.base.effects import EFFECTS, PAIR_EFFECTS, ROOT_EFFECTS
 from fegear.base.errors import InputError
 from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.built.members import gear_name
@@ -39,10 +39,9 @@ def pair_spec(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     if over_face and width == "plane":
         width = "solid"
     driver, driven = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
-    had = PLANE_EFFECTS if width == "plane" else WIDE_EFFECTS
-    counted: dict[str, Any] = {
-        effect: getattr(effects, effect) if effect in had else EFFECTS[effect].off for effect in PAIR_EFFECTS
-    }
+    counted: dict[str, Any] = {}
+    for row in (EFFECTS[effect] for effect in (*PAIR_EFFECTS, *ROOT_EFFECTS)):
+        counted[row.name] = getattr(effects, row.name) if (row.plane if width == "plane" else row.wide) else row.off
     spec = PairSpec(
         pair, part.all_loads(pair), part.normal_load(pair) or math.nan, width, part.compliance.source,
         driver=driver, driven=driven, name=name, **counted,

@@ -12,7 +12,6 @@ numbers only, and everything that is made of answers is kept once.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -83,25 +82,6 @@ class GearCompliance(RootStressInfluence, Protocol):
 
     def describe(self) -> str:
         """Return one sentence: what this source includes and what not."""
-
-
-def largest_stress(
-    curve: FilletCurve | CutFillet | None, stress: Array, side: Side, radius: ArrayLike = math.inf
-) -> Array:
-    """Largest tension or most negative compression of a fillet under whatever loads, shape (Q,).
-
-    Parameters
-    ----------
-    curve : FilletCurve, CutFillet or None
-        Of the source; without one the largest is that of the points.
-    stress : ndarray, shape (points, Q)
-    side : {"tension", "compression"}
-    radius : array_like, shape (Q,)
-        Of the contact on the tooth itself [m]; infinite where nothing touches it.
-    """
-    if curve is not None:
-        return curve.largest(stress, radius)[0]
-    return np.asarray(stress.max(axis=0) if side == "tension" else stress.min(axis=0))
 
 
 class OneTooth(AlikeTeeth):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.contact.plane.engagement import Engagement
 from fegear.geometry.pair import MEMBERS
@@ -41,8 +42,10 @@ def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: 
 
 
 def as_specified(spec: PairSpec, engagement: Engagement) -> Engagement:
-    """The engagement with the effects of teeth at rest that a spec has on."""
-    compliance = replace(engagement.compliance, coupling=spec.neighbour_coupling, hertz=spec.hertz)
+    """The engagement with the effects of teeth at rest and of their roots that a spec has on."""
+    compliance = replace(
+        engagement.compliance, coupling=spec.neighbour_coupling, hertz=spec.hertz, roots=RootEffects.of(spec)
+    )
     return replace(engagement, compliance=compliance, corner_contact=spec.corner_contact)
 
 

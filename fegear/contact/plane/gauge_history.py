@@ -11,6 +11,7 @@ from fegear.base.shown import shown, shows
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.peaks import refined_peaks
+from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import superposed_stress
 from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
 
@@ -248,16 +249,16 @@ def _error(
     contacts, face = states.rows[0].grid.contacts, e.compliance.face_width
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     few, n = np.linspace(radius.min(), radius.max(), _FEW), radius.shape[0]
-    reach = min(source.reach, n + _BEYOND) if e.compliance.coupling else 0
-    ahead = 1 if member == "driver" else -1
+    roots = RootStress.of(e.compliance, member, gauge.side, source)
+    reach, weights = min(roots.reach, n + _BEYOND), gauge.weights()[0]
     unit = {
-        k: (np.abs(gauge.stress(k, few)[0]) / face, gauge.stress_error(k, few)[0] / face)
+        k: (np.abs(roots.known_row(k, 0, few) @ weights) / face, gauge.stress_error(k, few)[0] / face)
         for k in range(-reach, reach + 1)
     }
     by_load, by_source = np.zeros_like(stress), np.zeros_like(stress)
     for row, (state, apart) in enumerate(zip(states.rows, states.apart, strict=True)):
         for other in range(n):
-            k = ahead * (row - _BEYOND - other)
+            k = roots.tooth(row - _BEYOND - other)
             if k in unit:
                 size, left = (np.interp(radius[other], few, one)[:, None] for one in unit[k])
                 by_load[row] += (apart[other] * size) ** 2

@@ -16,7 +16,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.base.effects import CORNER_CONTACT, EFFECTS, HERTZ, NEIGHBOUR_COUPLING, PLANE_EFFECTS, SPACING_ERRORS
+from fegear.base.effects import (
+    CORNER_CONTACT,
+    EFFECTS,
+    HERTZ,
+    NEIGHBOUR_COUPLING,
+    PLANE_EFFECTS,
+    ROOT_EFFECTS,
+    SPACING_ERRORS,
+)
 from fegear.base.errors import InputError
 from fegear.base.tally import note
 from fegear.contact.loaded_teeth import Answer, Change, Neglected
@@ -96,7 +104,8 @@ def neglected_effects(
         return Neglected()
     others: dict[str, Engagement] = {}
     wrong: dict[str, InputError] = {}
-    for effect in effects_off(spec, PLANE_EFFECTS):
+    on_roots = ROOT_EFFECTS if "root tension" in answers else ()
+    for effect in effects_off(spec, (*PLANE_EFFECTS, *on_roots)):
         try:
             other = with_effect(spec, engagement, effect)
         except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from fegear.base.brief import Brief
+from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.base.tally import tallied
 from fegear.contact.contact_law import LINEAR, ContactLaw
@@ -83,6 +84,8 @@ class PairCompliance(Brief):
         stays the source's reference half-width.
     nominal_load : float
         Load [N] for the linear contact.
+    roots : RootEffects
+        Effects on root stress, which change no compliance.
     """
 
     pair: GearPair
@@ -91,6 +94,7 @@ class PairCompliance(Brief):
     coupling: bool = True
     hertz: Hertz = "load-dependent"
     nominal_load: float = math.nan
+    roots: RootEffects = field(default_factory=RootEffects)
 
     def __post_init__(self) -> None:
         """Refuse helical pairs, and a linear contact without a load to be linear about."""

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.base.errors import InputError
-from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_stress
-from fegear.contact.plane.stress_rows import Rows, StressRows
+from fegear.contact.plane.compliance import RootStressInfluence, Side
+from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.fem.teeth import together
 
 if TYPE_CHECKING:
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.contact.plane.stress_rows import Rows
     from fegear.geometry.pair import Member
 
 
@@ -81,8 +81,8 @@ def root_stress_history(
     InputError
         If the source knows no root stress.
     """
-    known = source or engagement.compliance.source(member)
-    along = list(superposed_stress(engagement, loaded, member, side, beyond, known))  # (P, L, points) each
+    roots = RootStress.of(engagement.compliance, member, side, source)
+    along = list(_along_fillets(engagement, loaded, roots, beyond))  # (P, L, points) each
     radius = touching_radius(loaded, member, beyond)[:, :, None]
     touching = np.broadcast_to(radius, (*radius.shape[:2], loaded.load.size))
     contacts = loaded.grid.contacts
@@ -92,11 +92,10 @@ def root_stress_history(
     asked = (x > low) & (x < high)
     stress = np.full(touching.shape, np.nan)
     teeth = [engagement.compliance.tooth(member, int(contacts.number[0] + at), loaded.cycle) for at in places]
-    for rows in together([known.same_as(tooth, 1) for tooth in teeth]):
+    for rows in together([roots.source.same_as(tooth, 1) for tooth in teeth]):
         wanted = asked[rows]
         flat = np.stack([along[row] for row in rows])[wanted]
-        curve = known.fillet_curve(teeth[rows[0]], side)
-        found = largest_stress(curve, flat.reshape(-1, flat.shape[-1]).T, side, touching[rows][wanted].ravel())
+        found = roots.largest(teeth[rows[0]], flat.reshape(-1, flat.shape[-1]), touching[rows][wanted].ravel())
         part = stress[rows]
         part[wanted] = found.reshape(-1, touching.shape[2])
         stress[rows] = part
@@ -132,41 +131,43 @@ def superposed_stress(
     engagement, loaded, member, side, beyond, source
         See `root_stress_history`; teeth come in its order.
     """
-    source = source or engagement.compliance.source(member)
-    contacts = loaded.grid.contacts
-    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    yield from _along_fillets(engagement, loaded, RootStress.of(engagement.compliance, member, side, source), beyond)
+
+
+def _along_fillets(engagement: Engagement, loaded: Loaded, roots: RootStress, beyond: int) -> Iterator[Array]:
+    compliance, contacts = engagement.compliance, loaded.grid.contacts
+    radius = contacts.radius_driver if roots.member == "driver" else contacts.radius_driven
     n = radius.shape[0]
-    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
-    line_load = loaded.loads / engagement.compliance.face_width
+    reach = min(roots.reach, n - 1 + beyond)
+    line_load = loaded.loads / compliance.face_width
     carries = np.asarray((line_load > 0.0).any(axis=2))
-    numbers = [engagement.compliance.tooth(member, int(j), loaded.cycle) for j in contacts.number]
-    step = engagement.compliance.tooth(member, 1, 0) - engagement.compliance.tooth(member, 0, 0)
-    carrying: list[tuple[int, Felt]] = []
-    for like in together([source.same_as(number - reach, 2 * reach + 1) for number in numbers]):
-        rows = _rows(source, reach, numbers[like[0]], radius[like][carries[like]], side)
+    numbers = [compliance.tooth(roots.member, int(j), loaded.cycle) for j in contacts.number]
+    carrying: list[Carrying] = []
+    for like in together([roots.source.same_as(number - reach, 2 * reach + 1) for number in numbers]):
+        rows = roots.rows(numbers[like[0]], radius[like][carries[like]], reach)
         first = np.concatenate([[0], np.cumsum(carries[like].sum(axis=1))])
         for i, j in enumerate(like):
             if carries[j].any():
                 of_pair = slice(first[i], first[i + 1])
                 at = np.flatnonzero(carries[j])
-                carrying.append((numbers[j], Felt(at, line_load[j, at], {k: row[of_pair] for k, row in rows.items()})))
+                own = {k: row[of_pair] for k, row in rows.items()}
+                carrying.append(Carrying(numbers[j], at, line_load[j, at], own))
     for place in range(-beyond, n + beyond):
-        tooth = numbers[0] + step * place
-        felt = [(one, tooth - other) for other, one in carrying if tooth - other in one.rows]
-        points = felt[0][0].rows[felt[0][1]].shape[1] if felt else _points(source, tooth, radius[:1, 0], side)
-        total = np.zeros((*line_load.shape[1:], points))
-        for one, k in felt:
-            load, row = one.line_load[:, :, None], one.rows[k][:, None, :]
-            # a formula may give nothing for a load at this place, which is no matter where there is none
-            total[one.at] += load * row if np.isfinite(row).all() else np.where(load > 0.0, load * row, 0.0)
-        yield total
+        tooth = numbers[0] + roots.tooth(place)
+        felt = [
+            Felt(one.line_load, one.rows[tooth - one.tooth][:, None, :], one.at)
+            for one in carrying if tooth - one.tooth in one.rows
+        ]  # fmt: skip
+        points = felt[0].row.shape[-1] if felt else roots.rows(tooth, radius[:1, 0], 0)[0].shape[1]
+        yield roots.superposed(felt, (*line_load.shape[1:], points))
 
 
-class Felt(NamedTuple):
-    """What a loaded tooth does to those around it.
+class Carrying(NamedTuple):
+    """A loaded tooth, and what it does to those around it.
 
     Attributes
     ----------
+    tooth : int
     at : ndarray of int, shape (Q,)
         Roll positions at which it carries load.
     line_load : ndarray, shape (Q, L)
@@ -175,38 +176,7 @@ class Felt(NamedTuple):
         Stress along the fillets of teeth per unit line load [1/m], by how far they are from it.
     """
 
+    tooth: int
     at: NDArray[np.intp]
     line_load: Array
     rows: Rows
-
-
-def _points(source: RootStressInfluence, tooth: int, radius: Array, side: Side) -> int:
-    """Points along the fillet of a tooth at which no load is felt."""
-    return _rows(source, 0, tooth, radius, side)[0].shape[1]
-
-
-def _rows(source: RootStressInfluence, reach: int, tooth: int, radius: Array, side: Side) -> Rows:
-    """Stress along fillets per unit line load at radii of a tooth, by how far their teeth are from it: -reach..reach.
-
-    Of shape (Q, points) each [1/m].
-    """
-
-    def evaluate(at: Array) -> Rows:
-        found = {}
-        for k in range(-reach, reach + 1):
-            stress = source.root_stress(tooth + k, tooth, at, side)
-            if stress is None:
-                raise InputError(
-                    "results",
-                    '"root-stress"',
-                    "is not available with this compliance source (deflections only)",
-                    'set pair.root_stress.source = "fe" or a formula',
-                )
-            found[k] = np.ascontiguousarray(stress.T)
-        return found
-
-    kept: dict[tuple[Side, int, int], StressRows] | None = getattr(source, "stress_rows", None)
-    if kept is None:
-        return evaluate(radius)
-    like = source.same_as(tooth - reach, 2 * reach + 1)
-    return kept.setdefault((side, reach, like), StressRows()).at(radius, evaluate)

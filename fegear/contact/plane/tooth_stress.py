@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, first_of_largest
 from fegear.base.shown import shown, shows
-from fegear.contact.plane.compliance import RootStressInfluence, Side, largest_stress
+from fegear.contact.plane.compliance import RootStressInfluence, Side
 from fegear.contact.plane.engagement import Engagement, Loaded, solve_again
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.peaks import refined_peaks
+from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import RootStressHistory, root_stress_history
 from fegear.geometry.pair import Member
 
@@ -201,7 +202,7 @@ def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Se
 def _knows(e: Engagement, member: Member, source: RootStressInfluence, side: Side) -> bool:
     """Whether a source knows the stress of a fillet; formulas know that of the tension fillet alone."""
     ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
-    return source.root_stress(0, 0, ends, side) is not None
+    return RootStress.of(e.compliance, member, side, source).row(0, 0, ends) is not None
 
 
 def tooth_stress(
@@ -300,19 +301,19 @@ def _by_each_load(
         Root of the sum of squares of what errors of the loads change, and of what the source leaves in the stress per
         load; not a number where it does not know its own error.
     """
-    stress, contacts = source or e.compliance.source(member), state.grid.contacts
+    roots, contacts = RootStress.of(e.compliance, member, side, source), state.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     few = np.linspace(radius.min(), radius.max(), 9)
     n, face = radius.shape[0], e.compliance.face_width
-    reach = min(stress.reach, n + 1) if e.compliance.coupling else 0
+    reach = min(roots.reach, n + 1)
     numbers = [e.compliance.tooth(member, int(contacts.number[0]) + row, state.cycle) for row in range(-1, n + 1)]
     known: dict[int, dict[int, tuple[Array, Array]]] = {}
     by_load, by_source = (np.zeros((n + 2, *state.loads.shape[1:])) for _ in range(2))
     for row, tooth in enumerate(numbers):
         for other, loaded in enumerate(numbers[1:-1]):
-            like = stress.same_as(loaded - reach, 2 * reach + 1)
+            like = roots.source.same_as(loaded - reach, 2 * reach + 1)
             if like not in known:
-                known[like] = _sizes(stress, loaded, reach, few, side)
+                known[like] = _sizes(roots, loaded, reach, few)
             if tooth - loaded in known[like]:
                 size, left = known[like][tooth - loaded]
                 by_load[row] += (apart[other] * (np.interp(radius[other], few, size)[:, None] / face)) ** 2
@@ -320,16 +321,13 @@ def _by_each_load(
     return np.sqrt(by_load), np.sqrt(by_source)
 
 
-def _sizes(
-    stress: RootStressInfluence, loaded: int, reach: int, few: Array, side: Side
-) -> dict[int, tuple[Array, Array]]:
+def _sizes(roots: RootStress, loaded: int, reach: int, few: Array) -> dict[int, tuple[Array, Array]]:
     """Stress per unit line load on a tooth at a few radii, and its error, by how far its tooth is from that one."""
     found: dict[int, tuple[Array, Array]] = {}
     for k in sorted(range(-reach, reach + 1), key=abs):
-        kernel = stress.root_stress(loaded + k, loaded, few, side)
-        if kernel is not None:
-            curve = stress.fillet_curve(loaded + k, side)
+        row = roots.row(loaded + k, loaded, few)
+        if row is not None:
             # a tooth's own below the contact: at it stress is what the contact itself leaves
-            size = np.abs(largest_stress(curve, kernel, side, few)) if k == 0 else np.abs(kernel).max(axis=0)
-            found[k] = size, stress.root_stress_error(loaded + k, loaded, few, side)
+            size = np.abs(roots.largest(loaded, row, few) if k == 0 else row).reshape(few.size, -1).max(axis=1)
+            found[k] = size, roots.error(loaded + k, loaded, few)
     return found

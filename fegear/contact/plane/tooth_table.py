@@ -111,8 +111,8 @@ def light(source: GearCompliance) -> GearCompliance:
 
 
 @dataclass(frozen=True)
-class RootTable:
-    """Root tension of one gear's teeth over the flank, below the loaded flank.
+class RootTable(AlikeTeeth):
+    """Root tension of one gear's teeth over the flank, below the loaded flank: a source of plain numbers.
 
     Parameters
     ----------
@@ -124,6 +124,8 @@ class RootTable:
         Stress along the fillet of tooth k per unit line load on tooth 0 [1/m], by k.
     curve : FilletCurve, CutFillet or None
         How its largest value is found.
+    remarks : tuple of str
+        Of the source.
     """
 
     base_radius: float
@@ -131,6 +133,7 @@ class RootTable:
     step: float
     tension: Mapping[int, Array]
     curve: FilletCurve | CutFillet | None
+    remarks: tuple[str, ...] = ()
 
     @property
     def reach(self) -> int:
@@ -149,6 +152,21 @@ class RootTable:
             table[i] * (-a * b * c / 6.0) + table[i + 1] * (s * b * c / 2.0)
             - table[i + 2] * (s * a * c / 2.0) + table[i + 3] * (s * a * b / 6.0)
         )  # fmt: skip
+
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Stress along the fillet of tooth i under a load on tooth j, (points, Q) [1/m]; None for the other fillet."""
+        if side == "compression":
+            return None
+        radius = np.atleast_1d(np.asarray(radius_q, dtype=float))
+        return self.at(i - j, radius).T if i - j in self.tension else np.zeros((self.tension[0].shape[1], radius.size))
+
+    def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:  # noqa: ARG002  (all alike)
+        """As of the source; None for the other fillet."""
+        return self.curve if side == "tension" else None
+
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
+        """Unknown."""
+        return np.full(np.shape(radius_q), np.nan)
 
 
 def root_table(source: RootStressInfluence, gear: Gear, lowest: float, highest: float, *, coupled: bool) -> RootTable:

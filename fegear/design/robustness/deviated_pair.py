@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from fegear.base.arrays import Array, Mask
 from fegear.base.errors import FegearError
 from fegear.contact.fourier import Panels, panels
-from fegear.contact.plane.compliance import RootStressInfluence, largest_stress
+from fegear.contact.plane.compliance import RootStressInfluence
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.roll_grids import RollGrid
-from fegear.contact.plane.tooth_table import RootTable, light, root_table
+from fegear.contact.plane.root_stress import Felt, RootStress
+from fegear.contact.plane.tooth_table import light, root_table
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.robustness.tolerance_draws import Deviations, ProfileDeviation
 from fegear.geometry.pair import MEMBERS, GearPair, Member
@@ -72,13 +73,13 @@ class Bench:
         With the reliefs and the effects of its case, without spacing errors.
     load : float
         Along the line of action [N].
-    roots : tuple of (RootTable, RootTable)
-        Of driver and driven.
+    roots : tuple of (RootStress, RootStress)
+        Of driver and driven, by tables.
     """
 
     engagement: Engagement
     load: float
-    roots: tuple[RootTable, RootTable]
+    roots: tuple[RootStress, RootStress]
 
     @property
     def teeth(self) -> int:
@@ -138,12 +139,13 @@ def bench(engagement: Engagement, load: float, sources: tuple[RootStressInfluenc
     compliance = replace(
         engagement.compliance, driver=light(engagement.compliance.driver), driven=light(engagement.compliance.driven)
     )
-    tables = []
+    roots = []
     for member, source in zip(MEMBERS, sources, strict=True):
         gear = pair.gear(member)
-        tables.append(root_table(source, gear, *gear.involute_radii, coupled=compliance.coupling))
+        table = root_table(source, gear, *gear.involute_radii, coupled=compliance.coupling)
+        roots.append(RootStress.of(compliance, member, source=table))
     lean = replace(engagement, compliance=compliance, driver_spacing=none, driven_spacing=none)
-    return Bench(lean, load, (tables[0], tables[1]))
+    return Bench(lean, load, (roots[0], roots[1]))
 
 
 def deviated(bench: Bench, deviations: Deviations, row: int) -> Engagement:
@@ -240,31 +242,27 @@ def _extremes(bench: Bench, engagement: Engagement, state: State) -> Array:
     pressure = engagement.compliance.pressure(own, c.relative_radius)
     line_load = state.loads / engagement.compliance.face_width
     roots = [
-        _root_tension(bench.roots[i], radius, c.present, line_load, towards)
-        for i, (radius, towards) in enumerate(((c.radius_driver, 1), (c.radius_driven, -1)))
+        _root_tension(of_gear, radius, c.present, line_load)
+        for of_gear, radius in zip(bench.roots, (c.radius_driver, c.radius_driven), strict=True)
     ]
     return np.array([te.max(), -te.min(), *roots, pressure.max(), own.max()])
 
 
-def _root_tension(table: RootTable, radius: Array, present: Mask, line_load: Array, towards_load: int) -> float:
-    """Largest root tension of tooth 0 over its way through the mesh, its neighbours' loads included [Pa].
-
-    Tooth +1 is ahead of a driving tooth and behind a driven one, as in `root_stress_history`.
-    """
-    totals, touching = [np.zeros((next(iter(table.tension.values())).shape[1], 1))], [np.array([np.inf])]
+def _root_tension(roots: RootStress, radius: Array, present: Mask, line_load: Array) -> float:
+    """Largest root tension of tooth 0 over its way through the mesh, its neighbours' loads included [Pa]."""
+    unloaded = np.zeros((1, roots.known_row(0, 0, radius[0, :1]).shape[1]))
+    along, touching = [unloaded], [np.array([np.inf])]
     for row in range(radius.shape[0]):
         loads = line_load[:, :, row]
-        total: Array | None = None
-        for other in np.flatnonzero((loads > 0.0).any(axis=1)):
-            k = towards_load * (row - int(other))
-            if k in table.tension:
-                part = table.at(k, radius[other]) * loads[other][:, None]
-                total = part if total is None else total + part
-        if total is not None:
-            totals.append(total.T)
+        felt = []
+        for other in np.flatnonzero((loads > 0.0).any(axis=1)).tolist():
+            k = roots.tooth(row - other)
+            if abs(k) <= roots.reach:
+                felt.append(Felt(loads[other], roots.known_row(k, 0, radius[other])))
+        if felt:
+            along.append(roots.superposed(felt, felt[0].row.shape))
             touching.append(np.where(present[row], radius[row], np.inf))
-    along, own = np.concatenate(totals, axis=1), np.concatenate(touching)
-    return float(largest_stress(table.curve, along, "tension", own).max())
+    return float(roots.largest(0, np.concatenate(along), np.concatenate(touching)).max())
 
 
 class Drawn(NamedTuple):

@@ -9,19 +9,22 @@ Root stress of one tooth of either gear under the forces of a moving train.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.effects import RootEffects
 from fegear.base.shown import shown
-from fegear.contact.plane.compliance import RootStressInfluence, largest_stress
+from fegear.contact.plane.compliance import RootStressInfluence
+from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.contact.wide.lines import life_of_contact
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
 from fegear.dynamics.train.periodic import Periodic
-from fegear.dynamics.train.tooth_force import ToothForce, dynamic_error, root_stress, tooth_force
+from fegear.dynamics.train.tooth_force import ToothForce, dynamic_error, tooth_force
 from fegear.dynamics.train.torque_response import ripple_increment
 from fegear.geometry.pair import GearPair, Member
 
@@ -159,6 +162,8 @@ def mesh_force(data: GearTrain, i: int, speed: float, count: int, harmonics: int
 
 #: Positions over the flank at which the source's own error is asked for.
 _FEW = 9
+#: What other meshes add to a force at their worst phases: least and most.
+_CROSS = ("cross_least", "cross_reach")
 
 
 @dataclass(frozen=True)
@@ -181,7 +186,11 @@ class ToothRootStress:
 
 
 def tooth_root_stress(
-    source: RootStressInfluence, pair: GearPair, member: Member, around: dict[int, ToothForce]
+    source: RootStressInfluence,
+    pair: GearPair,
+    member: Member,
+    around: dict[int, ToothForce],
+    effects: RootEffects | None = None,
 ) -> ToothRootStress:
     """Root stress of a tooth under its own force and those on the teeth around it.
 
@@ -196,16 +205,23 @@ def tooth_root_stress(
         What the gear is as the pair runs.
     around : mapping of int to ToothForce
         See `forces_around`.
+    effects : RootEffects, optional
+        On root stress only; by default the usual ones.
     """
-    kernels = _kernels(source, pair, member, around)
+    roots = RootStress(source, member, effects=effects or RootEffects())
+    rows, width = rows_around(roots, pair, around), pair.face_width
     touched = pair.radius(np.clip(around[0].x, pair.x_start, pair.x_end), member)
-    curve = source.fillet_curve(0, "tension")
+    felt = {
+        part: [Felt(getattr(force, part) / width, rows[k]) for k, force in around.items()]
+        for part in ("with_others", "total", "static")
+    }
+    least, most = ((getattr(f, part).sum(axis=0) / width for f in around.values()) for part in _CROSS)
+    worst = roots.bound(felt["total"], least, most, rows[0].shape)
+    with_others, total, static = (
+        roots.largest(0, roots.superposed(parts, rows[0].shape), touched) for parts in felt.values()
+    )
     return ToothRootStress(
-        root_stress({k: f.with_others for k, f in around.items()}, kernels, curve, touched),
-        largest_stress(curve, _at_worst_phases(around, kernels), "tension", touched),
-        root_stress({k: f.total for k, f in around.items()}, kernels, curve, touched),
-        root_stress({k: f.static for k, f in around.items()}, kernels, curve, touched),
-        _own_error(source, pair, member, around[0]),
+        with_others, roots.largest(0, worst, touched), total, static, _own_error(roots, pair, around[0])
     )
 
 
@@ -236,31 +252,31 @@ def forces_around(
     return around
 
 
-def _kernels(
-    source: RootStressInfluence, pair: GearPair, member: Member, around: dict[int, ToothForce]
-) -> dict[int, Array]:
-    """Stress along the fillet of the tooth looked at per unit force on each tooth around it, (points, n) [Pa/N]."""
-    width = pair.face_width
-    ahead = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
+def rows_around(roots: RootStress, pair: GearPair, around: Mapping[int, ToothForce]) -> dict[int, Array]:
+    """Stress along the fillet of tooth 0 per unit line load on each tooth around it, (n, points) [1/m].
+
+    Parameters
+    ----------
+    roots : RootStress
+    pair : GearPair
+        As it runs.
+    around : mapping of int to ToothForce
+        See `forces_around`.
+
+    Raises
+    ------
+    InputError
+        If the source knows no root stress.
+    """
     found = {}
     for k, force in around.items():
-        on_path = np.clip(force.x, pair.x_start, pair.x_end)
-        found[k] = np.asarray(source.root_stress(-ahead * k, 0, pair.radius(on_path, member), "tension")) / width
+        loaded, on_path = roots.tooth(k), np.clip(force.x, pair.x_start, pair.x_end)
+        found[k] = roots.known_row(0, loaded, pair.radius(on_path, roots.member))
     return found
 
 
-def _at_worst_phases(around: dict[int, ToothForce], kernels: dict[int, Array]) -> Array:
-    """Bound of the stress along the fillet: each other mesh does its worst to each force, as each point feels it."""
-    fillet: Array = np.zeros(1)
-    for k, force in around.items():
-        push, pull = force.cross_reach.sum(axis=0), force.cross_least.sum(axis=0)
-        fillet = fillet + kernels[k] * force.total + np.maximum(kernels[k] * push, kernels[k] * pull)
-    return fillet
-
-
-def _own_error(source: RootStressInfluence, pair: GearPair, member: Member, force: ToothForce) -> Array:
+def _own_error(roots: RootStress, pair: GearPair, force: ToothForce) -> Array:
     """What the source leaves in the stress of the tooth's own load [Pa]."""
     x = np.linspace(pair.x_start, pair.x_end, _FEW)
-    width = pair.face_width
-    usual = source.root_stress_error(0, 0, pair.radius(x, member)) / width
+    usual = roots.error(0, 0, pair.radius(x, roots.member)) / pair.face_width
     return np.asarray(np.interp(force.x, x, usual) * np.abs(force.total))

@@ -9,7 +9,7 @@ How far the force of a linearised mesh falls below zero: what contact loss would
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -19,7 +19,6 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
-from fegear.contact.plane.compliance import largest_stress
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.increments import dynamic_increments
 from fegear.dynamics.train.periodic import Periodic
@@ -27,7 +26,6 @@ from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.dynamics.train.torque_response import ripple_increment
 from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
-from fegear.fem.plane.root_stress import FilletCurve
 
 #: Harmonics summed at once.
 _BLOCK = 256
@@ -174,34 +172,6 @@ def tooth_force(
     for array in (place, time, static, own, cross, reach, least):
         array.flags.writeable = False
     return ToothForce(place, time, static, own, cross, reach, least)
-
-
-def root_stress(
-    forces: Mapping[int, ArrayLike],
-    kernels: Mapping[int, ArrayLike],
-    curve: FilletCurve | None = None,
-    radius: ArrayLike = math.inf,
-) -> Array:
-    """Largest root tension of a tooth at each position (3.37), from its own force and its neighbours'.
-
-    Parameters
-    ----------
-    forces : mapping of int to array_like, shape (n,)
-        Force on the tooth pair k base pitches ahead of this one at the same moment [N]; 0 is this one's own.
-    kernels : mapping of int to array_like, shape (points, n)
-        Stress along the fillet of this tooth per unit of that force [Pa/N].
-    curve : FilletCurve, optional
-        How the largest is found between the points.
-    radius : array_like, shape (n,)
-        At which this tooth is touched [m].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [Pa].
-    """
-    fillet = sum(np.asarray(kernels[k]) * np.asarray(force)[None, :] for k, force in forces.items())
-    return largest_stress(curve, np.asarray(fillet), "tension", radius)
 
 
 def _at_all_phases(

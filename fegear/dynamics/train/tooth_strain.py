@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
-from fegear.dynamics.train.single_tooth import force_at, forces_around, positions
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.root_stress import Felt, RootStress
+from fegear.dynamics.train.single_tooth import force_at, forces_around, positions, rows_around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -105,7 +108,7 @@ class ToothStrain:
 
 def tooth_strain(
     train: GearTrain, mesh: int, member: Member, gauges: GaugesOnFillet, displacement: Array, speed: float, count: int,
-    harmonics: int, number: int = 0, *, coupled: bool = True,
+    harmonics: int, number: int = 0, *, coupled: bool = True, effects: RootEffects | None = None,
 ) -> ToothStrain:  # fmt: skip
     """Follow a gauge from a base pitch before its tooth's contact to one after it, at one speed.
 
@@ -128,38 +131,37 @@ def tooth_strain(
         Of the tooth pair, in meshing order.
     coupled : bool
         Whether the forces on the teeth around count.
+    effects : RootEffects, optional
+        On root stress only; by default the usual ones.
     """
     pair = train.meshes[mesh].pair
     inside, pitch = positions(train, mesh, count, number), pair.base_pitch
     before, after = (np.linspace(end - pitch, end, _BESIDE, endpoint=False) for end in (inside[0], inside[-1] + pitch))
     x = np.concatenate([before, inside, np.append(after[1:], inside[-1] + pitch)])
     force = force_at(train, mesh, speed, x, harmonics, number)
-    reach = gauges.influence.reach if coupled else 0
-    around = forces_around(train, mesh, force, number, speed, harmonics, reach)
-    per_load = gauges.strain_per_stress / pair.face_width
-    ahead = 1 if member == "driver" else -1
-    at = int(np.argmin(np.abs(displacement)))
-    unit = {
-        k: per_load * gauges.stress(-ahead * k, pair.radius(np.clip(one.x, pair.x_start, pair.x_end), member))
-        for k, one in around.items()
-    }
-    displaced = sum(unit[k] * one.with_others for k, one in around.items())
-    own, static = (
-        np.asarray(sum(unit[k][at] * getattr(one, part) for k, one in around.items())) for part in ("total", "static")
+    source = finite_element_compliance(gauges.influence)
+    roots = RootStress(source, member, gauges.side, coupled, effects or RootEffects())
+    around = forces_around(train, mesh, force, number, speed, harmonics, roots.reach)
+    rows, seen = rows_around(roots, pair, around), gauges.strain_per_stress * gauges.weights().T
+    displaced, own, static = (
+        roots.superposed(
+            [Felt(getattr(one, part) / pair.face_width, rows[k]) for k, one in around.items()], rows[0].shape
+        )
+        @ seen
+        for part in ("with_others", "total", "static")
     )
+    at = int(np.argmin(np.abs(displacement)))
     return ToothStrain(
-        pair, member, displacement, np.asarray(displaced).T, _error(gauges.only(at), pair, member, around, ahead),
-        x, force.time, np.asarray(displaced)[at], own, static,
+        pair, member, displacement, displaced, _error(gauges.only(at), roots, pair, around),
+        x, force.time, displaced[:, at], own[:, at], static[:, at],
     )  # fmt: skip
 
 
-def _error(
-    gauge: GaugesOnFillet, pair: GearPair, member: Member, around: Mapping[int, ToothForce], ahead: int
-) -> Array:
+def _error(gauge: GaugesOnFillet, roots: RootStress, pair: GearPair, around: Mapping[int, ToothForce]) -> Array:
     """What finite elements leave in the strain under each load, as the root of the sum of squares, shape (P,)."""
     few = np.linspace(pair.x_start, pair.x_end, _FEW)
     squares = np.zeros(around[0].x.size)
     for k, force in around.items():
-        usual = gauge.stress_error(-ahead * k, pair.radius(few, member))[0] / pair.face_width
+        usual = gauge.stress_error(-roots.tooth(k), pair.radius(few, roots.member))[0] / pair.face_width
         squares += (np.interp(force.x, few, usual) * force.with_others) ** 2
     return np.asarray(abs(gauge.strain_per_stress) * np.sqrt(squares))

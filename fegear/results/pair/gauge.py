@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from fegear.base.effects import PLANE_EFFECTS
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
 from fegear.case.built.pair_checks import check_relief
 from fegear.engine.citation import Citation
@@ -184,5 +183,4 @@ GAUGE = Stage(
     check=_check,
     cites=_cites,
     forecast=_forecast,
-    effects_of=lambda _scene, _name: PLANE_EFFECTS,
 )

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
-from fegear.base.effects import PLANE_EFFECTS, WIDE_EFFECTS
+from fegear.base.effects import PLANE_EFFECTS, ROOT_EFFECTS, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_checks import check_relief
@@ -124,7 +124,7 @@ class Kind:
     check: Callable[[Scene, str], None] = _fine
 
 
-PLANE = Kind("loaded-pair", PLANE_EFFECTS, needs_solution, check_relief)
+PLANE = Kind("loaded-pair", (*PLANE_EFFECTS, *ROOT_EFFECTS), needs_solution, check_relief)
 WIDE = Kind("loaded-flanks", WIDE_EFFECTS, needs_solid_solution)
 
 

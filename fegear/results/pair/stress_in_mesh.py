@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
+    from fegear.contact.plane.root_stress import RootStress
     from fegear.contact.wide.root_stress import RootedLines
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
@@ -114,6 +115,7 @@ class StressInMeshData:
 
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:
     from fegear.contact.plane.base_pitch import BESIDE, roll_positions
+    from fegear.contact.plane.root_stress import RootStress
     from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
     from fegear.contact.plane.tooth_stress import with_peaks
 
@@ -145,7 +147,8 @@ def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshD
             stress[side] = np.stack(teeth, axis=1)
         gears[member] = FilletStress(places, stress)
     touched = {member: touching_radius(state, member, 1).T for member in MEMBERS}
-    largest = _largest(state.x, pairs, gears, solved, asked, touched)
+    roots = {member: RootStress.of(e.compliance, member, "tension", source) for member, source in sources.items()}
+    largest = _largest(state.x, pairs, gears, solved, asked, roots, touched)
     few = picture_positions(state.x, pair.base_pitch, largest.roll)
     drawn = {
         member: FilletStress(one.places, {side: all_of[few].astype(np.float32) for side, all_of in one.stress.items()})
@@ -160,15 +163,15 @@ def _largest(
     gears: Mapping[Member, FilletStress],
     solved: Mapping[str, GearInfluence],
     asked: MeshInputs,
+    roots: Mapping[Member, RootStress],
     touched: Mapping[Member, Array],
 ) -> LargestStress:
     found = []
     for member, one in gears.items():
         along, known = one.stress["tension"], solved[asked.gears[member]]
         fillet, m = known.fine.fillets["tension"], known.gear.module
-        values, arc = known.fine.fillet_curve("tension", m).largest(
-            along.reshape(-1, along.shape[2]).T, touched[member].ravel()
-        )
+        flat = along.reshape(-1, along.shape[2])
+        values, arc = roots[member].largest_and_place(0, flat, touched[member].ravel())
         most = int(first_of_largest(values))
         p, tooth = divmod(most, pairs.size)
         place = np.array([np.interp(arc[most], fillet.arc * m, axis) for axis in one.places["tension"][tooth]])

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
 from fegear.case.built.members import gear_name
 from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
@@ -69,6 +70,7 @@ class DynamicRootInputs:
         Of the body that speeds refer to [rad/s].
     coupled : bool
         Whether the loads of the teeth around count.
+    effects : RootEffects
     sources : tuple of str
         Of root stress; the first is the result.
     mesh, pair : str
@@ -78,6 +80,7 @@ class DynamicRootInputs:
 
     speed: float
     coupled: bool
+    effects: RootEffects
     sources: tuple[str, ...]
     mesh: str
     pair: str
@@ -89,8 +92,9 @@ def _inputs(scene: Scene, name: str) -> DynamicRootInputs:
     pair = train_part(scene).pair_of(name)
     gears = {member: gear_name(scene, pair, member) for member in MEMBERS}
     labels = {member: label.removeprefix(f"{pair}_") for member, label in table_names(scene, pair).items()}
-    coupled, speed = scene.case.effects.neighbour_coupling, scene.case.dynamics.one_speed
-    return DynamicRootInputs(speed, coupled, stress_sources(scene, pair), name, pair, gears, labels)
+    effects, speed = scene.case.effects, scene.case.dynamics.one_speed
+    coupled, roots = effects.neighbour_coupling, RootEffects.of(effects)
+    return DynamicRootInputs(speed, coupled, roots, stress_sources(scene, pair), name, pair, gears, labels)
 
 
 def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> DynamicRootStress:
@@ -111,7 +115,7 @@ def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> Dynami
                 around[reach] = forces_around(
                     data.train, data.mesh, data.force, data.number, asked.speed, data.harmonics, reach
                 )
-            stress[member][name] = tooth_root_stress(source, mesh.pair, role, around[reach])
+            stress[member][name] = tooth_root_stress(source, mesh.pair, role, around[reach], asked.effects)
             notes[member][name] = source.remarks
         work.progress((1 + MEMBERS.index(member)) / len(MEMBERS))
     return DynamicRootStress(data, stress, notes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
 from fegear.case.built.train import train_part
@@ -55,6 +56,7 @@ class DynamicStrainInputs:
     positions : int
     coupled : bool
         Whether the forces on the teeth around count.
+    effects : RootEffects
     name : str
     """
 
@@ -63,6 +65,7 @@ class DynamicStrainInputs:
     speed: float
     positions: int
     coupled: bool
+    effects: RootEffects
     name: str = field(compare=False)
 
 
@@ -137,7 +140,7 @@ def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
     part = scene.case.dynamics
     return DynamicStrainInputs(
         gauge_of(scene, name), _mesh(scene, name), part.one_speed, part.positions,
-        scene.case.effects.neighbour_coupling, name,
+        scene.case.effects.neighbour_coupling, RootEffects.of(scene.case.effects), name,
     )  # fmt: skip
 
 
@@ -150,7 +153,7 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
     number = gauge.tooth if mesh.error.pitches > 1 else 0
     found = tooth_strain(
         force.train, force.mesh, mesh.role(gauge.member), placed.gauges, placed.displacement, asked.speed,
-        asked.positions, force.harmonics, number, coupled=asked.coupled,
+        asked.positions, force.harmonics, number, coupled=asked.coupled, effects=asked.effects,
     )  # fmt: skip
     alone = len(force.train.exciters) == 1
     return DynamicStrain(found, alone, gauge.load_tolerance, compared(gauge, found.angle, found.total))
