@@ -27,9 +27,9 @@ def export(
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
-    """Write drawings (DXF), solids (STEP), reliefs to grind (CSV), meshes, FMUs of the mesh, a REXS model.
+    """Write drawings (DXF), solids (STEP), reliefs for grinding (CSV), FE meshes, mesh FMUs or a REXS model.
 
-    In the place of the case may stand the folder of a run, whose results go into the REXS model.
+    CASE can also be the results folder of a run: formats that hold results (rexs) then contain them.
     """
     from fegear.base.errors import InputError
     from fegear.case.reading import build_scene, read_scene

@@ -333,10 +333,11 @@ class Worker:
 
     def _export(self, job: Export) -> None:
         from fegear.engine.run import Silence
-        from fegear.output.export import export_gears
+        from fegear.output.export import export_gears, wanted_formats
         from fegear.output.folder import whole_or_nothing
         from fegear.output.run_files import write_results
         from fegear.output.tables import write_table
+        from fegear.studies.comparison.compare import side_of
 
         target = Path(job.target)
         with whole_or_nothing(target) as scratch:
@@ -348,7 +349,9 @@ class Worker:
                     write_table(scratch, table)
                 remarks = list(found.remarks)
             else:
-                remarks = list(export_gears(scene_of(job.asked), scratch, (), job.what).remarks)
+                taken = any(row.takes_results for row in wanted_formats(job.what).values())
+                results = side_of(self._results(job.asked), job.asked.name) if taken else None
+                remarks = list(export_gears(scene_of(job.asked), scratch, (), job.what, results).remarks)
         self._say("exported", target=str(target.resolve()), remarks=remarks)
 
     def _compare(self, job: Compare) -> None:

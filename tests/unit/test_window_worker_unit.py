@@ -1,5 +1,6 @@
 """The computing process of the window by itself: when it gives way, waits, tidies up, and what it says of faults."""
 
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -9,7 +10,7 @@ from fegear.engine.stage import Task
 from fegear.engine.value import Value
 from fegear.window import glance, worker
 from fegear.window.glance import PICTURES, USUAL, USUAL_SET, USUAL_WIDE, keys_of, numbers_of
-from fegear.window.job_queue import Asked, Compute, Unwanted
+from fegear.window.job_queue import Asked, Compute, Export, Unwanted
 from fegear.window.worker import Worker, scene_of
 
 TEXT = """
@@ -189,3 +190,19 @@ def test_what_a_case_cannot_have_leaves_its_place_empty(monkeypatch):
     assert glance.plan_with(None, ["a", "impossible", "b"], ["c"]) == ["a", "b", "c"]
     with pytest.raises(InputError, match="is not to be had"):
         glance.plan_with(None, ["a"], ["impossible"])
+
+
+def test_an_export_holds_the_results_where_its_format_takes_them(working, tmp_path):
+    text = """
+results = ["geometry"]
+gear.a = { teeth = 20, module = "3 mm", face_width = "20 mm" }
+gear.b = { teeth = 33, module = "3 mm", face_width = "20 mm" }
+pair.I = { driver = "a", driven = "b", torque = "50 N*m", speed = "900 rpm" }
+"""
+    working._do(Export(1, Asked(text, "box", "."), "rexs", str(tmp_path / "out")))
+    assert [what for _, what, _ in working.said] == ["exported"]
+    model = (tmp_path / "out" / "box.rexs").read_text("utf-8")
+    ratio = re.search(r'id="radial_contact_ratio"[^>]*>([^<]*)<', model)
+    pair = scene_of(Asked(text, "box", ".")).pairs["I"]
+    assert ratio is not None
+    assert float(ratio[1]) == pytest.approx(pair.contact_ratio, rel=1e-9)
