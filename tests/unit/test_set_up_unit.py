@@ -175,7 +175,7 @@ def test_parts_of_what_must_pass_are_the_kinds_of_tests_and_what_else_there_is(c
     (named,) = re.findall(r"there are: (.*)", done.stdout)
     parts = named.split()
     assert parts[:3] == ["site", "tests/hard", "tests/unit"]
-    assert {"last-bit-1", "last-bit-2", "last-bit-3", "versions", "types", "wheel", "workflows"} == set(parts[3:])
+    assert {"last-bit-1", "last-bit-2", "versions", "types", "wheel", "workflows"} == set(parts[3:])
 
 
 def test_parts_of_what_must_pass_skip_no_test_and_say_how_they_ended(checked):
