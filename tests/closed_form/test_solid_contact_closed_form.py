@@ -51,7 +51,12 @@ def test_long_and_short_waves_have_their_limits():
     np.testing.assert_allclose(band_spectrum(short), 32.0 / (3.0 * np.pi * short), rtol=1e-4)
 
 
-PROFILES = [hats(14.0, np.array([-2.0, -0.7, 0.1, 2.0]), 0.2), bands(14.0, [-1.2, 0.3], 0.8, 0.2, profile="even")]
+PROFILES = [
+    hats(14.0, np.array([-2.0, -0.7, 0.1, 2.0]), 0.2),
+    bands(14.0, [-1.2, 0.3], 0.8, 0.2, profile="even"),
+    bands(14.0, [-1.2, 0.3], [0.8, 0.5], 0.2),  # hats that stand in no row
+    bands(14.0, [-2.0, 0.3, 2.0], [0.0, 0.9, 0.4], 0.2, after=[0.7, 0.6, 0.0]),  # halves at the ends of the face
+]
 
 
 @pytest.mark.parametrize("line", PROFILES)
@@ -87,6 +92,46 @@ def test_cosines_of_the_functions_along_the_face():
             waves += np.cos(np.multiply.outer(np.arange(1, 41) * np.pi / 3.0, at + 1.5)) @ values
         assert plain[k] == pytest.approx(total, abs=1e-12)
         np.testing.assert_allclose(cosines[k], waves, atol=1e-12)
+
+
+def test_functions_of_pieces_that_mirror_each_other_are_even_or_odd_and_span_the_same():
+    """Of a face whose web ends alike on both sides, a function for each end and each degree of each piece."""
+    plain, face = (face_functions(6.0, 8, (-1.0, 1.0), mirrored=both) for both in (False, True))
+    z = np.linspace(-3.0, 3.0, 61)
+    (values, slopes), (own, own_slopes) = face.at(z), plain.at(z)
+    assert face.odd.shape == (face.count,)
+    assert 0 < face.odd.sum() < face.count
+    for sign, chosen in ((1.0, ~face.odd), (-1.0, face.odd)):
+        np.testing.assert_allclose(values[chosen][:, ::-1], sign * values[chosen], atol=1e-12)
+        np.testing.assert_allclose(face.values(z)[chosen], values[chosen], atol=1e-14)
+    # The same space: one basis in the other without anything left, and slopes by the same numbers.
+    by = np.linalg.lstsq(own.T, values.T, rcond=None)[0].T
+    np.testing.assert_allclose(by @ own, values, atol=1e-10)
+    inside = (np.abs(np.abs(z) - 1.0) > 1e-9) & (np.abs(z) < 3.0)
+    np.testing.assert_allclose((by @ own_slopes)[:, inside], slopes[:, inside], atol=1e-9)
+    assert np.linalg.matrix_rank(by) == face.count
+    one = face_functions(6.0, 8)
+    np.testing.assert_allclose(one.values(z)[one.odd][:, ::-1], -one.values(z)[one.odd], atol=1e-12)
+    np.testing.assert_allclose(one.values(z)[~one.odd][:, ::-1], one.values(z)[~one.odd], atol=1e-12)
+    # Those of a piece that rise no further than a degree: its two ends, and the others below it.
+    low = plain.low_on(-1.0, 1.0, 3)
+    assert low.size == 4
+    within = (z > -1.0) & (z < 1.0)
+    for k in low:
+        fit = np.polynomial.polynomial.polyval(
+            z[within], np.polynomial.polynomial.polyfit(z[within], own[k][within], 3)
+        )
+        np.testing.assert_allclose(fit, own[k][within], atol=1e-10)
+
+
+@pytest.mark.parametrize("stretch", [1.0, 1.6])
+def test_products_over_a_stretched_piece_are_those_of_a_longer_one(stretch):
+    """Where every length is so many times as long, slopes are less and what is integrated over is more."""
+    face = face_functions(6.0, 6, (-1.0, 1.0))
+    plain = face.products_over(-1.0, 1.0)
+    found = face.products_over(-1.0, 1.0, lambda place: np.full(place.size, stretch))
+    for one, other, power in zip(plain, found, (1, 0, -1), strict=True):
+        np.testing.assert_allclose(other, one * stretch**power, rtol=1e-12, atol=1e-12 * np.abs(one).max())
 
 
 def test_narrowed_bands_of_a_plane_tooth_are_the_plane_contacts():

@@ -1,9 +1,11 @@
 """The curve through stresses at Gauss points and its largest value."""
 
+import math
+
 import numpy as np
 import pytest
 
-from fegear.fem.plane.root_stress import extreme, search_end
+from fegear.fem.plane.root_stress import CutFillet, FilletCurve, extreme, search_end
 
 LENGTH = 0.9
 
@@ -47,3 +49,45 @@ def test_the_search_ends_at_a_distance_from_the_contact_or_half_way_up_what_is_l
     assert search_end(0.7, above, 0.02, 0.05) == pytest.approx([0.63, 0.68, 0.7, 0.7])
     assert search_end(0.04, above, np.array([0.0, 0.02, 0.02, 0.02]), 0.05) == pytest.approx([0.02, 0.035, 0.04, 0.04])
     assert search_end(0.04, np.array([0.0]), 0.1, 0.05) == pytest.approx([0.0])
+
+
+def curves(module, side="tension", internal=False):
+    """A fillet's curve in modules, or in another unit in which a module is so long."""
+    flank = (0.05, 0.5) if not internal else (0.5, 0.05)
+    return FilletCurve(side, gauss_points(10, 3), LENGTH, 13.0, flank, module)
+
+
+@pytest.mark.parametrize("internal", [False, True])
+@pytest.mark.parametrize("side", ["tension", "compression"])
+def test_in_metres_a_fillet_has_the_same_largest_stress_at_so_many_modules(side, internal):
+    arc = gauss_points(10, 3)
+    stress = np.cos(np.multiply.outer(arc, [3.0, 6.0, 9.0, 2.0, 2.0])) * (1.0 if side == "tension" else -1.0)
+    stress[:, 3] = stress[:, 4] = np.exp(arc) * (1.0 if side == "tension" else -1.0)
+    first = 13.0 * math.sqrt(1.0 + (0.05 if not internal else 0.5))
+    radius = first + np.array([0.0, 0.3, 1.0, 0.05, np.inf]) * (1.0 if not internal else -1.0)
+    value, place = curves(1.0, side, internal).largest(stress, np.abs(radius))
+    for module in (2e-3, 7.0):
+        again, there = curves(module, side, internal).largest(stress, module * np.abs(radius))
+        np.testing.assert_allclose(again, value, rtol=1e-12)
+        np.testing.assert_allclose(there, module * place, rtol=1e-12)
+    assert place[4] == pytest.approx(LENGTH)
+    if side == "tension":  # a contact close by hides what is below it
+        assert place[3] < place[4]
+        assert value[3] < value[4]
+    else:
+        assert place[3] == place[4]
+
+
+def test_of_a_fillet_in_two_pieces_the_larger_counts_where_it_stands():
+    module = 2e-3
+    one, other = curves(module), curves(module)
+    stress = np.vstack(
+        [np.cos(np.multiply.outer(one.arc, [3.0, 9.0])), np.cos(np.multiply.outer(other.arc, [1.0, 2.0]))]
+    )
+    stress[:30] *= [[1.0, 0.5]]
+    stress[30:] *= [[0.5, 1.0]]
+    cut = CutFillet(((0.0, one, slice(0, 30)), (0.4, other, slice(30, 60))))
+    value, place = cut.largest(stress)
+    first, second = (curve.largest(stress[points]) for curve, points in ((one, slice(0, 30)), (other, slice(30, 60))))
+    assert value.tolist() == [first[0][0], second[0][1]]
+    assert place.tolist() == pytest.approx([first[1][0], second[1][1] + 0.4 * module])

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
 from skfem import Basis, BilinearForm, ElementVector, MappingAffine, MappingIsoparametric
 
 from fegear.fem import forms
@@ -15,7 +16,8 @@ from fegear.fem.plane import elasticity
 from fegear.fem.plane.elements import _element, sector_elements
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.tooth_meshing import mesh_sector
-from fegear.fem.solid.section import make_section
+from fegear.fem.solid.scikit_fem_solver import assembled_zones
+from fegear.fem.solid.section import _stiffness, make_section
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
 
@@ -93,6 +95,30 @@ def test_the_section_s_stiffness_is_what_it_was(meshes, order):
     known = former_section_stiffness(elements, section.axes[elements.element_nodes], TAU, NU)
     for found, before in zip(section.stiffness, known, strict=True):
         assert_same(found, before)
+
+
+@pytest.mark.parametrize("inclined", [False, True])
+def test_zones_of_a_section_assembled_whole_are_the_sums_of_their_elements(meshes, inclined):
+    """By weak forms of vector-valued functions, beside products of shape functions; a web leans in its own zone."""
+    section, elements = make_section(meshes[2], 2, TAU, NU, 12.0), sector_elements(meshes[2], 2)
+    count = len(elements.element_nodes)
+    number = np.arange(count)  # few of the elements, and none of zone 1
+    zone = np.select([number % 12 == 0, number % 12 == 1], [2, 0], -1)
+    lean = np.where(zone == 2, 0.4, 0.0) if inclined else None
+    found = assembled_zones(elements, section.axes, TAU, NU, zone, lean)
+    known = _stiffness(elements, section.axes[elements.element_nodes], TAU, NU, lean)
+    dofs = (3 * elements.element_nodes[:, :, None] + np.arange(3)).reshape(count, -1)
+    assert len(found) == 3
+    for number, matrices in enumerate(found):
+        chosen = zone == number
+        for whole, parts in zip(matrices, known, strict=True):
+            at = np.broadcast_arrays(dofs[chosen][:, :, None], dofs[chosen][:, None])
+            own = coo_array((parts[chosen].ravel(), tuple(one.ravel() for one in at)), shape=whole.shape)
+            assert abs(whole - own.tocsr()).max() <= 1e-12 * max(np.abs(parts).max(), 1.0)
+    if inclined:
+        straight = _stiffness(elements, section.axes[elements.element_nodes], TAU, NU, None)
+        assert np.abs(known[1] - straight[1])[zone == 2].max() > 1e-3 * np.abs(straight[1]).max()
+        assert_same(known[2][zone == 0], straight[2][zone == 0])
 
 
 def test_scikit_fem_assembles_the_equation_itself_to_the_same_matrix(meshes):
