@@ -140,3 +140,74 @@ def test_both_solvers_are_compared_on_the_gear_s_own_mesh_kind_by_kind(known, mo
     assert found.difference == pytest.approx(max(0.02 / 4.0, 0.3 / 20.0))
     assert (found.condensed, found.scikit_fem, found.ratio) == (0.5, 3.0, 6.0)
     assert asked == [(True, solved.settings.order, 1, "condensed"), (True, solved.settings.order, 1, "scikit-fem")]
+
+
+# ---- a rim's support -------------------------------------------------------------------------------------------------
+def test_means_that_are_held_are_none_and_their_forces_leave_by_nothing_else():
+    from scipy.sparse import csc_array
+
+    from fegear.fem.plane.scikit_fem_alone import _on_average
+
+    random = np.random.default_rng(5)
+    own = random.standard_normal((12, 9))
+    stiffness = csc_array(own @ own.T)  # three motions are free, which the means hold
+    held, loads = random.standard_normal((12, 4)), random.standard_normal((12, 2))
+    found = _on_average(stiffness, held, loads)
+    np.testing.assert_allclose(held.T @ found, 0.0, atol=1e-9)
+    left = stiffness @ found - loads
+    np.testing.assert_allclose(left, held @ np.linalg.lstsq(held, left, rcond=None)[0], atol=1e-8)
+
+
+@pytest.fixture(scope="module")
+def whole_ring():
+    """A ring of few teeth, meshed coarsely and whole; its outer radius, and both translations of all its unknowns."""
+    from fegear.fem.plane.scikit_fem_alone import _Ring, _whole_gear
+    from fegear.fem.plane.settings import settings_at
+    from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+
+    tooth = InternalTooth(24, PinionCutter(12, 0.0, 1.2, tip_radius=0.2), profile_shift=0.0, tip_radius=11.5)
+    outer = tooth.root_radius + 1.5
+    ring = _Ring(_whole_gear(tooth, outer, settings_at(-3).scaled(3.5), []), tooth.side)
+    dofs, moved = ring.dofs, np.zeros((2, ring.dofs.N))
+    for numbers in (dofs.nodal_dofs, dofs.facet_dofs, dofs.interior_dofs):
+        for c in range(2):
+            moved[c, numbers[c::2]] = 1.0
+    return ring, outer, moved
+
+
+@pytest.mark.parametrize(("pins", "angle", "width"), [(3, 0.3, 2.0), (5, -1.1, 0.4)])
+def test_each_pin_holds_the_mean_of_its_arc_across_and_along(whole_ring, pins, angle, width):
+    from fegear.geometry.rim_support import RimSupport
+
+    ring, outer, moved = whole_ring
+    held = ring.on_average(RimSupport(pins, width, angle))
+    assert held.shape == (moved.shape[1], 2 * pins)
+    np.testing.assert_allclose(moved @ held, np.tile(np.eye(2), pins), atol=1e-9)
+    # Where it stands: the mean of the place itself, by the same weights on a motion that is the place.
+    vertices = ring._grid.p + np.reshape(ring._elements.tip, (2, 1))
+    on_circle = np.abs(np.hypot(*vertices) - outer) < 1e-9
+    for pin in range(pins):
+        at = 0.5 * np.pi - angle - 2.0 * np.pi * pin / pins
+        weights = held[ring.dofs.nodal_dofs[0], 2 * pin]
+        felt = np.flatnonzero(np.abs(weights) > 1e-12)
+        assert on_circle[felt].all()
+        off = (np.arctan2(vertices[1, felt], vertices[0, felt]) - at + np.pi) % (2.0 * np.pi) - np.pi
+        assert (np.abs(off) < 0.5 * width / outer + 0.5).all()
+        assert abs(np.average(off, weights=np.abs(weights[felt]))) < 0.1
+
+
+def test_a_spline_holds_what_moves_the_whole_circle(whole_ring):
+    from fegear.geometry.rim_support import RimSupport
+
+    ring, outer, moved = whole_ring
+    held = ring.on_average(RimSupport())
+    assert held.shape == (moved.shape[1], 3)
+    around = 2.0 * np.pi * outer
+    np.testing.assert_allclose(moved @ held[:, :2], around * np.eye(2), atol=1e-3 * around)
+    np.testing.assert_allclose(moved @ held[:, 2], 0.0, atol=1e-6 * around * outer)
+    vertices = ring._grid.p + np.reshape(ring._elements.tip, (2, 1))
+    # A turn is what the third one holds: its sign is that of the turn at every corner of an edge.
+    for c, way in ((0, -vertices[1]), (1, vertices[0])):
+        weights = held[ring.dofs.nodal_dofs[c], 2]
+        felt = np.abs(weights) > 1e-9 * np.abs(held[:, 2]).max()
+        assert (np.sign(weights[felt]) == np.sign(way[: weights.size][felt])).mean() > 0.9
