@@ -79,6 +79,20 @@ class RobustnessPart(Part):
         return self
 
 
+class TipTolerancePart(Part):
+    """``tolerances = { amount, length }``: by how much a tip relief that is ground may be off, to either side."""
+
+    amount: LengthOrZero | None = Field(
+        default=None,
+        description="Tolerance of the amount. Default: profile slope deviation f_Halpha of the gear, by its "
+        "`deviations` or its `tolerance_class` (5 without one).",
+    )
+    length: LengthOrZero | None = Field(
+        default=None,
+        description="Tolerance of the length along the line of action. Default: a tenth of the length.",
+    )
+
+
 class AllowablePart(Part):
     """``allowable = { root_tension, hertz_pressure }``: stresses that `peak = "least-stress"` weighs by."""
 
@@ -162,6 +176,9 @@ class DesignPart(Part):
     )
     grind: list[Shape] = Field(
         default_factory=_both_shapes, description="Shapes of grindable tip relief; empty list: none."
+    )
+    tolerances: TipTolerancePart | None = Field(
+        default=None, description="Tolerances of grindable tip relief, for the grinding table and the profile chart."
     )
     roll_angles: Annotated[list[Angle], Field(min_length=1), at_most(10_000, "roll angles")] | None = Field(
         default=None,

@@ -21,6 +21,8 @@ from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, re
 from fegear.design.oil_film import OilFilm
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.design.tip_relief.tolerated import within_tolerances
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 
@@ -28,6 +30,8 @@ from fegear.geometry.relief import UNMODIFIED, Shape
 #: which another processor rounds otherwise, move finite-element compliances, and the reliefs made of them, by up to
 #: 3e-10 of it.
 _DIGITS = 1e-9
+#: Harmonics at loads other than that of the design, where the first one and the extremes are wanted.
+_OVER_LOADS = 12
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,8 @@ class DesignTask:
         Between the flanks at the design load; the reliefs make up for it, and everything runs with it.
     over : LoadRange, optional
         Loads that reliefs to grind are designed for in place of the design load only.
+    tolerances : tuple of TipTolerance, optional
+        Of the reliefs to grind on driver and driven gear.
     """
 
     loading: LoadingFunction
@@ -68,6 +74,12 @@ class DesignTask:
     allowed: Allowed | None = None
     film: OilFilm | None = None
     over: LoadRange | None = None
+    tolerances: tuple[TipTolerance, TipTolerance] | None = None
+
+    @property
+    def over_loads(self) -> tuple[float, ...]:
+        """Loads at which reliefs are compared: those of the range, or all of the curves [N]."""
+        return self.loads if self.over is None else self.over.loads
 
     def grind_on(self, engagement: Engagement, shape: Shape) -> TipReliefPair:
         """The reliefs of a shape to grind, for the range or for the design load."""
@@ -110,12 +122,15 @@ class ReliefDesign:
     for_one_load : mapping of shape to TipReliefPair
         The same for the design load only; empty without a range.
     te : mapping of str to TransmissionError
-        At the design load: "no relief", "designed", "diagonal only", and each shape ground; with a range also each
-        shape for the design load only ("linear tip relief for one load"), and "present relief" where the pair has one.
+        At the design load: "no relief", "designed", "diagonal only", each shape ground, and "present relief" where the
+        pair has one; with a range also each shape for the design load only ("linear tip relief for one load").
     curves : mapping of str to Loaded
         The same over roll positions, for every load.
     over_range : mapping of str to tuple of TransmissionError
-        The same as `te` at each load of the range; empty without one.
+        The same as `te`, but for "diagonal only", at each of the task's `over_loads`.
+    within : mapping of shape to ndarray, shape (L, 2)
+        Least and largest peak-to-peak value at each of these with the reliefs to grind inside their tolerances [m];
+        empty without tolerances, or with a film.
     left : float or None
         Transmission error, peak to peak, that a design with compliances off by their errors leaves on true teeth [m].
     tables_leave : float
@@ -131,6 +146,7 @@ class ReliefDesign:
     te: Mapping[str, TransmissionError]
     curves: Mapping[str, Loaded]
     over_range: Mapping[str, tuple[TransmissionError, ...]]
+    within: Mapping[Shape, Array]
     left: float | None
     tables_leave: float
 
@@ -186,19 +202,25 @@ def design_relief(
             for_one_load[shape] = grindable(designed, load, shape, task.metric)
             states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))
-    if task.over is not None and (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):
+    if (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):
         states["present relief"] = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
     if film is not None:
         states = {label: film.between(state) for label, state in states.items()}
     te = {label: transmission_error(state, load, task.harmonics) for label, state in states.items()}
-    over_range = (
-        {
-            label: tuple(transmission_error(state, one, task.harmonics) for one in task.over.loads)
-            for label, state in states.items()
+    over_range = {
+        label: tuple(
+            te[label] if one == load else transmission_error(state, one, _OVER_LOADS) for one in task.over_loads
+        )
+        for label, state in states.items()
+        if label != "diagonal only"
+    }
+    within: dict[Shape, Array] = {}
+    if film is None and task.tolerances is not None:
+        within = {
+            shape: within_tolerances(plain, (one.driver, one.driven), task.tolerances, task.over_loads)
+            for shape, one in ground.items()
         }
-        if task.over is not None
-        else {}
-    )
+    report(0.95)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
     left = None
@@ -210,7 +232,8 @@ def design_relief(
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     return ReliefDesign(
-        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, left, tables_leave
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, left,
+        tables_leave,
     )  # fmt: skip
 
 

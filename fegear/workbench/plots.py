@@ -57,13 +57,13 @@ class Plots:
         webbrowser.open(Path(file.name).as_uri())
 
     def save(self, folder: str | os.PathLike[str], kind: str = "png") -> list[Path]:
-        """Draw them into a folder as ``<name>.png`` or ``.svg``.
+        """Draw them into a folder as ``<name>.png``, ``.svg`` or ``.pdf``.
 
         Parameters
         ----------
         folder : path
             Made if needed.
-        kind : {"png", "svg"}
+        kind : {"png", "svg", "pdf"}
 
         Returns
         -------
@@ -77,8 +77,8 @@ class Plots:
         """
         from fegear.output.draw_png import draw_pictures
 
-        if not isinstance(kind, str) or kind not in ("png", "svg"):
-            raise InputError("kind", shown(kind), "is not a supported figure format", 'choose "png" or "svg"')
+        if not isinstance(kind, str) or kind not in ("png", "svg", "pdf"):
+            raise InputError("kind", shown(kind), "is not a supported figure format", 'choose "png", "svg" or "pdf"')
         target = folder_of(folder)
         try:
             target.mkdir(parents=True, exist_ok=True)

@@ -15,6 +15,7 @@ import fegear
 from fegear.base.errors import InputError
 from fegear.base.keys import content_key
 from fegear.case.built.design_range import design_range
+from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.reading import build_scene
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
@@ -144,6 +145,18 @@ def test_a_range_that_makes_no_sense_is_refused_by_its_key(pair, design, key):
 def test_a_range_is_refused_where_a_pair_has_one_load():
     with pytest.raises(InputError, match=r"design\.over"):
         design_range(scene('torque = "300 N*m"', 'over = "torques"'), "I")
+
+
+def test_tolerances_of_reliefs_are_those_of_the_case_else_by_class():
+    driver, driven = tip_tolerances(scene(TORQUES, p="tolerance_class = 7"), "I")
+    assert (driver.amount, driven.amount) == pytest.approx((10e-6, 5e-6))  # f_Halpha of 62.5 mm in 7, 167.5 mm in 5
+    assert driver.length is None
+    asked = 'tolerances = { amount = "3 um", length = "0.2 mm" }'
+    driver, driven = tip_tolerances(scene(TORQUES, asked, p='deviations = { profile_form = "2 um" }'), "I")
+    assert (driver.amount, driver.length, driver.form) == pytest.approx((3e-6, 0.2e-3, 2e-6))
+    tiny = case(TORQUES).replace("2.5 mm", "0.1 mm").replace("30 mm", "1 mm").replace("N*m", "N*mm")
+    found = tip_tolerances(build_scene(tomllib.loads(tiny), "drive", Path()), "I")
+    assert all(one.amount > 0.0 for one in found)  # smaller than the sizes of the standard
 
 
 @pytest.mark.dear

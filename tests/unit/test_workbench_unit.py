@@ -227,7 +227,7 @@ def test_figures_are_written_and_opened(found, tmp_path, monkeypatch):
     made = found.plot("load_sharing_I").save(tmp_path / "pictures", "svg")
     assert [path.name for path in made] == ["load_sharing_I.svg"]
     assert made[0].read_text("utf-8").lstrip().startswith("<?xml")
-    with pytest.raises(InputError, match='choose "png" or "svg"'):
+    with pytest.raises(InputError, match='choose "png", "svg" or "pdf"'):
         found.plot("load_sharing_I").save(tmp_path, "pdf")
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)

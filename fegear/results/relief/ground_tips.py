@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen, Where
+    from fegear.geometry.gear import Gear
     from fegear.geometry.relief import EndRelief
 
 
@@ -32,17 +33,21 @@ class GroundTip:
     ----------
     ground : TipReliefPair
         Of both gears.
-    base_radius : float
-        [m].
+    gear : Gear
     left : TransmissionError or None
         What the reliefs of both gears leave.
     """
 
     ground: TipReliefPair
-    base_radius: float
+    gear: Gear
     left: TransmissionError | None
     shape: str = shown("", "of the tip relief")
     member: Member = shown("", "driver or driven", name="gear")
+
+    @property
+    def base_radius(self) -> float:
+        """[m]."""
+        return self.gear.base_radius
 
     @property
     def relief(self) -> EndRelief:
@@ -123,7 +128,7 @@ def tips_of(
     ground: TipReliefPair, pair: GearPair, shape: str = "", left: TransmissionError | None = None
 ) -> tuple[GroundTip, ...]:
     """The tip reliefs of both gears of a pair, driver first."""
-    return tuple(GroundTip(ground, pair.gear(member).base_radius, left, shape, member) for member in MEMBERS)
+    return tuple(GroundTip(ground, pair.gear(member), left, shape, member) for member in MEMBERS)
 
 
 def tip_numbers(tips: Where, head: str) -> Each:

@@ -11,6 +11,7 @@ from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_in_design
 from fegear.case.built.pair_spec import pair_spec
+from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.design import DesignPart
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
@@ -87,8 +88,8 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     case = scene.case
     return ReliefInputs(
-        design_part(scene), pair_spec(scene, name), design_range(scene, name), case.accuracy.tolerance, case.effects,
-        scene.sizes_neglected, table_names(scene, name), gears,
+        design_part(scene), pair_spec(scene, name), design_range(scene, name), tip_tolerances(scene, name),
+        case.accuracy.tolerance, case.effects, scene.sizes_neglected, table_names(scene, name), gears,
     )  # fmt: skip
 
 
@@ -107,7 +108,7 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
     task = DesignTask(
         _loading(part, pair.engagement.pair), load, isinstance(part.peak, str), tuple(part.grind), part.metric,
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
-        inputs.over,
+        inputs.over, inputs.tolerances,
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
     best = design.best_ground if design.ground else None

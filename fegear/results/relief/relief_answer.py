@@ -38,7 +38,7 @@ def _best(seen: Seen) -> str:
 
 def _grind(seen: Seen) -> Iterator[str]:
     """What to grind, and what it changes at the design load, or from end to end of a range."""
-    if seen.data.grinding:
+    if seen.data.for_range:
         yield from said_of_range(seen)
         return
     shape, left = _best(seen), seen.data.left
@@ -61,7 +61,7 @@ def _grind(seen: Seen) -> Iterator[str]:
 def _at_half_load(seen: Seen) -> Iterator[str]:
     """What the same relief does near half of the design load, where such a load is in the map."""
     shape, left = _best(seen), seen.data.left
-    if not shape or seen.data.grinding:
+    if not shape or seen.data.for_range:
         return
     plain, ground = left["no relief"].map, left[f"{shape} tip relief"].map
     share = plain.load / seen.data.load
@@ -87,7 +87,7 @@ def _exact(seen: Seen) -> Iterator[str]:
 
 
 def _figure(seen: Seen) -> str:
-    return f"relief_over_torque_{seen.name}" if seen.data.grinding else f"relief_{seen.name}"
+    return f"relief_over_torque_{seen.name}" if seen.data.for_range else f"relief_{seen.name}"
 
 
 RELIEF_ANSWER = Answer(_grind, _at_half_load, _exact, figure=_figure)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fegear.design.load_range import LoadRange
     from fegear.design.minimum_excitation import ReliefTable
     from fegear.design.relief_design import ReliefDesign
+    from fegear.design.tip_relief.tip_tolerance import TipTolerance
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class ReliefInputs:
     asked : PairSpec
     over : LoadRange or None
         Loads that reliefs to grind are designed for together.
+    tolerances : tuple of TipTolerance
+        Of reliefs to grind on driver and driven gear.
     tolerance : float
         That neglected effects are compared with.
     effects : EffectsPart
@@ -42,6 +45,7 @@ class ReliefInputs:
     part: DesignPart
     asked: PairSpec
     over: LoadRange | None
+    tolerances: tuple[TipTolerance, TipTolerance]
     tolerance: float
     effects: EffectsPart = field(compare=False)
     neglected: bool

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -20,21 +20,15 @@ from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.geometry.pair import Member
+from fegear.geometry.pair import MEMBERS, Member
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
+from fegear.results.relief.grinding import Grinding, grinding_table, tip_row
 from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
 from fegear.results.relief.harris import OVER_ROLL, HarrisMap
+from fegear.results.relief.profile_charts import ProfileChart, k_chart, profile_chart
 from fegear.results.relief.relief_answer import RELIEF_ANSWER
-from fegear.results.relief.relief_over_range import (
-    GRINDING,
-    OVER_RANGE,
-    RANGE_CHART,
-    GrindingRow,
-    LeftOverRange,
-    grinding_rows,
-    left_over_range,
-)
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, LeftOverRange, left_over_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,6 +38,7 @@ if TYPE_CHECKING:
     from fegear.design.minimum_excitation import ReliefTable
     from fegear.engine.figure.items import Mark
     from fegear.engine.sheet.seen import Seen
+    from fegear.geometry.relief import Shape
     from fegear.results.relief.relief_data import ReliefData, ReliefInputs
 
 #: Views of the Harris map in their order; others stand behind.
@@ -210,16 +205,37 @@ class ReliefShown:
 
     @cached_property
     def over_range(self) -> dict[str, LeftOverRange]:
-        """What each relief leaves at each torque of a range; empty without one."""
+        """What each relief leaves at each torque."""
         return left_over_range(self.data.design, self.data.pair.pair)
 
+    @property
+    def for_range(self) -> bool:
+        """Whether the reliefs to grind are for a range of torques."""
+        return self.data.design.task.over is not None and bool(self.data.design.ground)
+
     @cached_property
-    def grinding(self) -> tuple[GrindingRow, ...]:
-        """The best shape for a range, as a grinder is given it; empty without a range."""
-        design = self.data.design
-        if design.task.over is None or not design.ground:
-            return ()
-        return grinding_rows(self.tips, self.asked.gears, design.best_ground[0])
+    def grinding(self) -> tuple[Grinding, ...]:
+        """The reliefs to grind, those of the best shape first."""
+        ground, allowed = self.data.design.ground, dict(zip(MEMBERS, self.asked.tolerances, strict=True))
+        rows = [tip_row(tip, self.asked.gears[tip.member], allowed[tip.member]) for tip in self.tips]
+        return tuple(sorted(rows, key=lambda row: ground[cast("Shape", row.shape)].objective))
+
+    @cached_property
+    def profile_charts(self) -> dict[str, tuple[ProfileChart, ...]]:
+        """Of both gears for each shape of relief to grind, the best first."""
+        pair, allowed = self.data.pair.engagement, self.asked.tolerances
+        present = pair.driver_relief, pair.driven_relief
+        found = sorted(self.data.design.ground.items(), key=lambda one: one[1].objective)
+        return {
+            f"{shape} tip relief": tuple(
+                profile_chart(
+                    self.asked.gears[member], pair.pair.gear(member), getattr(ground, member), allowed[i],
+                    present[i] if "present relief" in self.data.design.te else None,
+                )
+                for i, member in enumerate(MEMBERS)
+            )
+            for shape, ground in found
+        }  # fmt: skip
 
     @cached_property
     def left(self) -> dict[str, Leaves]:
@@ -285,7 +301,7 @@ RELIEF_SHEET = Sheet(
     of=ReliefShown,
     name=lambda asked: asked.asked.name,
     tables=(
-        GRINDING,
+        grinding_table("grinding_{name}", "Tip relief to grind on {name}", "grinding"),
         OVER_RANGE,
         Rows(
             "loading_candidates_{name}", "Loadings of {name} evaluated for minimum stress",
@@ -348,6 +364,7 @@ RELIEF_SHEET = Sheet(
     ),
     figures=(
         RANGE_CHART,
+        k_chart("profile_charts"),
         Chart(
             "relief_{name}", "Profile relief of pair {name}",
             "Pair {name}: relief of both gears for {d.load:.5g} N over the active profile, and the load "

@@ -1,0 +1,57 @@
+"""What a drawing allows the tip relief of a gear to be off, and the band of a profile chart that follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fegear.base.arrays import Array
+from fegear.geometry.gear import Gear
+from fegear.geometry.relief import EndRelief
+
+#: Length of a tip relief without a tolerance of its own may be off by this part of it.
+_OF_LENGTH = 0.1
+#: The shortest relief that is left, over the one of the drawing.
+_SHORTEST = 0.02
+#: Amounts below this are none [m].
+NOTHING = 1e-9
+
+
+@dataclass(frozen=True)
+class TipTolerance:
+    """By how much the tip relief of a gear may be off, to either side.
+
+    Parameters
+    ----------
+    amount : float
+        [m].
+    length : float or None
+        Along the line of action [m]; None: a tenth of the length.
+    form : float
+        What the profile may deviate besides, to the side of more removal [m].
+    """
+
+    amount: float
+    length: float | None
+    form: float
+
+    def length_of(self, gear: Gear, tip: EndRelief) -> float:
+        """By how much the length of a relief may be off [m]."""
+        return _OF_LENGTH * gear.base_radius * (tip.end - tip.start) if self.length is None else self.length
+
+    def off(self, gear: Gear, tip: EndRelief, amount: int, length: int) -> EndRelief:
+        """The relief with amount and length at an end of their tolerances: -1, 0 or 1 each."""
+        whole = tip.end - tip.start
+        longer = max(whole + length * self.length_of(gear, tip) / gear.base_radius, _SHORTEST * whole)
+        return replace(tip, amount=max(tip.amount + amount * self.amount, 0.0), start=max(tip.end - longer, 0.0))
+
+    def limits(self, gear: Gear, tip: EndRelief, roll: ArrayLike) -> tuple[Array, Array]:
+        """Least and largest removal that a profile chart allows at roll angles [m]."""
+        at = np.asarray(roll, dtype=float)
+        if tip.amount <= NOTHING:
+            return np.zeros_like(at), np.full_like(at, self.form)
+        ends = [self.off(gear, tip, *off).removal(at) for off in product((-1, 1), repeat=2)]
+        return np.min(ends, axis=0), np.max(ends, axis=0) + self.form

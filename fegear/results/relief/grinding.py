@@ -1,0 +1,108 @@
+"""The grinding table: every modification of a flank that is to be ground, as a row, whatever result designs it.
+
+A row has the numbers of its kind; the others are nan, an empty cell of the file. A result that designs further kinds
+(a lead, a crowning) makes `Grinding` rows of them, and a table of them by `grinding_table`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.base.printed import figures
+from fegear.base.shown import shown
+from fegear.engine.sheet.rows import Off, Rows
+from fegear.geometry.pair import Member
+
+if TYPE_CHECKING:
+    from fegear.design.tip_relief.tip_tolerance import TipTolerance
+    from fegear.engine.sheet.seen import Text, Where
+    from fegear.results.relief.ground_tips import GroundTip
+
+#: Kinds of modifications.
+TIP, SLOPE, CROWNING, END, BIAS = "tip relief", "helix slope", "crowning", "end relief", "flank twist"
+#: An amount below this is nothing [m].
+NOTHING = 5e-9
+
+
+@dataclass(frozen=True)
+class Grinding:
+    """A modification of one flank as a grinder is given it; lengths in [m], angles in [rad]."""
+
+    gear: str = shown("", "gear")
+    member: Member = shown("", "driver or driven", name="member")
+    design: str = shown("", "design that the row belongs to; rows of the best design first")
+    modification: str = shown("", "kind of modification")
+    shape: str = shown("", "shape from the start of the modification")
+    amount: float = shown("um", "amount; of a helix slope the value at +b/2 minus that at -b/2", default=math.nan)
+    amount_error: float = math.nan
+    amount_tolerance: float = shown("um", "tolerance of the amount, to either side", default=math.nan)
+    start_diameter: float = shown("mm", "diameter at the start of tip relief", default=math.nan)
+    start_diameter_error: float = math.nan
+    end_diameter: float = shown("mm", "diameter at which the amount applies", default=math.nan)
+    start_roll_angle: float = shown("deg", "roll angle at the start of tip relief", default=math.nan)
+    length: float = shown("mm", "length of the tip relief on the line of action", name="length_on_path",
+                          default=math.nan)  # fmt: skip
+    length_tolerance: float = shown("mm", "tolerance of this length, to either side", default=math.nan)
+    face_length: float = shown("mm", "length over the face width, from each end of the face", default=math.nan)
+    amount_from: float = shown("um", "lower end of the near-optimum range (within 1 % of the minimum)",
+                               default=math.nan)  # fmt: skip
+    amount_to: float = shown("um", "upper end of the near-optimum range", default=math.nan)
+    start_diameter_from: float = shown("mm", "lower end of the near-optimum range", default=math.nan)
+    start_diameter_to: float = shown("mm", "upper end of the near-optimum range", default=math.nan)
+
+    @property
+    def words(self) -> str:
+        """As a sentence says it; empty for nothing."""
+        if abs(self.amount) <= NOTHING:
+            return ""
+        amount = f"{figures(self.amount * 1e6, 2)} µm"
+        if self.modification == TIP:
+            return f"{amount} from d {self.start_diameter * 1e3:.1f} mm on gear {self.gear}"
+        return f"{amount} {self.modification} on gear {self.gear}"
+
+
+def grinding_table(name: Text, title: Text, of: Where) -> Rows:
+    """A table of `Grinding` rows; none where there are no rows.
+
+    Parameters
+    ----------
+    name, title : text
+    of : where
+        The rows.
+    """
+    return Rows(
+        name, title,
+        (
+            "gear", "member", "design", "modification", "shape", "amount", Off("amount", "amount_error"),
+            "amount_tolerance", "start_diameter", Off("start_diameter", "start_diameter_error"), "end_diameter",
+            "start_roll_angle", "length", "length_tolerance", "face_length", "amount_from", "amount_to",
+            "start_diameter_from", "start_diameter_to",
+        ),
+        of=of, when=of, printed=True,
+    )  # fmt: skip
+
+
+def tip_row(tip: GroundTip, gear: str, tolerance: TipTolerance) -> Grinding:
+    """The row of a tip relief that was searched for.
+
+    Parameters
+    ----------
+    tip : GroundTip
+    gear : str
+        Name of the gear.
+    tolerance : TipTolerance
+    """
+    relief, (low, high) = tip.relief, tip.band
+    of_gear = tip.gear
+
+    def diameter(roll: float) -> float:
+        return 2.0 * tip.base_radius * math.hypot(1.0, roll)
+
+    return Grinding(
+        gear, tip.member, f"{tip.shape} tip relief", TIP, tip.shape, relief.amount, float(tip.error[0]),
+        tolerance.amount, diameter(relief.start), 2.0 * tip.start_radius_error, diameter(relief.end), relief.start,
+        tip.base_radius * (relief.end - relief.start), tolerance.length_of(of_gear, relief), math.nan,
+        low.amount, high.amount, diameter(high.start), diameter(low.start),
+    )  # fmt: skip

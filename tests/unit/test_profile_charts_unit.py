@@ -1,0 +1,89 @@
+"""Profile charts of tip reliefs, and what reliefs leave when they are off by their tolerances."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.tip_relief.grindable import relief_over_path
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.design.tip_relief.tolerated import within_tolerances
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.relief import UNMODIFIED
+from fegear.results.relief.profile_charts import profile_chart
+
+LOAD = 6000.0
+EXACT = TipTolerance(0.0, 0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def engagement():
+    gears = [Gear(Tooth(z, BasicRack()), 3e-3, 0.1 * z * 3e-3, 0.02) for z in (24, 36)]
+    sources = [closed_form_compliance(gear, "weber-banaschek") for gear in gears]
+    return Engagement(PairCompliance(GearPair(*gears), *sources, hertz="linear", nominal_load=LOAD))
+
+
+@pytest.fixture(scope="module")
+def tips(engagement):
+    pair = engagement.pair
+    return tuple(relief_over_path(gear, pair.path_length, 20e-6, 0.35, 1.0) for gear in (pair.driver, pair.driven))
+
+
+def left(engagement, tips, load):
+    return transmission_error(
+        replace(engagement, driver_relief=tips[0], driven_relief=tips[1]), load, 12
+    ).peak_to_peak  # fmt: skip
+
+
+def test_without_tolerances_a_relief_leaves_what_it_leaves(engagement, tips):
+    found = within_tolerances(engagement, tips, (EXACT, EXACT), [0.5 * LOAD, LOAD])
+    for (least, most), load in zip(found, (0.5 * LOAD, LOAD), strict=True):
+        assert least == most == pytest.approx(left(engagement, tips, load), rel=1e-12)
+
+
+def test_what_is_left_lies_between_the_ends_and_these_part_with_the_tolerance(engagement, tips):
+    before = 0.0
+    for size in (1e-6, 3e-6):
+        allowed = TipTolerance(size, 0.2e-3, 0.0)
+        ((least, most),) = within_tolerances(engagement, tips, (allowed, allowed), [LOAD])
+        assert least <= left(engagement, tips, LOAD) <= most
+        assert most >= before
+        before = most
+        gears = engagement.pair.driver, engagement.pair.driven
+        for off in ((1, 1), (-1, 1), (-1, -1)):
+            ends = [allowed.off(gear, tip, *off) for gear, tip in zip(gears, tips, strict=True)]
+            assert least * 0.98 <= left(engagement, ends, LOAD) <= most * 1.02
+
+
+def test_a_gear_without_relief_stays_without(engagement, tips):
+    bare = replace(tips[1], amount=0.0)
+    found = within_tolerances(engagement, (tips[0], bare), (EXACT, TipTolerance(5e-6, None, 0.0)), [LOAD])
+    assert found[0, 1] == pytest.approx(left(engagement, (tips[0], UNMODIFIED), LOAD), rel=1e-9)
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_the_band_of_a_profile_chart_has_the_tolerances_at_its_ends(engagement, tips, power):
+    gear, tip = engagement.pair.driver, replace(tips[0], power=power)
+    chart = profile_chart("p", gear, tip, TipTolerance(4e-6, 0.5e-3, 3e-6))
+    assert (chart.lower <= chart.profile).all()
+    assert (chart.profile <= chart.upper).all()
+    assert (chart.profile[-1], chart.upper[-1], chart.lower[-1]) == pytest.approx((-20e-6, -16e-6, -27e-6), abs=1e-12)
+    assert (chart.profile[0], chart.upper[0], chart.lower[0]) == pytest.approx((0.0, 0.0, -3e-6), abs=1e-15)
+    # Where relief begins within its length's tolerance.
+    for limit, off in ((chart.upper, -0.5e-3), (chart.lower + 3e-6, 0.5e-3)):
+        begins = chart.roll_length[np.flatnonzero(limit < -1e-12)[0]]
+        assert begins == pytest.approx(gear.base_radius * tip.start - off, abs=1.1 * np.diff(chart.roll_length).max())
+    assert "20.0 ± 4.0 µm" in chart.words
+
+
+def test_a_gear_without_relief_has_a_level_chart(engagement, tips):
+    chart = profile_chart("p", engagement.pair.driver, replace(tips[0], amount=0.0), TipTolerance(4e-6, None, 3e-6))
+    assert not chart.profile.any()
+    assert (np.ptp(chart.lower), chart.marks, chart.words) == (0.0, (), "no relief")
