@@ -59,7 +59,7 @@ class DesignTask:
         Between the flanks at the design load; the reliefs make up for it, and everything runs with it.
     over : LoadRange, optional
         Loads that reliefs to grind are designed for in place of the design load only.
-    tolerances : tuple of TipTolerance, optional
+    tip_tolerances : tuple of TipTolerance, optional
         Of the reliefs to grind on driver and driven gear.
     """
 
@@ -74,7 +74,7 @@ class DesignTask:
     allowed: Allowed | None = None
     film: OilFilm | None = None
     over: LoadRange | None = None
-    tolerances: tuple[TipTolerance, TipTolerance] | None = None
+    tip_tolerances: tuple[TipTolerance, TipTolerance] | None = None
 
     @property
     def over_loads(self) -> tuple[float, ...]:
@@ -215,9 +215,9 @@ def design_relief(
         if label != "diagonal only"
     }
     within: dict[Shape, Array] = {}
-    if film is None and task.tolerances is not None:
+    if film is None and task.tip_tolerances is not None:
         within = {
-            shape: within_tolerances(plain, (one.driver, one.driven), task.tolerances, task.over_loads)
+            shape: within_tolerances(plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads)
             for shape, one in ground.items()
         }
     report(0.95)
