@@ -81,6 +81,7 @@ RELIEF = {"tip": {"amount": "10 um", "length": "1 mm"}, "root": {"amount": "5 um
           "crowning": {"amount": "4 um"}}  # fmt: skip
 RELIEVED = joined(LOADED, {"gear.a.relief": RELIEF, "effects": {"relief": True}})
 DESIGN = joined(PAIR, {"results": ["relief"], "effects": {}, "design": {"grind": []}})
+FOR_RANGE = {"pair.I.load": None, "pair.I.torques": ["40 N*m", "80 N*m"]}
 GAUGE = joined(LOADED, {"results": ["gauge"], "gauge": {"g": {"gear": "a"}}, "accuracy": {"tolerance": 0.03}})
 LOADING = {"results": ["loading-spectrum"], "loading": {"contact_ratio": 1.6}}
 OF_PAIR = joined(PAIR, {"results": ["loading-spectrum"], "effects": {}, "loading": {"pair": "I"}})
@@ -127,6 +128,11 @@ ROWS = {
     "DesignPart.load": (DESIGN, "design.load", "2 kN"),
     "DesignPart.length": (DESIGN, "design.length", lambda s: metres(s.pairs["I"].x_end - s.pairs["I"].x_start)),
     "DesignPart.centre": (DESIGN, "design.centre", lambda s: metres(0.5 * (s.pairs["I"].x_end + s.pairs["I"].x_start))),
+    "DesignPart.over": (joined(DESIGN, FOR_RANGE), "design.over", "torques"),
+    "PairPart.weights": (joined(DESIGN, FOR_RANGE), "pair.I.weights", [1.0, 1.0]),
+    "TipTolerancePart.amount": (
+        joined(DESIGN, {f"gear.{name}.deviations": {"profile_slope": "4 um"} for name in "ab"}),
+        "design.tolerances.amount", "4 um"),
     "DesignPart.exponent": (joined(DESIGN, {"design.family": "polynomial"}), "design.exponent", 7),
     "ChartPart.loads": (
         joined(PAIR, {"results": ["relief-chart"], "effects": {}, "design": {
@@ -257,7 +263,7 @@ NOT_WRITTEN = {
     "StrengthPart.bending", "StrengthPart.contact", "StrengthPart.residual_stress", "StrengthPart.yield_strength",
     "StudyPart.pressure_angle", "StudyPart.rack_dedendum", "TolerancePart.deviations", "TolerancePart.pair",
     "TrainMeshPart.stiffness", "TransmissibilityPart.driven", "TransmissibilityPart.driver",
-    "fegear__case__helical__ShaftPart.over",
+    "fegear__case__helical__ShaftPart.over", "TipTolerancePart.length",
 }  # fmt: skip
 _DERIVED = re.compile(r"[Ww]ithout|[Dd]efault\b|unless specified")
 

@@ -228,7 +228,9 @@ def test_figures_are_written_and_opened(found, tmp_path, monkeypatch):
     assert [path.name for path in made] == ["load_sharing_I.svg"]
     assert made[0].read_text("utf-8").lstrip().startswith("<?xml")
     with pytest.raises(InputError, match='choose "png", "svg" or "pdf"'):
-        found.plot("load_sharing_I").save(tmp_path, "pdf")
+        found.plot("load_sharing_I").save(tmp_path, "eps")
+    (printed,) = found.plot("load_sharing_I").save(tmp_path, "pdf")
+    assert printed.read_bytes().startswith(b"%PDF")
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     found.plot("load_sharing_I", "transmission_error_I").show()

@@ -36,4 +36,5 @@ def design_range(scene: Scene, name: str) -> LoadRange | None:
     if set(given) == {design.load or part.normal_load(pair)}:
         return None
     ordered = tuple(sorted(given))
-    return LoadRange(ordered, None if part.weights is None else tuple(given[load] for load in ordered))
+    alike = len(set(given.values())) == 1
+    return LoadRange(ordered, None if alike else tuple(given[load] for load in ordered))
