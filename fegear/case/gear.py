@@ -13,13 +13,11 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.case.derived import keys_of
 from fegear.case.deviations import DeviationsPart
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
+from fegear.case.gear_teeth import TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.part import (
-    Angle,
     LengthOrZero,
-    Number,
     Part,
-    PositiveInverseLength,
     PositiveLength,
     Table,
     at,
@@ -30,6 +28,7 @@ from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
+from fegear.geometry.inspection import span
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.over_balls import over_balls
 from fegear.geometry.plausible import refuse_material
@@ -71,39 +70,18 @@ _EXTERNAL_ONLY = {
 }
 
 
-class GearPart(Part):
+class GearPart(TeethPart):
     """One gear: tooth, size, body and material."""
 
-    teeth: int = Field(description="Number of teeth, 5 to 1000.")
-    module: PositiveLength | None = Field(default=None, description="Module m; alternatively `diametral_pitch`.")
-    diametral_pitch: PositiveInverseLength | None = Field(
-        default=None, description="Diametral pitch, teeth per length of reference diameter; alternatively `module`."
-    )
-    pressure_angle: Angle = Field(default=math.radians(20.0), description="Pressure angle of the basic rack.")
-    profile_shift: Number = Field(default=0.0, description="Profile shift coefficient x.")
     rack: Table[RackPart] = Field(
         default_factory=RackPart,
         description="Basic rack (tool): profile of ISO 53 by name, or a table in modules. Default: ISO 53 C.",
-    )
-    thickness_allowance: LengthOrZero = Field(
-        default=0.0,
-        description="Tooth thickness allowance: reduction of the tooth thickness at the reference "
-        "circle, made by tool infeed.",
-    )
-    tip_diameter: PositiveLength | None = Field(
-        default=None,
-        description="Tip diameter. Default: reference diameter + 2 m (x + h_aP*).",
     )
     tip_radius_rounding: LengthOrZero = Field(default=0.0, description="Tip rounding radius; 0: sharp tip edge.")
     tip_chamfer: LengthOrZero = Field(default=0.0, description="Height of the tip chamfer; 0: none.")
     bore_radius: PositiveLength | None = Field(
         default=None,
         description="Radius at which the gear body is fixed, inside the root circle. Default: half the root radius.",
-    )
-    internal: bool = Field(
-        default=False,
-        description="Internal gear (ring gear); requires `cutter`. Sign of profile shift as in ISO 21771: positive "
-        "shift moves the profile towards the tooth tip (smaller diameters).",
     )
     cutter: Table[CutterPart] | None = Field(
         default=None, description="Pinion-type cutter of an internal gear, instead of `rack`."
@@ -135,11 +113,6 @@ class GearPart(Part):
     )
     face_width: PositiveLength | None = Field(
         default=None, description="Face width. Default: 1 mm (results per unit width do not depend on it)."
-    )
-    ball_diameter: PositiveLength | None = Field(
-        default=None,
-        description="Ball or pin diameter D_M for M_dK. Default: next R 40 value above the diameter with contact at "
-        "the V-circle.",
     )
     plane: Literal["strain", "stress", "auto"] = Field(
         default="strain",
@@ -206,20 +179,6 @@ class GearPart(Part):
         description="User-defined flank deviations, replacing those of `tolerance_class` in rating and `robustness`. "
         "Required outside the size range of ISO 1328-1.",
     )
-    helix_angle: Angle | None = Field(
-        default=None, description="Helix angle at the reference cylinder, up to 60 deg. Default: 0 (spur gear)."
-    )
-    hand: Literal["left", "right", "spur"] | None = Field(
-        default=None, description="Hand of helix, `left` or `right`; `spur` for zero helix angle."
-    )
-    normal_module: PositiveLength | None = Field(
-        default=None,
-        description="Normal module m_n of a helical gear; alternatively `normal_diametral_pitch`.",
-    )
-    normal_diametral_pitch: PositiveInverseLength | None = Field(
-        default=None,
-        description="Normal diametral pitch of a helical gear; alternatively `normal_module`.",
-    )
 
     def rim(self, root_radius: float) -> float | None:
         """s_R [m]: as given, else what a given bore leaves below the root circle [m]; None of a solid gear."""
@@ -253,18 +212,8 @@ class GearPart(Part):
         """Whether its profile is drawn, or measured, to differ from an involute."""
         return self.relief is not None or (self.measured is not None and self.measured.profile is not None)
 
-    @property
-    def is_helical(self) -> bool:
-        """Whether the gear is described as a helical one (of helix angle zero as the limit)."""
-        return self.helix_angle is not None
-
-    @property
-    def has_helix(self) -> bool:
-        """Whether its teeth are not straight."""
-        return bool(self.helix_angle)
-
     @model_validator(mode="after")
-    def _one_size(self) -> Self:
+    def _one_gear(self) -> Self:
         if self.tolerance_class is not None and self.face_width is None:
             raise refuse(
                 "is required for the helix tolerances of tolerance_class", 'set face_width = "20 mm"',
@@ -275,13 +224,6 @@ class GearPart(Part):
         if self.is_helical:
             self._check_helical()
             return self
-        for key in ("hand", "normal_module", "normal_diametral_pitch"):
-            if getattr(self, key) is not None:
-                raise refuse("requires helix_angle", 'set helix_angle = "30 deg"', key=key)
-        if self.module is None and self.diametral_pitch is None:
-            raise refuse("is missing", 'set module = "3.175 mm" or diametral_pitch = "8 / inch"', key="module")
-        if self.module is not None and self.diametral_pitch is not None:
-            raise refuse("contradicts module", "specify either module or diametral_pitch", key="diametral_pitch")
         if self.plane == "auto" and self.face_width is None:
             raise refuse('is required for plane = "auto"', 'set face_width = "6.35 mm"', key="face_width")
         return self
@@ -329,28 +271,13 @@ class GearPart(Part):
             )  # fmt: skip
 
     def _check_helical(self) -> None:
-        """Refuse sizes of the section across the axis, and keys of what is computed in a plane."""
-        if (self.normal_module is None) == (self.normal_diametral_pitch is None):
-            remedy = 'set normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'
-            raise refuse("must be specified exactly once for a helical gear", remedy, key="normal_module")
-        for key in ("module", "diametral_pitch"):
-            if key in self.model_fields_set:
-                raise refuse("is for spur gears only", f"use normal_{key} for a gear with helix_angle", key=key)
+        """Refuse keys of what is computed in a plane, and what a helical gear cannot do without."""
         for key in ("plane", "tooth_mesh", "tooth_mesh_fillet"):
             if self.has_helix and getattr(self, key) != type(self).model_fields[key].default:
                 raise refuse("is not available for helical gears", f"remove {key} (not needed for results)", key=key)
         for key in ("hand", "face_width"):
             if getattr(self, key) is None:
                 raise refuse("is required for a helical gear", f"specify {key}", key=key)
-
-    @property
-    def module_length(self) -> float:
-        """The normal module m_n [m], that of a spur gear's only section."""
-        if self.is_helical:
-            given = self.normal_module, self.normal_diametral_pitch
-        else:
-            given = self.module, self.diametral_pitch
-        return given[0] if given[0] is not None else 1.0 / (given[1] or math.nan)
 
     def build(self, prefix: str) -> Gear:
         """Make the gear; errors of the geometry are reported under the keys of the case file.
@@ -368,6 +295,8 @@ class GearPart(Part):
             gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur", body, support)
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
+            if self.span_teeth is not None:
+                self._refuse_span(gear)
             told = self.deviations is not None and self.deviations.enough_to_rate
             if self.tolerance_class is not None and not told:
                 from fegear.formulas.iso1328 import tolerances_of
@@ -376,14 +305,23 @@ class GearPart(Part):
         except InputError as error:
             names = _KEYS | ({"module": "normal_module"} if self.is_helical else {"normal_module": "module"})
             names |= {"bore_radius": "outer_radius"} if self.internal else {}
-            raise at(prefix, self._in_words_of_the_case(error), names) from None
+            raise at(prefix, self._of_measure(self._in_words_of_the_case(error)), names) from None
         return gear
+
+    def _refuse_span(self, gear: Gear) -> None:
+        """Refuse teeth over which no disc micrometer could measure."""
+        try:
+            span(gear, self.span_teeth or 1)
+        except GeometryError as error:
+            if error.key != "teeth":
+                raise
+            raise GeometryError("span_teeth", error.value, error.rule, error.remedy) from None
 
     def _tooth(self, module: float) -> Tooth | InternalTooth:
         """The tooth in modules, as the rack or the cutter makes it."""
         tip = math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / module
         shape = (
-            self.profile_shift, self.thickness_allowance / module, tip, self.tip_radius_rounding / module,
+            self.x, self.allowance / module, tip, self.tip_radius_rounding / module,
             self.tip_chamfer / module, self.helix_angle or 0.0,
         )  # fmt: skip
         if (cutter := self.cutter) is not None:
@@ -426,6 +364,14 @@ class GearPart(Part):
                 f"must be between 0 and the root radius {root_radius * 1e3:.6g} mm", "remove it for a solid gear",
             )  # fmt: skip
         return 0.5 * root_radius if self.bore_radius is None else self.bore_radius
+
+    def _of_measure(self, error: InputError) -> InputError:
+        """Report a profile shift under the dimension from which it was derived."""
+        measure = self.measure
+        if error.key != "profile_shift" or measure is None:
+            return error
+        given = f"{getattr(self, measure) * 1e3:.6g} mm"
+        return InputError(measure, given, f"gives x = {self.x:.4g}, but {error.rule}", "check the dimension")
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
         """Report lengths that the tooth takes in modules as the case gave them."""

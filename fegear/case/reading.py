@@ -23,6 +23,7 @@ from fegear.case.references import check_references
 from fegear.case.refusal import _meant, refusal
 from fegear.case.renamed import current, current_key, without_old
 from fegear.case.set_pairs import with_set_pairs
+from fegear.case.settled import settled
 from fegear.case.text_file import is_below, read_text
 
 if TYPE_CHECKING:
@@ -67,6 +68,8 @@ class Scene(Brief):
         usually wants, and not compared with it.
     renamed : tuple of str
         A sentence about every name of the case that is another one now.
+    derived : tuple of str
+        A sentence about every number that was made of another dimension.
     within : tuple of str, optional
         Real folders below which the files lie that the case may name; None for anywhere.
     """
@@ -83,6 +86,7 @@ class Scene(Brief):
     neglects: bool = True
     drafts: Mapping[str, float] = field(default_factory=dict)
     renamed: tuple[str, ...] = ()
+    derived: tuple[str, ...] = ()
     within: tuple[str, ...] | None = None
 
     @property
@@ -220,6 +224,7 @@ def build_scene(
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
         raise refusal(error) from None
+    case, derived = settled(case)
     gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
     case = with_set_pairs(case, gears)
     for key, pair in case.pair.items():
@@ -243,7 +248,18 @@ def build_scene(
         for key, pair in case.pair.items()
         if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical and not pairs[key].internal
     }
-    scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document, renamed=renamed, within=within)
+    scene = Scene(
+        case,
+        name,
+        folder,
+        gears,
+        pairs,
+        helical_pairs,
+        document=document,
+        renamed=renamed,
+        derived=derived,
+        within=within,
+    )
     check_references(
         scene.case,
         {"gear": scene.gears, "spur gear": scene.spur_gears, "pair": scene.pairs, "spur pair": scene.spur_pairs},

@@ -30,6 +30,9 @@ def _plain(node: Any) -> Any:
     each = node.get("items")
     if isinstance(default, list) and isinstance(each, dict) and QUANTITY in each:
         default = [_written(value, each[QUANTITY]) for value in default]
+    for kind in node.get("anyOf", ()):
+        if QUANTITY in kind and isinstance(default, float):  # a quantity, or a name
+            default = _written(default, kind[QUANTITY])
     if isinstance(made.get("title"), str):
         del made["title"]  # the key once more, with blanks; a table of properties may have one of that name
     if QUANTITY in made:

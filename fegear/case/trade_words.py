@@ -74,7 +74,6 @@ _SPACING = "specify it as gear.NAME.spacing_errors, one value for each tooth"
 _HEAT = "thermal expansion is not computed; flank-surface computes flank temperatures"
 
 _THICKNESS = "reduction of the tooth thickness at the reference circle from (pi/2 + 2 x tan(alpha)) m"
-_MEASURED = f"{_THICKNESS}; geometry reports the resulting span and dimension over balls"
 _BACKLASH = (
     ("gear.NAME.thickness_allowance",),
     "with pair.NAME.centre_distance it gives the backlash, which geometry reports; of a train train.mesh.NAME.backlash",
@@ -88,10 +87,13 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
      ("gear.NAME.teeth",), ""),
     ("m modul", ("gear.NAME.module",), ""),
     ("mn m_n normalmodul", ("gear.NAME.normal_module", "gear.NAME.module"), ""),
-    ("mt m_t transverse_module stirnmodul", ("gear.NAME.normal_module",), "m_n = m_t cos(beta)"),
+    ("mt m_t stirnmodul radial_module", ("gear.NAME.transverse_module",), ""),
     ("dp p_d pd diametral transverse_diametral_pitch", ("gear.NAME.diametral_pitch",), ""),
     ("pnd p_nd", ("gear.NAME.normal_diametral_pitch",), ""),
-    ("circular_pitch pitch p teilung base_pitch p_b tooth_pitch", ("gear.NAME.module",), "the circular pitch over pi"),
+    ("pitch p teilung tooth_pitch cp", ("gear.NAME.circular_pitch",), ""),
+    ("base_pitch p_b pb eingriffsteilung", ("gear.NAME.module",), "the base pitch over pi cos(alpha)"),
+    ("p_n pn normal_pitch normalteilung", ("gear.NAME.normal_circular_pitch",), ""),
+    ("alpha_t alphat stirneingriffswinkel radial_pressure_angle", ("gear.NAME.transverse_pressure_angle",), ""),
     ("d pitch_diameter reference_diameter pitch_circle pitch_radius teilkreis teilkreisdurchmesser",
      ("gear.NAME.module",), "the reference diameter over the number of teeth"),
     ("alpha alpha_n phi phi_n normal_pressure_angle eingriffswinkel", ("gear.NAME.pressure_angle",), ""),
@@ -108,10 +110,21 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (("bore bore_diameter bore_dia d_i di inner_diameter inside_diameter shaft_hole hole_diameter bohrung "
      "bohrungsdurchmesser"), ("gear.NAME.bore_radius",), "half the diameter"),
     ("hub_diameter nabendurchmesser", ("gear.NAME.body.hub_radius",), "half the diameter"),
-    (("tooth_thickness s_n sn s_t s thickness circular_tooth_thickness chordal_thickness zahndicke "
-     "tooth_thickness_tolerance zahndickenabmass"), ("gear.NAME.thickness_allowance",), _THICKNESS),
-    (("span span_measurement base_tangent base_tangent_length w_k wk zahnweite over_pins over_balls "
-     "measurement_over_pins dimension_over_balls m_dk mdk"), ("gear.NAME.thickness_allowance",), _MEASURED),
+    ("s_n sn s_t s thickness circular_tooth_thickness normal_tooth_thickness zahndicke",
+     ("gear.NAME.tooth_thickness",), "normal to the teeth at the reference diameter"),
+    ("tooth_thickness_tolerance zahndickenabmass zahndickentoleranz a_sn asn e_sn esn t_sn allowance",
+     ("gear.NAME.thickness_allowance",), _THICKNESS),
+    ("chordal_tooth_thickness chord_thickness zahndickensehne s_c sc caliper",
+     ("gear.NAME.chordal_thickness",), "with chordal_height"),
+    ("chordal_addendum h_c hc zahnhoehe_ueber_sehne", ("gear.NAME.chordal_height",), ""),
+    ("span_measurement base_tangent base_tangent_length w_k wk zahnweite w", ("gear.NAME.span",), "with span_teeth"),
+    ("k spanned_teeth teeth_spanned messzaehnezahl", ("gear.NAME.span_teeth",), ""),
+    ("measurement_over_balls dimension_over_balls between_balls m_dk mdk kugelmass", ("gear.NAME.over_balls",),
+     "with ball_diameter"),
+    (("measurement_over_pins dimension_over_pins between_pins over_wires over_rollers mop m_dr mdr rollenmass "
+      "dimension_over_rollers"), ("gear.NAME.over_pins",), "with ball_diameter"),
+    ("d_m dm ball pin pin_diameter wire_diameter roller_diameter messkugel messrolle",
+     ("gear.NAME.ball_diameter",), ""),
     ("backlash j_bn jbn j_n j_t jt flankenspiel drehflankenspiel play clearance_of_flanks", *_BACKLASH),
     ("tip_relief kopfruecknahme c_a ca cay",
      ("gear.NAME.relief.tip.amount", "gear.NAME.relief"), "with its amount and length"),

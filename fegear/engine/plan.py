@@ -155,7 +155,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     # What the description calls for, and no wanted result uses, was not asked for.
     named = idle if scene.case.effects.start == "none" else scene.case.effects.named
     said += [_idle(effect, known.entries) for effect in idle if effect in named]
-    return Plan(steps, skipped, idle, (*scene.renamed, *said))
+    return Plan(steps, skipped, idle, (*scene.renamed, *scene.derived, *said))
 
 
 def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -> None:

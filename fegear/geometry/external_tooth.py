@@ -14,6 +14,7 @@ from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, meeting, p
 from fegear.geometry.involute import roll_of_polar_angle
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import BasicRack, transverse_angle
+from fegear.geometry.thickness import ToothNumbers
 
 #: Half the thickness of the thinnest neck that undercut may leave [modules].
 _THINNEST_NECK = 0.02
@@ -184,10 +185,8 @@ class Tooth(InvoluteTooth):
     @property
     def least_profile_shift(self) -> float:
         """x_min, profile shift from which on the rack's tip cuts nothing off the involute (ISO 21771, 5.2)."""
-        rack, alpha = self.rack, self.pressure_angle
-        room = self.base_radius * math.sin(alpha) * math.tan(alpha)
-        reach = rack.tip_centre_depth + rack.tip_radius * math.sin(rack.pressure_angle)
-        return reach - room + self.profile_shift - self.generating_shift
+        numbers = ToothNumbers(self.teeth, self.rack.pressure_angle, self.helix_angle)
+        return numbers.least_shift(self.rack) + self.profile_shift - self.generating_shift
 
     @property
     def undercut(self) -> bool:

@@ -11,7 +11,7 @@ from fegear.base.errors import GeometryError
 from fegear.base.shown import shown, shows
 from fegear.geometry.checks import tip_thickness
 from fegear.geometry.gear import Gear
-from fegear.geometry.inspection import usual_span
+from fegear.geometry.inspection import chord, span, usual_span
 from fegear.geometry.over_balls import OverBalls, over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import ActiveProfile, GearPair, Member, active_profile, specific_sliding
 
@@ -39,6 +39,7 @@ class GearData:
         Whether it stands beside helical gears, or is one.
     ball_diameter_given : float or None
         [m].
+    span_teeth_given : int or None
     amounts : mapping of str to float
         What is ground off the flanks [m], by the attributes below; zero where only gears beside it have some.
     name : str
@@ -47,6 +48,7 @@ class GearData:
     gear: Gear
     helical: bool
     ball_diameter_given: float | None
+    span_teeth_given: int | None
     amounts: Mapping[str, float]
     name: str = shown("", "name of the gear", name="gear")
 
@@ -189,6 +191,24 @@ class GearData:
         return math.nan if self.over is None else self.over.dimension
 
     @property
+    @shows("mm", "over pins M_dR")
+    def over_pins(self) -> float | None:
+        """Over pins, each where it stands highest [m]; not of spur gears, where it is M_dK."""
+        return None if not self.helical else math.nan if self.over is None else self.over.over_pins
+
+    @property
+    @shows("mm", "chordal tooth thickness at d")
+    def chordal_thickness(self) -> float:
+        """Normal to the helix [m]; nan of internal gears."""
+        return self.chord[0]
+
+    @property
+    @shows("mm", "height of that chord from d_a")
+    def chordal_height(self) -> float:
+        """[m]."""
+        return self.chord[1]
+
+    @property
     @shows("um", "tip relief C_αa")
     def tip_relief(self) -> float | None:
         """[m]."""
@@ -238,8 +258,15 @@ class GearData:
 
     @cached_property
     def spanned(self) -> tuple[int, float] | None:
-        """Teeth of the usual span, and its length [m]; None where the face is too narrow or the gear internal."""
+        """Teeth of the given or usual span, and its length [m]; None where no span can be measured."""
+        if self.span_teeth_given is not None:
+            return self.span_teeth_given, span(self.gear, self.span_teeth_given)
         return usual_span(self.gear)
+
+    @cached_property
+    def chord(self) -> tuple[float, float]:
+        """Chordal thickness on the reference cylinder, and its height from the tip circle [m]."""
+        return chord(self.gear)
 
     @cached_property
     def over(self) -> OverBalls | None:

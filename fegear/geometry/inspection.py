@@ -1,4 +1,4 @@
-"""Span measurement: what a disc micrometer reads over several teeth (ISO 21771, 5.6: base tangent length W_k)."""
+"""What a disc micrometer reads over several teeth (ISO 21771, 5.6: span W_k), and a gear tooth caliper on one."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.gear import Gear
+from fegear.geometry.thickness import ToothNumbers
 
 
 def span(gear: Gear, teeth: int) -> float:
@@ -78,3 +79,17 @@ def span_teeth(gear: Gear) -> int:
     base_thickness = 2.0 * gear.base_radius * gear.tooth.base_half_angle
     across = 2.0 * half / math.cos(gear.base_helix_angle) ** 2
     return max(1, round((across - base_thickness) / gear.base_pitch) + 1)
+
+
+def chord(gear: Gear) -> tuple[float, float]:
+    """Chordal tooth thickness on the reference cylinder, normal to the helix, and its height from the tip circle [m].
+
+    A helical tooth is that of its virtual spur gear in the normal section, as drawings have it. Not a number of
+    internal gears, which no caliper reaches, and of teeth so thick that they have no such chord.
+    """
+    tooth = gear.tooth
+    if tooth.internal:
+        return math.nan, math.nan
+    numbers = ToothNumbers(tooth.teeth, tooth.normal_pressure_angle, tooth.helix_angle)
+    thickness, drop = numbers.chord(tooth.generating_shift)
+    return thickness * gear.module, (tooth.tip_radius - tooth.pitch_radius + drop) * gear.module

@@ -27,11 +27,15 @@ class OverBalls(NamedTuple):
         D_M [m].
     contact_radius : float
         Where the balls touch the flanks [m].
+    over_pins : float
+        M_dR [m]: pins lie along the spaces of a helical gear, and those of an odd number of teeth stand opposite each
+        other, at two heights of the axis; nan of internal helical gears, where no pin fits.
     """
 
     dimension: float
     ball_diameter: float
     contact_radius: float
+    over_pins: float
 
 
 def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
@@ -40,7 +44,7 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     Thickness allowances count, as in `span`. With alpha_K the transverse pressure angle at the centre of the ball,
     inv(alpha_K) = D_M / (d_b cos(beta_b)) - (half the angle of a tooth space on the base circle); of an internal gear
     both terms have the other sign, for the ball lies on the flanks' hollow side. On helical teeth the balls lie in one
-    section across the axis; pins along an odd number of helical spaces would read otherwise.
+    section across the axis.
 
     Parameters
     ----------
@@ -74,7 +78,9 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     if side * (centre - gear.tip_radius) <= -0.5 * ball_diameter:
         raise _refused(gear, ball_diameter, "lies below the tip circle and cannot be measured")
     across = centre if gear.teeth % 2 == 0 else centre * math.cos(0.5 * math.pi / gear.teeth)
-    return OverBalls(2.0 * across + side * ball_diameter, ball_diameter, contact)
+    over = 2.0 * across + side * ball_diameter
+    pins = over if gear.helix_angle == 0.0 else math.nan if side < 0 else 2.0 * centre + ball_diameter
+    return OverBalls(over, ball_diameter, contact, pins)
 
 
 def _refused(gear: Gear, ball_diameter: float, rule: str) -> GeometryError:

@@ -21,6 +21,7 @@ from written_out import written_out
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.geometry.inspection import chord, span_teeth
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -111,6 +112,11 @@ ROWS = {
         joined(PAIR, {"results": ["geometry"]}), "gear.a.ball_diameter",
         lambda s: f"{ran(joined(PAIR, {'results': ['geometry']})).tables['geometry']['ball_diameter'][0]!r} mm".replace(
             "np.float64(", "").replace(")", "")),
+    "GearPart.span_teeth": (
+        joined(PAIR, {"results": ["geometry"]}), "gear.a.span_teeth", lambda s: span_teeth(s.gears["a"])),
+    "GearPart.chordal_height": (
+        {"results": ["geometry"], "gear": {"a": {**GEAR, "tip_diameter": "70 mm", "chordal_thickness": "4.9 mm"}}},
+        "gear.a.chordal_height", lambda s: metres(chord(s.gears["a"])[1])),
     "GearPart.flank_treatment": (
         joined(SURFACE, {"gear.pinion.flank_treatment": None, "pair.I.lubricant.micropitting_load_stage": None}),
         "gear.pinion.flank_treatment", "through-hardened"),

@@ -52,7 +52,7 @@ def test_the_reference_of_case_files_has_the_tables_of_the_model():
 def test_the_form_shows_the_sentence_and_what_may_be_typed():
     document = {"gear": {"a": {"teeth": 20, "rack": {"tip_radius": 0.3}}}, "effects": {}}
     found = {field.key: field for field in fields(form(document))}
-    assert found["gear.a.module"].about == ("Module m; alternatively diametral_pitch.")
+    assert found["gear.a.module"].about == ("Module m; alternatively diametral_pitch or circular_pitch.")
     assert found["gear.a.module"].hint.startswith("length with its unit: mm, um, m, inch")
     assert found["effects.relief"].about == "Include profile and flank line modifications."
     assert found["gear.a.rack.tip_radius"].about.startswith("Tip radius of the basic rack")

@@ -26,7 +26,9 @@ _GEAR = frozenset(
         "teeth", "module", "diametral_pitch", "normal_module", "normal_diametral_pitch", "pressure_angle", "rack",
         "profile_shift", "tip_diameter", "tip_chamfer", "bore_radius", "internal", "cutter", "face_width", "material",
         "ball_diameter", "plane", "strength", "tooth_mesh", "tooth_mesh_fillet", "relief", "lead", "roughness",
-        "tolerance_class", "helix_angle", "hand",
+        "tolerance_class", "helix_angle", "hand", "circular_pitch", "normal_circular_pitch", "transverse_module",
+        "transverse_pressure_angle", "profile_shift_sign", "tooth_thickness", "span", "span_teeth", "over_balls",
+        "over_pins", "chordal_thickness", "chordal_height",
     }
 )  # fmt: skip
 _STRENGTH = frozenset({"material", "hardness", "core_hardness", "contact", "bending"})

@@ -41,7 +41,10 @@ _GROUPS = (
         "reference_diameter", "base_diameter", "tip_diameter", "tip_form_diameter", "active_tip_diameter",
         "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
     )),
-    ("Measurement", ("tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls")),
+    ("Measurement", (
+        "tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls", "over_pins",
+        "chordal_thickness", "chordal_height",
+    )),
     ("Modifications", MODIFICATIONS),
     ("In mesh", ("tip_clearance", "specific_sliding_start", "specific_sliding_end")),
 )  # fmt: skip

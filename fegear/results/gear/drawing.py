@@ -61,6 +61,8 @@ class Drawing:
         Names of the driver and the driven gear of each pair.
     balls : mapping of str to float
         Diameters of the measuring balls or pins that the case names, by gear [m].
+    spans : mapping of str to int
+        Teeth of the spans that the case names, by gear.
     ground : mapping of str to mapping of str to float
         What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
     assumed : tuple of str
@@ -71,6 +73,7 @@ class Drawing:
     pairs: Mapping[str, GearPair]
     members: Mapping[str, tuple[str, str]]
     balls: Mapping[str, float]
+    spans: Mapping[str, int]
     ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
 

@@ -39,7 +39,12 @@ def gears_of(drawing: Drawing, names: Sequence[str]) -> tuple[GearData, ...]:
     helical = any(drawing.gears[name].helix_angle != 0.0 for name in names)
     ground = {key for name in names for key in drawing.ground.get(name, {})}
     amounts = {name: {key: drawing.ground.get(name, {}).get(key, 0.0) for key in ground} for name in names}
-    return tuple(GearData(drawing.gears[name], helical, drawing.balls.get(name), amounts[name], name) for name in names)
+    return tuple(
+        GearData(
+            drawing.gears[name], helical, drawing.balls.get(name), drawing.spans.get(name), amounts[name], name
+        )
+        for name in names
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -118,6 +123,7 @@ def _gear_columns(gears: Callable[[Seen], tuple[GearData, ...]]) -> tuple[tuple[
         Cell("tip_thickness", of=gears, meaning=normal("tooth thickness at d_Fa")),
         *(Cell(key, of=gears) for key in ("span_teeth", "span", "ball_diameter")),
         Cell("over_balls", of=gears, meaning=where),
+        *(Cell(key, of=gears) for key in ("over_pins", "chordal_thickness", "chordal_height")),
     )
     return teeth, measures
 
@@ -128,7 +134,9 @@ def drawing_of(scene: Scene) -> Drawing:
     members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
     balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
     ground = {name: amounts for name in scene.gears if (amounts := ground_off(scene.case.gear[name]))}
-    return Drawing(scene.gears, scene.pairs, members, balls, ground, (*assumed_cutters(scene), *assumed_bodies(scene)))
+    spans = {name: k for name in scene.gears if (k := scene.case.gear[name].span_teeth) is not None}
+    assumed = (*assumed_cutters(scene), *assumed_bodies(scene))
+    return Drawing(scene.gears, scene.pairs, members, balls, spans, ground, assumed)
 
 
 def assumed_cutters(scene: Scene) -> tuple[str, ...]:
