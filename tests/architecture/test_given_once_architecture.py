@@ -14,6 +14,7 @@ FEW = 4
 STILL_TWICE = {
     "flank_design.FlankDesignPart": 4,
     "gear.GearPart": 6,
+    "gear_teeth.TeethPart": 4,
     "gear_tool.RackPart": 6,
     "gear_tool.CutterPart": 4,
     "helical.MisalignmentPart": 4,

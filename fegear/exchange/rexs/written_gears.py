@@ -101,7 +101,7 @@ def _flank(written: Written, gear: Gear, part: GearPart, name: str) -> Part:
     made = written.part("cylindrical_gear_flank", name)
     stock = part.rack.grinding_allowance * gear.module
     made.say("angle", normal_pressure_angle=part.pressure_angle)
-    made.say("number", addendum_modification_coefficient=part.profile_shift)
+    made.say("number", addendum_modification_coefficient=part.x)
     return made.say("length", tooth_tip_chamfer=part.tip_chamfer or None, grinding_allowance=stock or None)
 
 
