@@ -44,6 +44,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "angle": Dimension("rad", "20 deg"),
     "force": Dimension("N", "1615 N"),
     "torque": Dimension("N*m", "68 N*m"),
+    "power": Dimension("W", "40 kW"),
     "pressure": Dimension("Pa", "206.8 GPa"),
     "density": Dimension("kg/m^3", "7850 kg/m^3"),
     "line_load": Dimension("N/m", "250 N/mm"),
@@ -76,6 +77,8 @@ TEMPERATURES: dict[str, tuple[float, float]] = {
 }
 
 _INCH, _LBF, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
+#: Mechanical horsepower, 550 ft lbf/s, and metric, 75 m kgf/s.
+_HP, _PS = 550.0 * 12.0 * _INCH * _LBF, 735.49875
 
 #: Everyday units and their size in SI, by dimension. A case file written in these is read without pint, whose import
 #: alone would take a quarter of a cold run; any other unit goes to pint. A test compares every entry with pint. The
@@ -85,6 +88,7 @@ EVERYDAY: dict[str, dict[str, float]] = {
     "angle": {"deg": math.pi / 180.0, "rad": 1.0, "arcmin": math.pi / 10800.0, "arcsec": math.pi / 648000.0},
     "force": {"N": 1.0, "kN": 1e3, "lbf": _LBF},
     "torque": {"N*m": 1.0, "kN*m": 1e3, "N*mm": 1e-3, "lbf*inch": _LBF * _INCH, "Nm": 1.0, "kNm": 1e3, "Nmm": 1e-3},
+    "power": {"kW": 1e3, "W": 1.0, "hp": _HP, "PS": _PS, "MW": 1e6},
     "pressure": {"GPa": 1e9, "MPa": 1e6, "N/mm^2": 1e6, "psi": _PSI, "Pa": 1.0, "bar": 1e5},
     "density": {"kg/m^3": 1.0, "g/cm^3": 1e3, "kg/dm^3": 1e3},
     "line_load": {"N/mm": 1e3, "kN/m": 1e3, "N/m": 1.0},
@@ -118,6 +122,7 @@ UNITS: dict[str, str] = {
     "s": "[time]", "min": "60*s", "h": "3600*s", "Hz": "1/s", "kHz": "1e3/s", "rpm": "rev/min",
     "kg": "[mass]", "g": "1e-3*kg", "t": "1e3*kg", "lb": "0.45359237*kg",
     "N": "kg*m/s^2", "kN": "1e3*N", "MN": "1e6*N", "daN": "10*N", "kgf": "9.80665*N", "lbf": "4.4482216152605*N",
+    "W": "N*m/s", "kW": "1e3*W", "MW": "1e6*W", "hp": f"{_HP!r}*W", "PS": f"{_PS!r}*W",
     "Pa": "N/m^2", "kPa": "1e3*Pa", "MPa": "1e6*Pa", "GPa": "1e9*Pa", "bar": "1e5*Pa",
     "psi": "lbf/inch^2", "ksi": "1e3*psi", "Mpsi": "1e6*psi",
     "Nm": "N*m", "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s",

@@ -14,10 +14,12 @@ from fegear.case.loading import LineErrorPart
 from fegear.case.operation import OperationPart, ShaftsPart
 from fegear.case.part import (
     Length,
+    LengthOrZero,
     Number,
     Part,
     PositiveForce,
     PositiveLength,
+    PositivePower,
     PositiveSpeed,
     PositiveTorque,
     Table,
@@ -159,11 +161,27 @@ class PairPart(Part):
         default=None,
         description="Working centre distance. Default: zero backlash.",
     )
+    shift_distribution: Literal["driver", "driven", "equal", "equal-sliding", "equal-root-stress"] | None = Field(
+        default=None,
+        description="Sum of the profile shifts from `centre_distance`: the rest for `driver` or `driven`, or shared by "
+        "equal x, specific sliding at A and E, or sigma_F0 (ISO 6336-3).",
+    )
+    normal_backlash: LengthOrZero | None = Field(
+        default=None,
+        description="Backlash normal to the flanks, made by equal `thickness_allowance` of the gears that give none.",
+    )
+    circumferential_backlash: LengthOrZero | None = Field(
+        default=None,
+        description="Backlash on the working pitch circle; alternatively `normal_backlash`.",
+    )
     load: PositiveForce | None = Field(
-        default=None, description="Nominal load along the line of action; alternatively `torque`."
+        default=None, description="Nominal load along the line of action; alternatively `torque` or `power`."
     )
     torque: PositiveTorque | None = Field(
-        default=None, description="Nominal torque on the driver; alternatively `load`."
+        default=None, description="Nominal torque on the driver; alternatively `load` or `power`."
+    )
+    power: PositivePower | None = Field(
+        default=None, description="Nominal power at `speed`; alternatively `torque` or `load`."
     )
     loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = Field(
         default=None,
@@ -237,8 +255,22 @@ class PairPart(Part):
             raise refuse(
                 "contradicts load", "specify either the load along the line of action or the torque", key="torque"
             )
+        if self.power is not None:
+            for key in ("load", "torque"):
+                if getattr(self, key) is not None:
+                    raise refuse(f"contradicts {key}", f"specify either {key} or power", key="power")
+            if self.speed is None:
+                raise refuse("is required for power", 'set speed = "1500 rpm"', key="speed")
         if self.loads is not None and self.torques is not None:
             raise refuse("contradicts loads", "specify either loads along the line of action or torques", key="torques")
+        return self
+
+    @model_validator(mode="after")
+    def _one_backlash(self) -> Self:
+        if self.normal_backlash is not None and self.circumferential_backlash is not None:
+            raise refuse("contradicts normal_backlash", "specify either of them", key="circumferential_backlash")
+        if self.shift_distribution is not None and self.centre_distance is None:
+            raise refuse("is required for shift_distribution", 'set centre_distance = "112 mm"', key="centre_distance")
         return self
 
     @model_validator(mode="after")

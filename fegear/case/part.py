@@ -195,6 +195,9 @@ PositiveSpeed = Annotated[float, quantity("speed", positive=True)]
 PositiveTorque = Annotated[float, quantity("torque", positive=True)]
 
 
+PositivePower = Annotated[float, quantity("power", positive=True)]
+
+
 PositiveLineLoad = Annotated[float, quantity("line_load", positive=True)]
 
 

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, TypeVar
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.gear_teeth import DERIVED
 from fegear.case.part import at
-from fegear.geometry.thickness import ToothNumbers
+from fegear.case.settled_pairs import numbers_of, settled_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.case.gear import GearPart
     from fegear.case.model import Case
+    from fegear.geometry.thickness import ToothNumbers
 
 T = TypeVar("T")
 #: Thickness that two readings of one tooth may differ by [m]: less than any gauge sees.
@@ -41,12 +42,8 @@ def settled(case: Case) -> tuple[Case, tuple[str, ...]]:
     for name, part in case.gear.items():
         gears[name], notes = settled_gear(part, name)
         said += notes
-    return case.model_copy(update={"gear": gears}), tuple(said)
-
-
-def numbers_of(part: GearPart) -> ToothNumbers:
-    """What a gear is before its teeth have a thickness."""
-    return ToothNumbers(part.teeth, _normal_angle(part), part.helix_angle or 0.0, part.internal)
+    pairs, gears, notes = settled_pairs(case.pair, gears, case.gear)
+    return case.model_copy(update={"gear": gears, "pair": pairs}), (*said, *notes)
 
 
 def settled_gear(part: GearPart, name: str) -> tuple[GearPart, list[str]]:
@@ -141,12 +138,6 @@ def _measured(part: GearPart, name: str) -> tuple[GearPart, str]:
         )  # fmt: skip
     note = f"thickness allowance {_um(max(taken, 0.0))} derived from {_reading(part, key)} and x = {part.x:.6g}"
     return part.model_copy(update={"thickness_allowance": max(taken, 0.0)}), note
-
-
-def _normal_angle(part: GearPart) -> float:
-    if part.transverse_pressure_angle is None:
-        return part.pressure_angle
-    return math.atan(math.tan(part.transverse_pressure_angle) * math.cos(part.helix_angle or 0.0))
 
 
 def _generating_shift(part: GearPart, numbers: ToothNumbers, m: float) -> float:

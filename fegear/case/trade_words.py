@@ -75,8 +75,8 @@ _HEAT = "thermal expansion is not computed; flank-surface computes flank tempera
 
 _THICKNESS = "reduction of the tooth thickness at the reference circle from (pi/2 + 2 x tan(alpha)) m"
 _BACKLASH = (
-    ("gear.NAME.thickness_allowance",),
-    "with pair.NAME.centre_distance it gives the backlash, which geometry reports; of a train train.mesh.NAME.backlash",
+    ("pair.NAME.normal_backlash",),
+    "made by thickness_allowance of the gears; of a train train.mesh.NAME.backlash",
 )
 _FOLLOWS = "calculated from the gears, see geometry"
 
@@ -125,7 +125,8 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
       "dimension_over_rollers"), ("gear.NAME.over_pins",), "with ball_diameter"),
     ("d_m dm ball pin pin_diameter wire_diameter roller_diameter messkugel messrolle",
      ("gear.NAME.ball_diameter",), ""),
-    ("backlash j_bn jbn j_n j_t jt flankenspiel drehflankenspiel play clearance_of_flanks", *_BACKLASH),
+    ("backlash j_bn jbn j_n flankenspiel play clearance_of_flanks", *_BACKLASH),
+    ("j_t jt j_wt jwt drehflankenspiel", ("pair.NAME.circumferential_backlash",), ""),
     ("tip_relief kopfruecknahme c_a ca cay",
      ("gear.NAME.relief.tip.amount", "gear.NAME.relief"), "with its amount and length"),
     ("root_relief fussruecknahme c_f cf", ("gear.NAME.relief.root", "gear.NAME.relief"), "with its amount and length"),
@@ -167,7 +168,9 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("pinion ritzel gear_1 gear1 input_gear", ("pair.NAME.driver",), ""),
     ("wheel rad gear_2 gear2 output_gear gear", ("pair.NAME.driven",), ""),
     ("t t1 torque input_torque torque_1 pinion_torque moment drehmoment", ("pair.NAME.torque", "train.torque"), ""),
-    ("power leistung p_kw kw hp transmitted_power", ("pair.NAME.torque",), "the power over the angular speed"),
+    ("leistung p_kw kw hp ps transmitted_power", ("pair.NAME.power",), "with speed"),
+    ("shift_sum sum_of_profile_shifts sum_x x_sum profilverschiebungssumme distribution_of_shift",
+     ("pair.NAME.shift_distribution",), "with centre_distance"),
     ("f_t ft w_t wt force tangential_force transmitted_load umfangskraft normal_force f_n fn",
      ("pair.NAME.load",), "along the line of action: F_t / cos(alpha_wt)"),
     ("n n1 n_1 rpm speed drehzahl input_speed pinion_speed rotational_speed angular_velocity omega",

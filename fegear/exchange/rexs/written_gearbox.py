@@ -20,7 +20,7 @@ from fegear.exchange.rexs.written_shafts import place, write_shaft, write_shaft_
 _PAIR = frozenset(
     {
         "driver", "driven", "centre_distance", "load", "torque", "speed", "width", "lubricant", "operation",
-        "iso_6336", "compliance", "root_stress", "friction",
+        "iso_6336", "compliance", "root_stress", "friction", "power", "shift_distribution",
     }
 )  # fmt: skip
 _OIL = frozenset({"viscosity_40", "viscosity_100", "density_15", "temperature", "kind"})
