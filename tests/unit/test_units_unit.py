@@ -24,7 +24,7 @@ IN_PINTS_WORDS = {
     "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s", "kgm^2": "kg*m^2",
     "kgmm^2": "kg*mm^2", "Nm/rad": "N*m/rad", "kNm/rad": "kN*m/rad", "Nms/rad": "N*m*s/rad", "Ns/m": "N*s/m",
     "lbf*inch": "force_pound*inch", "Pas": "Pa*s", "mPas": "mPa*s",
-    "HBW": "HV/0.95", "HB": "HV/0.95", "ustrain": "um/m", "microstrain": "um/m",
+    "PS": "75*m*kgf/s", "HBW": "HV/0.95", "HB": "HV/0.95", "ustrain": "um/m", "microstrain": "um/m",
 }  # fmt: skip
 #: Where a rotational speed is meant, a cycle is a revolution; where a frequency is meant, a revolution is a cycle.
 CYCLES = {"speed": {"1/min", "1/s", "Hz"}}
