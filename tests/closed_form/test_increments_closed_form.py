@@ -12,6 +12,7 @@ from exact_increments import exact_increments
 
 from fegear.base.errors import RangeError
 from fegear.dynamics.train.increments import (
+    _Solver,
     dynamic_increments,
     high_frequency_increments,
     low_frequency_increments,
@@ -289,3 +290,32 @@ def test_reciprocity():
     damped = np.array([1 + 2j * np.pi * np.logspace(-3, 5, 30) * m.damping / m.stiffness for m in train.meshes])
     forward, back = k[0] * q[0, 1] / damped[0], k[1] * q[1, 0] / damped[1]
     assert forward == pytest.approx(back, rel=1e-11)
+
+
+@pytest.mark.parametrize("zeta", [0.02, 0.4])
+def test_an_entry_by_the_way_back_is_the_entry(zeta):
+    """Q_ij by a column of mesh i: forces there and back are the same, up to springs and dampers of the two."""
+    train, w = four_square(zeta, 3.0 * zeta), 2.0 * math.pi * np.array([200.0, 1500.0, 4000.0])
+    solver = _Solver.of(train)
+    count = len(train.meshes)
+    for mesh in range(count):
+        for i in range(count):
+            if i == mesh:
+                continue
+            direct, back = solver._solve(solver.long, w, mesh), solver._back(w, i=i, mesh=mesh)
+            np.testing.assert_allclose(back.q[i], direct.q[i], rtol=1e-10, atol=1e-14 * np.abs(direct.q).max())
+            assert np.isfinite(back.doubt[i]).all()
+            assert (back.doubt[i] <= 1e-9 * np.abs(back.q[i]).max()).all()
+            others = np.arange(count) != i  # of these nothing is known
+            assert np.isinf(back.doubt[others]).all()
+            assert not back.q[others].any()
+            assert not back.resonance.any()
+
+
+def test_gears_on_one_rigid_body_leave_all_of_the_error_to_the_teeth():
+    train = four_square()
+    found = _Solver.of(train)._rigid(np.array([10.0, 20.0]), 1)
+    np.testing.assert_array_equal(found.q[1], [-1.0, -1.0])
+    assert not np.delete(found.q, 1, axis=0).any()
+    assert not found.doubt.any()
+    assert not found.resonance.any()

@@ -302,3 +302,13 @@ def test_a_scale_of_colours_on_paper_has_room_for_its_numbers():
     made.draw_without_rendering()
     left, right = (axes.get_tightbbox() for axes in (made.axes[2], made.axes[1]))
     assert left.x1 <= right.x0
+
+
+@pytest.mark.parametrize("symbol", ["", "x", "star"])
+def test_points_have_the_symbol_that_they_ask_for_or_their_role_s_own(symbol):
+    from fegear.engine.colours import look
+
+    roles = ("tension", "series:1", "ink")
+    panel = Panel(Axis("x"), Axis("y"), tuple(Points([1.0], [2.0], role, role, symbol=symbol) for role in roles))
+    drawn = [trace for trace in plotly_json(Figure("f", "F", "c", (panel,)))["data"] if trace.get("mode") == "markers"]
+    assert [trace["marker"]["symbol"] for trace in drawn] == [symbol or look(role).symbol for role in roles]
