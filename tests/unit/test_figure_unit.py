@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import re
 
 import numpy as np
@@ -312,3 +313,36 @@ def test_points_have_the_symbol_that_they_ask_for_or_their_role_s_own(symbol):
     panel = Panel(Axis("x"), Axis("y"), tuple(Points([1.0], [2.0], role, role, symbol=symbol) for role in roles))
     drawn = [trace for trace in plotly_json(Figure("f", "F", "c", (panel,)))["data"] if trace.get("mode") == "markers"]
     assert [trace["marker"]["symbol"] for trace in drawn] == [symbol or look(role).symbol for role in roles]
+
+
+def plain(x="x", y="y", unit="", **more):
+    return Panel(Axis(x, unit), Axis(y), (Curve([0.0, 1.0], [1.0, 2.0], "one"),), **more)
+
+
+@pytest.mark.parametrize(("columns", "letters"), [(1, 78), (2, 51), (3, 40), (5, 40)])
+def test_titles_are_broken_to_the_width_of_a_panel(columns, letters):
+    """6.5, 4.3 or 3.4 inches of 0.083 a letter; the lines that a title has stay its own."""
+    word = "wide " * 40
+    sheet = Sheet(None, [(plain(), f"First line\n{word.strip()}")] * 6, columns)
+    first, *others = sheet.panels[0][1].split("\n")
+    assert first == "First line"
+    assert all(letters - 5 < len(line) <= letters for line in others[:-1])
+    assert " ".join(others) == word.strip()
+    assert sheet.rows == math.ceil(6 / columns)
+
+
+def test_panels_share_what_names_their_axes():
+    """The abscissa with the panel below, the ordinate with that to the left, of the same row; none in spaces."""
+    a, b = plain("x", "y"), plain("x", "z")
+    sheet = Sheet(None, [(a, ""), (b, ""), (a, ""), (plain("t", "z"), ""), (plain("x", "z"), "")], 2)
+    assert [sheet._joined(row, column) for row, column in ((0, 0), (0, 1), (1, 0), (1, 1))] == [
+        True,
+        False,
+        True,
+        False,
+    ]
+    assert [sheet._beside(i) for i in range(5)] == [False, False, False, False, False]
+    assert [list(sheet._row(row)) for row in range(3)] == [[0, 1], [2, 3], [4]]
+    assert [list(sheet._column(column)) for column in range(2)] == [[0, 2, 4], [1, 3]]
+    alike = Sheet(None, [(a, ""), (plain("t", "y"), "")], 2)
+    assert [alike._beside(i) for i in range(2)] == [False, True]
