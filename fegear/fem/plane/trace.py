@@ -182,12 +182,6 @@ class LoadedFlank:
         run = self.arc[self.first_flank_edge : self.after_flank_edge + 1]
         return np.asarray(self.base_radius * np.sqrt(1.0 + np.interp(arc, run, self.roll_squared)))
 
-    def _inward(self, arc: Array) -> tuple[Index, Array, Array]:
-        """Edge, place on it and unit vector against the normal at points of the run: shapes (P,), (P,), (2, P)."""
-        edge = np.clip(np.searchsorted(self.arc, arc, side="right") - 1, 0, self.arc.size - 2)
-        xi = (arc - self.arc[edge]) / np.diff(self.arc)[edge]
-        return edge, xi, self._normal(edge, xi)
-
     def _normal(self, edge: Index, xi: Array) -> Array:
         """Unit vectors into the material at places of edges, shape (2, *xi.shape)."""
         on_flank = (edge >= self.first_flank_edge) & (edge < self.after_flank_edge)
