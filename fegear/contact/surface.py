@@ -13,7 +13,8 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.formulas.flash_temperature import FlankSpeeds, flash_temperature
+from fegear.formulas.flank_speeds import FlankSpeeds
+from fegear.formulas.flash_temperature import flash_temperature
 from fegear.formulas.iso6336 import part20_flash, part22_micropitting
 from fegear.formulas.iso6336.rated import RatedSurface
 

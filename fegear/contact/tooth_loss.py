@@ -14,7 +14,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.formulas.flash_temperature import flank_speeds
+from fegear.formulas.flank_speeds import flank_speeds
 from fegear.formulas.friction import computed
 
 if TYPE_CHECKING:

@@ -3,22 +3,16 @@
 Sources: H. Blok, Theoretical study of temperature rise at surfaces of actual contact under oiliness lubricating
 conditions, General Discussion on Lubrication, IMechE 2 (1937) 222-235; ISO/TR 13989-1:2000 (now ISO/TS 6336-20),
 Eq. 3 and Annex A: 0.62 w^0.75 (E_r / rho)^0.25 |sqrt v_1 - sqrt v_2| / B_M with equal materials.
-
-Curvature and speeds of both flanks along the path of contact, as the formulas of the surface take them.
 """
 
 from __future__ import annotations
-
-import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
-from fegear.base.shown import shown, shows
-from fegear.geometry.pair import GearPair
+from fegear.formulas.flank_speeds import FlankSpeeds
 
 #: Constant of the standard. Blok's integral over a semi-elliptical source gives 0.623 (tests hold it).
 _BLOK = 0.62
@@ -71,71 +65,3 @@ def flash_temperature(
     through = heat[0] * np.sqrt(speeds.rolling_driver) + heat[1] * np.sqrt(speeds.rolling_driven)
     taken = np.abs(speeds.sliding) / np.maximum(through, np.finfo(float).tiny)
     return np.asarray(_BLOK * np.asarray(friction) * w**0.75 * (modulus / radius) ** 0.25 * taken)
-
-
-@dataclass(frozen=True)
-class FlankSpeeds:
-    """Flanks at places on the path of contact, in the section across the axes; arrays of one shape.
-
-    Parameters
-    ----------
-    x : ndarray
-        Place on the line of action from the pitch point, toward the driver's tip [m].
-    radius_driver, radius_driven : ndarray
-        Transverse.
-    relative_radius : ndarray
-        rho_n: the transverse one over cos(beta_b).
-    rolling_driver, rolling_driven : ndarray
-        Tangential speeds.
-    """
-
-    x: Array
-    radius_driver: Array = shown("mm", "radius of curvature of the driver flank")
-    radius_driven: Array = shown("mm", "radius of curvature of the driven flank")
-    relative_radius: Array = shown("mm", "relative radius of curvature in the normal section")
-    rolling_driver: Array = shown("m/s", "rolling velocity of the driver flank")
-    rolling_driven: Array = shown("m/s", "rolling velocity of the driven flank")
-
-    @property
-    @shows("m/s", "sliding velocity", name="sliding_velocity")
-    def sliding(self) -> Array:
-        """Speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point."""
-        return np.asarray(self.rolling_driver - self.rolling_driven)
-
-    @property
-    @shows("m/s", "sum of the rolling velocities", name="sum_velocity")
-    def sum(self) -> Array:
-        """v_Sigma, sum of both speeds [m/s]."""
-        return np.asarray(self.rolling_driver + self.rolling_driven)
-
-
-def flank_speeds(pair: GearPair, x: ArrayLike, speed: float) -> FlankSpeeds:
-    """Radii of curvature and speeds on the path of contact.
-
-    Parameters
-    ----------
-    pair : GearPair
-    x : array_like
-        Places [m].
-    speed : float
-        Of the driver [rad/s].
-
-    Raises
-    ------
-    RangeError
-        If the gears stand still: without speed there is neither film nor flash temperature.
-    """
-    if not (math.isfinite(speed) and speed > 0.0):
-        raise RangeError(
-            "speed",
-            f"{speed:.6g} rad/s",
-            "must be greater than zero: no film and no frictional heat at zero speed",
-        )
-    place = np.asarray(x, dtype=float)
-    one, other = (np.asarray(pair.flank_curvature_radius(place, member)) for member in ("driver", "driven"))
-    # Beyond the base circle there is no flank; on it the radius is zero, and so is the flank's speed.
-    sides = pair.driver.tooth.side, pair.driven.tooth.side
-    one, other = (side * np.maximum(side * rho, 0.0) for side, rho in zip(sides, (one, other), strict=True))
-    relative = one * other / (one + other) / math.cos(pair.driver.base_helix_angle)
-    slow = speed * pair.driver.teeth / pair.driven.teeth
-    return FlankSpeeds(place, one, other, np.asarray(relative), speed * np.abs(one), slow * np.abs(other))

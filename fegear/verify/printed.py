@@ -274,7 +274,8 @@ def stribeck() -> Iterator[Compared]:
 )  # fmt: skip
 def fzg_losses() -> Iterator[Compared]:
     """Contact ratio, Ohlendorf's H_V, Wimmer's integral, which is a sum of few places there, load and pressure."""
-    from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
+    from fegear.formulas.flank_speeds import flank_speeds
+    from fegear.formulas.flash_temperature import reduced_modulus
     from fegear.formulas.friction import ohlendorf, wimmer
     from fegear.formulas.iso6336.part22_micropitting import pressure
 

@@ -150,7 +150,7 @@ def test_crushing_depth_is_a_multiple_of_the_depth_of_the_largest_shear():
         Gear(Tooth(z, rack, helix_angle=0.25), 4e-3, 0.01, 0.02, hand=hand) for z, hand in ((23, "right"), (58, "left"))
     )
     pair = GearPair(one, two)
-    from fegear.formulas.flash_temperature import flank_speeds
+    from fegear.formulas.flank_speeds import flank_speeds
 
     radius = float(flank_speeds(pair, 0.0, 1.0).relative_radius)
     assert crushing_depth(pair, 1.3e9, 66e9) == pytest.approx(2.0 * 1.3e9 * radius / 66e9, rel=1e-12)

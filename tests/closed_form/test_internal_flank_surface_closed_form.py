@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fegear.case.reading import build_scene
-from fegear.formulas.flash_temperature import flank_speeds, flash_temperature
+from fegear.formulas.flank_speeds import flank_speeds
+from fegear.formulas.flash_temperature import flash_temperature
 from fegear.formulas.friction import Surface
 from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
 from fegear.formulas.iso6336.rated import LoadFactors, RatedSurface

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 from fegear.base.errors import RangeError
-from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds, flank_speeds, flash_temperature, reduced_modulus
+from fegear.formulas.flank_speeds import FlankSpeeds, flank_speeds
+from fegear.formulas.flash_temperature import STEEL_HEAT, flash_temperature, reduced_modulus
 from fegear.formulas.friction import (
     MEAN_LAWS,
     Surface,

@@ -15,7 +15,7 @@ from fegear.dynamics.train.matrices import mass_matrix, static_forces, stiffness
 from fegear.dynamics.train.train_spec import build_train
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.formulas.flash_temperature import flank_speeds
+from fegear.formulas.flank_speeds import flank_speeds
 from fegear.results.catalogue import STAGES
 
 SIZE = {"module": "2 mm", "face_width": "25 mm", "thickness_allowance": "20 um"}

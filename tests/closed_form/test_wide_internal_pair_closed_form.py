@@ -13,7 +13,7 @@ from fegear.contact.wide.lines import base_twist, contact_lines
 from fegear.contact.wide.rigid_flanks import beside_the_lines, touching_gaps, unloaded_error
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
-from fegear.formulas.flash_temperature import flank_speeds
+from fegear.formulas.flank_speeds import flank_speeds
 from fegear.formulas.friction import computed
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material

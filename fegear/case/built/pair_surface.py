@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.surface import LubricantPart
     from fegear.contact.surface import FrictionLaw
-    from fegear.formulas.flash_temperature import FlankSpeeds
+    from fegear.formulas.flank_speeds import FlankSpeeds
     from fegear.formulas.friction import Surface
     from fegear.formulas.iso6336.rated import Both, LoadFactors, RatedSurface
     from fegear.formulas.lubricant import Oil
@@ -94,7 +94,7 @@ class PairFriction:
             F_bt, with the factors that count [N].
         """
         from fegear.dynamics.train.friction import benedict_kelley, buckingham
-        from fegear.formulas.flash_temperature import flank_speeds
+        from fegear.formulas.flank_speeds import flank_speeds
         from fegear.formulas.friction import MEAN_LAWS, law_load, mean_friction
 
         if self.law == "buckingham":

@@ -22,8 +22,6 @@ import numpy as np
 from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
 from fegear.base.tally import note, tallied
-from fegear.contact.contact_law import logarithm
-from fegear.contact.plane.edge_law import edge_law
 from fegear.contact.wide.averages import GAUSS, LocalMatrix
 
 if TYPE_CHECKING:
@@ -205,7 +203,7 @@ def tangent_compliance(known: FlankCompliance, place: Index, force: Array) -> Ar
 
 def secant_compliance(known: FlankCompliance, place: Index, force: Array) -> Array:
     """Approach per force under forces (B, M) at roll positions `place`, shape (B, M, M) [m/N]."""
-    return _tangent(known, place, force, own=0.0)[0]
+    return _tangent(known, place, force, secant=True)[0]
 
 
 def deflection(known: FlankCompliance, force: Array) -> Array:
@@ -239,10 +237,10 @@ def growth_by_gaps(known: FlankCompliance, force: Array, gaps: Array) -> tuple[A
     return approach, approach[:, :, None] * y[0] - y[1:]
 
 
-def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.0) -> tuple[Array, Array]:
+def _tangent(known: FlankCompliance, place: Index, force: Array, *, secant: bool = False) -> tuple[Array, Array]:
     """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force.
 
-    With `own` zero those of a secant, without what a load changes of its own contact's width.
+    Or those of a secant, without what a load changes of its own contact's width.
     """
     lines, s = known.lines, known.log_slope
     matrix = known.matrix[place]
@@ -261,11 +259,9 @@ def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.
         part = weight * h
         if known.fixed_half_width is None:
             load = np.maximum(local.read(near, f), least)
-            q = known.width_factor[place]
-            square = (a * q[:, :-1] + b * q[:, 1:]) * load
-            edge = _at_edges(known, place, (a, b), square)
-            slope = -s * logarithm(square / unit[:, :-1] ** 2, own, edge)
-            local.add(near, part * slope, part * s * load * (1.0 if edge is None else 1.0 + edge[1]))
+            law, none = known.law(place, (a, b), _tilt(known, place, (a, b))), np.zeros(1)
+            slope, left = (law.secant(none, load), none) if secant else law.linearised(none, load, none)
+            local.add(near, part * slope, part * left)
         else:
             width = known.fixed_half_width[place]
             relative = (a * width[:, :-1] + b * width[:, 1:]) / unit[:, :-1]
@@ -274,16 +270,13 @@ def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.
     return matrix, local.constant[:, local.inside] * density
 
 
-def _at_edges(
-    known: FlankCompliance, place: Index, share: tuple[float, float], square: Array
-) -> tuple[Array, Array] | None:
-    """What sharp tip edges add beside and beyond the ends of the path: psi and t dpsi/dt of `edge_law`, (B, M - 1)."""
+def _tilt(known: FlankCompliance, place: Index, share: tuple[float, float]) -> Array | None:
+    """Tilt of the flanks at sharp tip edges beside and beyond the ends of the path, (B, M - 1) [m]; None: no edges."""
     edges = known.lines.edges
     if edges is None:
         return None
     tilt = np.maximum(edges.tilt[place], -_FAR)
-    at = share[0] * tilt[:, :-1] + share[1] * tilt[:, 1:]
-    return edge_law(at / np.sqrt(square))
+    return np.asarray(share[0] * tilt[:, :-1] + share[1] * tilt[:, 1:])
 
 
 def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:

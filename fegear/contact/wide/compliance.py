@@ -17,10 +17,12 @@ from typing import Literal
 
 import numpy as np
 
-from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
+from fegear.contact.contact_law import ContactLaw
+from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.wide.averages import Averages, averages
 from fegear.contact.wide.lines import ContactLines
 from fegear.fem.solid.bands import Bands, bands
@@ -91,6 +93,25 @@ class FlankCompliance(ReadOnlyArrays):
     def averages(self) -> Averages:
         """How the load that a contact's width follows is averaged along its line."""
         return averages(self.lines, self.window)
+
+    def law(self, place: Index, share: tuple[float, float], tilt: Array | None = None) -> ContactLaw:
+        """The law of line loads at a point of each panel, of contacts that follow their load, shape (B, M - 1).
+
+        Parameters
+        ----------
+        place : ndarray of int, shape (B,)
+            Roll positions.
+        share : (float, float)
+            Weights of the stations at both ends of a panel at the point.
+        tilt : ndarray, shape (B, M - 1), optional
+            theta R of tip edges [m]: see `edge_law`; without it no edge is near.
+        """
+        q = self.width_factor[place]
+        unit = np.ones_like(q) if self.line_half_width is None else self.line_half_width[place]
+        reference = unit[:, :-1] ** 2 / (share[0] * q[:, :-1] + share[1] * q[:, 1:])
+        none = np.zeros(1)
+        edges = None if tilt is None else EdgeContacts(tilt / unit[:, :-1], none, none)
+        return ContactLaw(2.0 * self.log_slope, reference, edges)
 
     def half_width(self, line_load: Array) -> Array:
         """Hertzian half-width b under line loads of shape (P, M, L) [m]."""

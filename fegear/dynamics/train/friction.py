@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,7 @@ from fegear.dynamics.train.gear_train import TrainMesh
 from fegear.dynamics.train.mesh_excitation import FIT
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Mesh
+from fegear.formulas.flank_speeds import speeds_on_line
 from fegear.geometry.pair import GearPair
 
 _INCH = 0.0254
@@ -79,49 +80,6 @@ def benedict_kelley(line_load: ArrayLike, viscosity: float, sliding: ArrayLike, 
     value = 0.0127 * (np.log10(np.maximum(45.94 * w, tiny)) - np.log10(np.maximum(below, tiny)))
     found: Array = np.clip(np.where(w > 0.0, value, 0.0), 0.0, LARGEST_COEFFICIENT)
     return found
-
-
-class Sliding(NamedTuple):
-    """Where tooth friction acts, and how fast the flanks move there; arrays over the positions asked for.
-
-    Attributes
-    ----------
-    arm_driver, arm_driven : ndarray
-        Distance of the friction force from the gears' axes [m]: the flanks' radii of curvature.
-    sliding : ndarray
-        Tangential speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point.
-    rolling : ndarray
-        Sum of both [m/s], V_R of TM-100180.
-    """
-
-    arm_driver: Array
-    arm_driven: Array
-    sliding: Array
-    rolling: Array
-
-
-def sliding_contact(
-    x: ArrayLike, radius_driver: float, radius_driven: float, pressure_angle: float, speed: float
-) -> Sliding:
-    """Lever arms and speeds of the flanks on the line of action.
-
-    Parameters
-    ----------
-    x : array_like
-        Position from the pitch point, positive toward the driver's tip [m].
-    radius_driver, radius_driven : float
-        Base radii [m]; negative of a ring gear, whose flanks are hollow.
-    pressure_angle : float
-        Working pressure angle [rad].
-    speed : float
-        Of the contact along the line of action, the speed of the base circles [m/s].
-    """
-    place, tangent = np.asarray(x, dtype=float), math.tan(pressure_angle)
-    arm_1, arm_2 = radius_driver * tangent + place, radius_driven * tangent - place
-    v_1, v_2 = speed / radius_driver * arm_1, speed / radius_driven * arm_2
-    return Sliding(
-        math.copysign(1.0, radius_driver) * arm_1, math.copysign(1.0, radius_driven) * arm_2, v_1 - v_2, v_1 + v_2
-    )
 
 
 @dataclass(frozen=True)
@@ -219,11 +177,13 @@ def with_friction(
         return excitation.tooth_force(j, phase, known[key])
 
     def torque(j: int, phase: Array, *, driver: bool) -> Array:
-        at = sliding_contact(excitation.place(j, phase) * base_pitch, radius_1, radius_2, pressure_angle, speed)
+        at = speeds_on_line(excitation.place(j, phase) * base_pitch, (radius_1, radius_2), pressure_angle, speed)
         bears = np.where(excitation.stiffness[j](phase) > 0.0, 1.0, 0.0)
-        mu = coefficient(np.abs(at.sliding), at.rolling, static_force(j, phase)) * bears
+        mu = coefficient(np.abs(at.sliding), at.sum, static_force(j, phase)) * bears
         slip = np.sign(at.sliding)
-        return -slip * mu * at.arm_driver * sense_1 if driver else slip * mu * at.arm_driven * sense_2
+        if driver:
+            return -slip * mu * np.abs(at.radius_driver) * sense_1
+        return slip * mu * np.abs(at.radius_driven) * sense_2
 
     def fitted(j: int, *, driver: bool) -> Periodic:
         return Periodic.fit(
@@ -345,16 +305,16 @@ def _on_slots(
 ) -> Array:
     """Load, sliding, rolling, coefficient and both torques of the tooth pair in each slot, shape (slots, 6, N)."""
     excitation, pair = mesh.excitation, mesh.pair
-    radius_1, radius_2 = (gear.tooth.side * gear.base_radius for gear in (pair.driver, pair.driven))
+    radii = pair.driver.tooth.side * pair.driver.base_radius, pair.driven.tooth.side * pair.driven.base_radius
     approach, rows = excitation.approach(mesh.force, phase), []
     for slot in range(len(excitation.stiffness)):
         load = excitation.tooth_force(slot, phase, approach)
-        at = sliding_contact(
-            excitation.place(slot, phase) * pair.base_pitch, radius_1, radius_2, pair.working_pressure_angle, speed
-        )
-        mu = coefficient(np.abs(at.sliding), at.rolling, load)
+        x = excitation.place(slot, phase) * pair.base_pitch
+        at = speeds_on_line(x, radii, pair.working_pressure_angle, speed)
+        mu = coefficient(np.abs(at.sliding), at.sum, load)
         rub = np.sign(at.sliding) * mu * load
-        rows.append([load, at.sliding, at.rolling, mu, -rub * at.arm_driver, rub * at.arm_driven])
+        arms = np.abs(at.radius_driver), np.abs(at.radius_driven)  # of the friction forces about the gears' axes
+        rows.append([load, at.sliding, at.sum, mu, -rub * arms[0], rub * arms[1]])
     return np.array(rows)
 
 

@@ -23,7 +23,8 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
-from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds
+from fegear.formulas.flank_speeds import FlankSpeeds
+from fegear.formulas.flash_temperature import STEEL_HEAT
 from fegear.formulas.friction import Surface, contact_ratios, law_load, mean_friction, teeth_factor
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 from fegear.formulas.iso6336.rated import RatedSurface

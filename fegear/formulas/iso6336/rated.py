@@ -14,7 +14,8 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from fegear.base.errors import RangeError
-from fegear.formulas.flash_temperature import FlankSpeeds, flank_speeds, reduced_modulus
+from fegear.formulas.flank_speeds import FlankSpeeds, flank_speeds
+from fegear.formulas.flash_temperature import reduced_modulus
 from fegear.formulas.friction import Surface
 from fegear.formulas.iso6336.part5_materials import Group
 from fegear.geometry.pair import GearPair

@@ -16,7 +16,7 @@ from fegear.geometry.pair import MEMBERS, GearPair, specific_sliding
 if TYPE_CHECKING:
     from fegear.case.built.pair_surface import PairSurface
     from fegear.contact.surface import FlankSurface
-    from fegear.formulas.flash_temperature import FlankSpeeds
+    from fegear.formulas.flank_speeds import FlankSpeeds
     from fegear.formulas.iso6336.part20_flash import FlashTemperatures
     from fegear.formulas.iso6336.part21_integral import IntegralTemperature
     from fegear.formulas.iso6336.part22_micropitting import RatedFilm

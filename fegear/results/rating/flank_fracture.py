@@ -218,7 +218,8 @@ def _compute(inputs: FlankFractureInputs | NotRated, upstream: Upstream, _work: 
 
 
 def _below_flanks(inputs: FlankFractureInputs, upstream: Upstream) -> FlankFractureData:
-    from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
+    from fegear.formulas.flank_speeds import flank_speeds
+    from fegear.formulas.flash_temperature import reduced_modulus
     from fegear.formulas.iso6336.part4_flank_fracture import half_width
     from fegear.formulas.iso6336.part22_micropitting import load_sharing, pressure
     from fegear.formulas.iso6336.safety import rate_pair
