@@ -70,7 +70,7 @@ def test_the_error_of_a_neighbours_stress_is_relatively_no_less_than_a_part_of_w
         2: {"tension": (75.0 * samples, 0.01 * samples), "compression": (-0.3 * samples, 0.2 * samples)},
     }
     found = estimate([0.3 / 40] * 40, stresses)
-    wanted = [_OF_OWN_STRESS * _USUAL * 1e-3 * 75.0, _SMOOTH_STRESS * _LEAST_STRESS_SHARE * 3.0]
+    wanted = [_OF_OWN_STRESS * _USUAL * 1e-3 * 75.0, _SMOOTH_STRESS["tension"] * _LEAST_STRESS_SHARE * 3.0]
     assert found._stress_estimate(2, "tension", np.array([75.0, 75.0]), np.array([0.0, 3.0])) == pytest.approx(wanted)
 
 
@@ -81,7 +81,7 @@ def test_the_error_of_a_neighbours_fillet_that_is_hardly_stressed_does_not_vanis
     stresses = {0: own, 1: {"tension": (0.0 * samples, 0.01 * samples), "compression": (-0.3 * samples, 0.2 * samples)}}
     found = estimate([0.3 / 40] * 40, stresses)
     for side, least in (
-        ("tension", _SMOOTH_STRESS * _LEAST_STRESS_SHARE * 0.02),
+        ("tension", _SMOOTH_STRESS["tension"] * _LEAST_STRESS_SHARE * 0.02),
         ("compression", _LEAST_NEIGHBOUR_STRESS * _USUAL * 0.2),
     ):
         assert found._stress_estimate(1, side, np.zeros(2), np.zeros(2)) == pytest.approx([least] * 2)
@@ -94,7 +94,7 @@ def test_only_the_fillet_of_a_neighbour_that_lies_beside_the_loaded_flank_errs_b
     own = {"tension": (100.0 * samples, 0.0 * samples), "compression": (-100.0 * samples, 0.0 * samples)}
     found = estimate([0.3 / 40] * 40, {0: own, k: dict.fromkeys(own, (samples, 0.2 * samples))})
     beside = (k, side) == (1, "compression")
-    least = _LEAST_NEIGHBOUR_STRESS * _USUAL if beside else _SMOOTH_STRESS * _LEAST_STRESS_SHARE
+    least = _LEAST_NEIGHBOUR_STRESS * _USUAL if beside else _SMOOTH_STRESS[side] * _LEAST_STRESS_SHARE
     assert found._stress_estimate(k, side, samples, 0.0 * samples) == pytest.approx(least * 0.2 * samples)
 
 

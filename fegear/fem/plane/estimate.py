@@ -33,15 +33,17 @@ _NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 2.5
 _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.23, 2.0
 #: What both orders have, edges that are few and their own curves, shows as scatter of stress about the smooth curve
 #: along a fillet. Of what is usual beside the largest stress so much is error, of that at one contact on the tooth
-#: itself so much. It counts on long fillets of long edges, and below contacts beside a fillet.
-_SCATTERED, _SCATTERED_HERE = 0.65, 0.85
+#: itself so much, and on the next tooth so much. It counts on long fillets of long edges, and below contacts beside a
+#: fillet.
+_SCATTERED, _SCATTERED_HERE, _SCATTERED_NEXT = 0.65, 0.85, 1.2
 #: Compression, which is largest nearer to the root land where edges are graded, has so much more of the part.
 _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
-#: which both orders have: so many times the part of a tooth's own and no less than the other part. A neighbour's other
-#: fillets are smooth: so many times a tooth's own part. Relatively no neighbour errs by less than so much of what a
-#: tooth's own stress usually differs by.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _SMOOTH_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 1.4, 0.9
+#: which both orders have: so many times the part of a tooth's own and no less than the other part. Relatively no
+#: neighbour errs by less than so much of what a tooth's own stress usually differs by.
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 0.9
+#: A neighbour's other fillets are smooth: so many times a tooth's own part.
+_SMOOTH_STRESS: dict[Side, float] = {"tension": 1.4, "compression": 1.8}
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A gear on a small bore turns as a whole by far more than its teeth give way, and of all teeth two solutions differ by
@@ -106,7 +108,7 @@ class Estimate:
         """Largest root stress, where it sits, and its error, shape (P,) each."""
         self._stress_at_samples(k)  # first: at the same positions side after side is asked for
         value, place, difference = self._stress_difference(k, side, radius, half_width)
-        scatter = 0.0 if k else self.fine.root_stress_scatter(k, side, radius, place, half_width)
+        scatter = 0.0 if k < 0 else self.fine.root_stress_scatter(k, side, radius, place, half_width)
         return value, place, self._stress_estimate(k, side, value, difference, scatter)
 
     @cached_property
@@ -234,8 +236,8 @@ class Estimate:
                 share, beside = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS), _USUAL * beside
                 scattered *= _NEIGHBOUR_STRESS
             else:
-                share *= _SMOOTH_STRESS
-            error = np.maximum(share * np.maximum(difference, beside), scattered)
+                share *= _SMOOTH_STRESS[side]
+            error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
             return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
         size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
         if side == "compression":
