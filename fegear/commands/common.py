@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 import typer.core
 
+from fegear.base.notes import counted, open_and_folded
 from fegear.base.streams import complain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from contextlib import AbstractContextManager
 
     from typer.models import OptionInfo
 
+    from fegear.base.notes import Note
     from fegear.engine.run import Watcher
 
 
@@ -126,6 +128,14 @@ class Voice:
         """Print what the user should read."""
         if not self.as_json:
             (complain if self.quiet else typer.echo)(f"Note: {remark}")
+
+    def notes(self, notes: Sequence[Note], where: str) -> None:
+        """Print the notes to act on first, and how many of which class stand where."""
+        shown, others = open_and_folded(notes)
+        for one in shown:
+            self.note(one)
+        if others:
+            self.note(f"{counted(others)} ({where}).")
 
     def tell(self, content: Mapping[str, object]) -> None:
         """Print what programs read."""

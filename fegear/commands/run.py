@@ -64,7 +64,6 @@ def run(
     from fegear.engine.run import run_plan
     from fegear.output.figures import Drawing
     from fegear.output.folder import default_folder, whole_or_nothing
-    from fegear.output.numbers import beyond_tolerance
     from fegear.output.picture_process import PictureProcess
     from fegear.output.report.page import begin_page
     from fegear.output.run_files import STEPS, write_results
@@ -107,9 +106,7 @@ def run(
         voice.say(f"Field {target / str(file)}")
     if fields and not files:
         voice.note("No requested result has a field: request root-stress, or stiffness with face_positions.")
-    for remark in (*remarks, beyond_tolerance(results.values, scene.case.accuracy.tolerance)):
-        if remark:
-            voice.note(remark)
+    voice.notes(results.notes(remarks), "report.html")
     for sentence in results.answer.sentences:
         voice.say(sentence)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from fegear.base.arrays import Alike
+from fegear.base.notes import exceeding
 from fegear.base.printed import with_its_error
 from fegear.engine.least_errors import _NAMED, _ROUGH, _is_rough, with_least_error_columns, with_least_errors
 from fegear.engine.value import Value
@@ -56,9 +57,14 @@ class Outcome(Alike):
         object.__setattr__(self, "tables", tuple(with_least_error_columns(table) for table in self.tables))
 
     @property
+    def rough(self) -> tuple[Value, ...]:
+        """Values whose estimated error is a large part of them, where something makes it smaller."""
+        return tuple(value for value in self.values if _is_rough(value, self.values)) if self.sharper_by else ()
+
+    @property
     def _rough_values(self) -> tuple[str, ...]:
         """One note for all values whose estimated error exceeds a fifth of them."""
-        rough = [value for value in self.values if _is_rough(value, self.values)] if self.sharper_by else []
+        rough = self.rough
         if not rough:
             return ()
         shown = [
@@ -67,4 +73,4 @@ class Outcome(Alike):
         ]
         more = f" and {len(rough) - _NAMED} more" if len(rough) > _NAMED else ""
         limit = f"{100.0 * _ROUGH:g} % of the value"
-        return (f"{', '.join(shown)}{more}: estimated error above {limit}; {self.sharper_by}.",)
+        return (exceeding(f"{', '.join(shown)}{more}: estimated error above {limit}; {self.sharper_by}."),)

@@ -8,6 +8,7 @@ from typing import Any
 
 from fegear.base.brief import Brief
 from fegear.base.errors import GeometryError, InputError
+from fegear.base.notes import neglecting
 from fegear.case.nearest import nearest
 from fegear.case.reading import Scene
 from fegear.case.trade_words import of_result
@@ -154,7 +155,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     ]  # fmt: skip
     # What the description calls for, and no wanted result uses, was not asked for.
     named = idle if scene.case.effects.start == "none" else scene.case.effects.named
-    said += [_idle(effect, known.entries) for effect in idle if effect in named]
+    said += [neglecting(_idle(effect, known.entries)) for effect in idle if effect in named]
     return Plan(steps, skipped, idle, (*scene.renamed, *scene.derived, *said))
 
 

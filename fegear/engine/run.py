@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple, Protocol
@@ -11,11 +11,13 @@ from typing import NamedTuple, Protocol
 from fegear.base.arrays import Alike
 from fegear.base.errors import InputError
 from fegear.base.keys import Key
+from fegear.base.notes import Note, NoteClass, class_of, ordered
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import Scene
 from fegear.engine.executor import Executor
 from fegear.engine.extras import require
 from fegear.engine.figure.figure import DeferredFigure, Figure
+from fegear.engine.inexact import inexact_values
 from fegear.engine.named import Named
 from fegear.engine.outcome import Outcome
 from fegear.engine.plan import ON_REQUEST, Plan, Step
@@ -137,6 +139,32 @@ class Results(Alike):
         said = [*self.plan.remarks]
         said += [remark for outcome in self.outcomes.values() for remark in outcome.remarks]
         return tuple(dict.fromkeys(said))
+
+    @property
+    def inexact(self) -> str:
+        """Which values are known less well than the tolerance requires, of those that no result's own note names."""
+        named = {value.name for outcome in self.outcomes.values() for value in outcome.rough}
+        values = [value for value in self.values if value.name not in named]
+        return inexact_values(values, self.scene.case.accuracy.tolerance)
+
+    def notes(self, remarks: Iterable[str] | None = None, *, information: bool = True) -> tuple[Note, ...]:
+        """What a reader should see first: repeats merged, the class to act on first.
+
+        Parameters
+        ----------
+        remarks : iterable of str, optional
+            What there is to say; by default the remarks of the run and which values are not exact enough.
+        information : bool
+            Whether what results say of themselves is among it; a page has it with each result.
+        """
+        if remarks is None:
+            remarks = (*self.remarks, *((self.inexact,) if self.inexact else ()))
+        own = set() if information else {one for task in self.outcomes for one in self.information(task)}
+        return ordered(one for one in remarks if one not in own)
+
+    def information(self, task: Task) -> tuple[str, ...]:
+        """What a result says of itself that changes no number."""
+        return tuple(one for one in self.outcomes[task].remarks if class_of(one) is NoteClass.INFORMATION)
 
     @property
     def cache_remarks(self) -> tuple[str, ...]:

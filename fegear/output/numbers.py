@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-
-from fegear.base.printed import percent
-from fegear.engine.value import Value
 
 _SIGNS = (("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
 
@@ -70,36 +66,3 @@ def with_error(value: float, error: float) -> tuple[str, str]:
     if float(left) == 0.0:
         left = f"{error:.0e}"
     return shown + power, left + power
-
-
-#: Differences of large numbers, as a peak to peak, miss a sharp tolerance by little without anybody being misled.
-_MISLEADING = 0.01
-#: So many values are named whose errors are too large; of the others it is said how many.
-_NAMED = 4
-#: A value so small compared with its error is the round-off of zero.
-_ROUND_OFF = 1e-9
-
-
-def beyond_tolerance(values: Iterable[Value], tolerance: float) -> str:
-    """Which values are known less well than the tolerance requires and than 1 %, the worst first; empty if none is.
-
-    Parameters
-    ----------
-    values : iterable of Value
-    tolerance : float
-        Relative, of ``[accuracy]``.
-    """
-    found = sorted(
-        ((one.error / abs(one.value), one) for one in values if one.error and abs(one.value) > _ROUND_OFF * one.error),
-        key=lambda pair: -pair[0],
-    )
-    found = [(share, one) for share, one in found if share > max(tolerance, _MISLEADING)]
-    if not found:
-        return ""
-    named = "; ".join(f"{one!r} ({percent(share)})" for share, one in found[:_NAMED])
-    more = f"; and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
-    limit = f"{100.0 * tolerance:g} %"
-    beyond = (
-        f"the tolerance of {limit}" if tolerance >= _MISLEADING else f"{100.0 * _MISLEADING:g} % (tolerance {limit})"
-    )
-    return f"Estimated errors above {beyond}: {named}{more}."

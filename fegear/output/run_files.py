@@ -65,7 +65,7 @@ def write_results(
         fields += [file for file in (write_field(one.figure, folder / FOLDER) for one in drawn) if file]
     elif fields is not None and begun is not None:
         fields += begun.fields
-    remarks = [*results.remarks, *results.cache_remarks, *missing]
+    remarks = [*results.remarks, *filter(None, [results.inexact]), *results.cache_remarks, *missing]
     write_report(folder / "report.html", results, drawn, remarks)
     write_summary(folder / SUMMARY, results, remarks, [*files_in(folder), SUMMARY])
     watcher.end(time.perf_counter() - started)

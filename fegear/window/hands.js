@@ -242,7 +242,7 @@ const fegearHands = (() => {
     }
     const list = fold.querySelector("ul");
     if (![...list.children].some((one) => one.textContent === words)) list.append(made("li", "", words));
-    fold.querySelector("summary").textContent = `${list.children.length} ${list.children.length === 1 ? "remark" : "remarks"}`;
+    fold.querySelector("summary").textContent = `${list.children.length} ${list.children.length === 1 ? "note" : "notes"}`;
     return true;
   }
   return { show, harris, follow, remark, of: (subject) => shown.has(subject) };

@@ -210,7 +210,7 @@ const fegear = (() => {
       kept.element.hidden = false;
       answered(kept);
     },
-    async done({ remarks, told, moving: goesOn, seconds, tolerance, level, answer }) {
+    async done({ notes, told, moving: goesOn, seconds, tolerance, level, answer }) {
       if (!goesOn) { fegearGears.rest(); fegearGlance.settle(); }
       ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`;
       $("answer").replaceChildren(...answer.map((one) => made("li", "", one)));
@@ -221,29 +221,26 @@ const fegear = (() => {
         for (const key of kept.specs.keys()) if (fegearMoved.rough($(`plot-${key}`))) await paint(kept, key);
       }
       document.body.classList.remove("computing");
-      // A remark stands where its result is shown, else with the pair or gear that it is about; the rest above all.
+      // What to act on first stands above all; beside that, each note stands with its result, and folded with its pair.
       document.querySelectorAll(".remarks").forEach((one) => one.remove());
       document.querySelectorAll(".hand-remarks").forEach((one) => one.remove());
-      const placed = new Set();
-      for (const [task, subject, remark] of told) {
-        const own = sections.get(task)?.element;
-        if (fegearHands.remark(subject, remark, made)) placed.add(remark);
-        const place = own && !own.hidden ? own : null;
-        if (!place || (placed.has(remark) && !fegearHands.of(subject))) continue;
-        placed.add(remark);
+      for (const [task, subject, words, kind] of told) {
+        fegearHands.remark(subject, words, made);
+        const place = sections.get(task)?.element;
+        if (!place || place.hidden) continue;
         if (!place.querySelector(":scope > .remarks")) place.querySelector(":scope > h2").after(made("ul", "remarks"));
-        place.querySelector(":scope > .remarks").append(made("li", "", remark));
+        place.querySelector(":scope > .remarks").append(made("li", kind, words));
       }
-      const rest = remarks.filter((one) => !placed.has(one)).map((one) => made("li", "", one));
-      if (placed.size) {
-        const all = made("details"), list = made("ul", "all");
-        list.append(...[...placed].map((one) => made("li", "", one)));
-        all.append(made("summary", "", `${placed.size} ${placed.size === 1 ? "remark stands at its result" : "remarks stand at their results"}`), list);
-        const fold = made("li", "fold");
+      const line = ([kind, words, text]) => { const one = made("li", kind); one.append(made("b", "", `${words}: `), text); return one; };
+      const rows = notes.open.map(line);
+      if (notes.folded.length) {
+        const fold = made("li", "fold"), all = made("details"), list = made("ul", "all");
+        list.append(...notes.folded.map(line));
+        all.append(made("summary", "", notes.counted), list);
         fold.append(all);
-        rest.push(fold);
+        rows.push(fold);
       }
-      $("remarks").replaceChildren(...rest);
+      $("remarks").replaceChildren(...rows);
     },
     refused({ sentence }) { document.body.classList.remove("computing"); say(sentence); },
     exported() { say(ended); },

@@ -8,9 +8,10 @@ import tempfile
 import time
 import traceback
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import FegearError, InputError
+from fegear.base.notes import class_of, counted, open_and_folded
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from multiprocessing.connection import Connection
 
+    from fegear.base.notes import Note
     from fegear.case.reading import Scene
     from fegear.engine.outcome import Outcome
     from fegear.engine.plan import Plan
@@ -255,8 +257,9 @@ class Worker:
         tolerance = results.scene.case.accuracy.tolerance
         self._seconds.update({str(task): one.when_computed for task, one in results.timings.items()})
         self._say(
-            "done", remarks=list(results.remarks), told=_told(results), seconds=time.perf_counter() - started,
-            timings=seconds, tolerance=tolerance, moving=asked.moving, answer=list(results.answer.sentences),
+            "done", remarks=list(results.remarks), notes=_notes(results), told=_told(results),
+            seconds=time.perf_counter() - started, timings=seconds, tolerance=tolerance, moving=asked.moving,
+            answer=list(results.answer.sentences),
         )  # fmt: skip
         if not asked.moving:
             self._say("harris", pairs=self._maps.at_rest(results))
@@ -384,11 +387,23 @@ class Worker:
         self._say("designed", **designed(results, job.pair, job.how))
 
 
-def _told(results: Results) -> list[tuple[str, str, str]]:
-    """Remarks with the task that makes each, and the gear or pair that the task is about."""
+def _told(results: Results) -> list[tuple[str, str, str, str]]:
+    """Notes with the task that makes each, the gear or pair that the task is about, and their class."""
     return [
-        (str(task), task.subject, remark) for task, outcome in results.outcomes.items() for remark in outcome.remarks
+        (str(task), task.subject, str(remark), class_of(remark).name.lower())
+        for task, outcome in results.outcomes.items()
+        for remark in outcome.remarks
     ]
+
+
+def _notes(results: Results) -> dict[str, Any]:
+    """Notes that stand open and those that are folded: class, its words and the note; and how many of which class."""
+    shown, folded = open_and_folded(results.notes(information=False))
+
+    def row(note: Note) -> tuple[str, str, str]:
+        return note.kind.name.lower(), note.kind.words, str(note)
+
+    return {"open": [*map(row, shown)], "folded": [*map(row, folded)], "counted": counted(folded) if folded else ""}
 
 
 def scene_of(asked: Asked) -> Scene:

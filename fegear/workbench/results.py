@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError
+from fegear.base.notes import counted, open_and_folded
 from fegear.engine.html_table import html_table
 from fegear.engine.named import Named
 from fegear.engine.run import Results as Found
@@ -89,12 +90,15 @@ class Results(Found):
         lines += [f"  {value!r}" for value in self.values[:few]]
         if len(self.values) > few:
             lines.append(f"  ... {len(self.values) - few} more in .values")
-        lines += [f"  Note: {textwrap.shorten(remark, _CLAUSE, placeholder=' ...')}" for remark in self.remarks]
+        shown, others = open_and_folded(self.notes())
+        lines += [f"  Note: {textwrap.shorten(note, _CLAUSE, placeholder=' ...')}" for note in shown]
+        if others:
+            lines.append(f"  {counted(others)}, in .notes()")
         return "\n".join([self._headline(), *lines])
 
     def _headline(self) -> str:
         found = {word: len(getattr(self, word)) for word in ("values", "tables", "figures")}
-        found["notes"] = len(self.remarks)
+        found["notes"] = len(self.notes())
         counts = ", ".join(f"{count} {word if count > 1 else word[:-1]}" for word, count in found.items() if count)
         return f"{self.scene.case.title or self.scene.name}: {counts} ({sum(self.seconds.values()):.2g} s)"
 
@@ -110,7 +114,11 @@ class Results(Found):
         for word, names in (("tables", self.tables.keys()), ("figures", self.figures.keys())):
             if names:
                 parts.append(f"<p>{word}: {', '.join(f'<code>{escape(name)}</code>' for name in names)}</p>")
-        parts += [f"<p>{escape(remark)}</p>" for remark in self.remarks]
+        shown, others = open_and_folded(self.notes())
+        parts += [f"<p>{escape(note.kind.words)}: {escape(note)}</p>" for note in shown]
+        if others:
+            folded = "".join(f"<p>{escape(note.kind.words)}: {escape(note)}</p>" for note in others)
+            parts.append(f"<details><summary>{counted(others)}</summary>{folded}</details>")
         return "".join(parts)
 
     def to_pandas(self) -> pd.DataFrame:

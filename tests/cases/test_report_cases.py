@@ -36,7 +36,7 @@ CASES = Path(__file__).parents[2] / "cases"
 class PageParser(html.parser.HTMLParser):
     """Every attribute and every text of a page, and whether its tags close."""
 
-    VOID = ("meta", "img", "br", "link")
+    VOID = ("meta", "img", "br", "link", "input")
 
     def __init__(self, text: str):
         super().__init__()

@@ -7,6 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.notes import OPEN
+from fegear.output.figures import described
+from fegear.output.report.blocks import Group
+from fegear.output.report.run import run_page
+
 _SPEC = importlib.util.spec_from_file_location("small_net", Path(__file__).with_name("small_net.py"))
 small_net = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(small_net)
@@ -214,6 +219,22 @@ OF_TABLES = {
 }  # fmt: skip
 
 
+def check_first_screen(found):
+    """The report begins with the wanted answer, has at most three open notes, and its first values are wanted ones."""
+    page = run_page(found, described(found), list(found.remarks))
+    assert [section.title for section in page.sections[:3]] == ["Answer", "Notes", "Results"]
+    said, notes, values = (section.blocks for section in page.sections[:3])
+    wanted = {step.task for step in found.plan.steps if step.wanted}
+    assert found.answer.sentences == (said[0].sentences if found.answer.sentences else ())
+    outcomes = [found.outcomes[task] for task in wanted]
+    assert said or not any(outcome.values or outcome.figures for outcome in outcomes)
+    assert sum(len(block.notes) for block in notes if hasattr(block, "notes")) <= OPEN + 1
+    groups = [block for block in values if isinstance(block, Group)]
+    if any(outcome.values for outcome in outcomes):
+        first = groups[0].blocks[1].values[0]
+        assert any(value.name == first.name for outcome in outcomes for value in outcome.values)
+
+
 @pytest.mark.dear("flank_design")
 @pytest.mark.parametrize("name", small_net.RUNS)
 def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
@@ -224,3 +245,4 @@ def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
         if kind and OF_TABLES[kind]:
             OF_TABLES[kind](columns(table), table.name, found)
     assert small_net.differences(small_net.kept()[name], small_net.of_run(found)) == []
+    check_first_screen(found)

@@ -15,20 +15,23 @@ import jinja2
 import numpy as np
 import pytest
 
+from fegear.base.notes import failing
 from fegear.case.reading import read_scene
 from fegear.engine.citation import bibliography
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Points
 from fegear.engine.figure.panel import Panel
+from fegear.engine.inexact import inexact_values
 from fegear.engine.plan import make_plan
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.output.draw_png import Picture
-from fegear.output.numbers import beyond_tolerance, plain_number, pretty_unit, with_error
+from fegear.output.numbers import plain_number, pretty_unit, with_error
 from fegear.output.report.blocks import (  # fmt: skip
     Bars,
     Block,
+    ClassifiedNotes,
     Code,
     DataTable,
     Download,
@@ -44,6 +47,7 @@ from fegear.output.report.blocks import (  # fmt: skip
     Sheet,
     SheetGroup,
     Still,
+    Switch,
     Values,
 )
 from fegear.output.report.page import Page, Section, page_text, render, write_page
@@ -79,14 +83,14 @@ def test_values_that_are_known_less_well_than_asked_are_named_the_worst_first():
         Value("I.largest_load", 5e3, "N"),
         Value("I.largest_line_load", 406.9e3, "N/mm", 740e3),
     ]
-    assert beyond_tolerance(values, 0.02) == (
+    assert inexact_values(values, 0.02) == (
         "Estimated errors above the tolerance of 2 %: I.largest_line_load = 407 +- 740 N/mm (182 %); "
         "I.te_peak_to_peak = 1.22 +- 0.26 um (21 %)."
     )
-    several = beyond_tolerance(values[:2] + values[:1] * 5, 0.001)
+    several = inexact_values(values[:2] + values[:1] * 5, 0.001)
     assert several.startswith("Estimated errors above 1 % (tolerance 0.1 %): I.te_peak_to_peak")
     assert several.endswith("; and 2 more.")
-    assert beyond_tolerance(values, 2.0) == ""
+    assert inexact_values(values, 2.0) == ""
 
 
 def test_numbers_and_units_are_written_for_people():
@@ -156,14 +160,14 @@ def test_another_command_can_make_a_page(tmp_path):
     page = Page("What it costs & why", "A note.", (
         Section("Prices", (Plot(figure), DataTable(table), Facts({"knob <a>": [{"size": 1.0}, {"size": 0.5}]}))),
         Section("Nothing", ()),
-        Section("Numbers", (Values((Value("c", 2.0, "mm", 0.3e-3 * 2.0),), tolerance=1e-4),)),
+        Section("Numbers", (Values((Value("c", 2.0, "mm", 0.04 * 2.0),), tolerance=1e-4),)),
     ), (table,))  # fmt: skip
     write_page(tmp_path / "cost.html", page)
     text = (tmp_path / "cost.html").read_text("utf-8")
     assert "What it costs &amp; why" in text
     assert "knob &lt;a&gt;" in text
     assert ">Nothing<" not in text
-    assert "above tolerance" in text
+    assert "<span class='over'>± 4 %</span>" in text
     (told,) = json.loads(text.split("id='figures'>")[1].split("</script>")[0])
     (trace,) = told["data"]
     assert np.frombuffer(base64.b64decode(trace["x"]["bdata"])).tolist() == [0.1, 1.0]
@@ -203,7 +207,7 @@ def page_of_every_block(name: str, folder: Path) -> Page:
         Paragraph(name), Heading(name), Notes((name,)), Listed((name, 1.5, True)), Bars({name: 1.0}, name), Code(name),
         Facts({name: [{name: 1.0}, {name: name}], "list": [name, {name: name}], "none": []}),
         Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Group((Paragraph(name),)),
-        Download(f"{name}.toml"), Values((value,), 1e-9),
+        Download(f"{name}.toml"), Values((value,), 1e-9), ClassifiedNotes((failing(name),)), Switch("s", name),
         DataTable(table), Plot(figure), sheet, Still(Picture(picture, name, name)),
     )  # fmt: skip
     return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""})
@@ -211,7 +215,7 @@ def page_of_every_block(name: str, folder: Path) -> Page:
 
 HOSTILE = (
     "<b>a</b>",
-    "a & b &lt; c",
+    "a & b &lt;c",
     "'a' \"b\"",
     "<!--<script>",
     "</script></style>",
@@ -231,6 +235,28 @@ def test_no_name_becomes_part_of_the_page(name, tmp_path):
     figures = json.loads(hostile.scripts[0])
     assert "<" not in hostile.scripts[0]
     assert figures[0]["layout"]["xaxis"]["title"]["text"] == html.escape(name, quote=False)  # plotly takes it for HTML
+
+
+def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_change():
+    values = (
+        Value("I.driver.S_F", 1.05113431, "", 0.0005, "safety factor; tooth breakage"),
+        Value("I.driven.S_F", 1.2, "", 0.1, "safety factor"),
+        Value("I.ratio", 1.638, "", 0.0, "contact ratio"),
+        Value("I.te", 7.6187e-6, "um", 0.0034e-6),
+    )
+    rows = Values(values, 1e-4).rows
+    assert [(row.what, row.more) for row in rows] == [
+        ("safety factor, driver", "tooth breakage"), ("safety factor, driven", ""), ("contact ratio", ""), ("", ""),
+    ]  # fmt: skip
+    assert [row.short for row in rows] == ["1.05", "1.2", "1.638", "7.62"]
+    assert [row.shown for row in rows] == ["1.05113", "1.20", "1.638", "7.6187"]
+    assert [row.rough for row in rows] == [
+        "",
+        "± 8.3 %",
+        "",
+        "",
+    ]  # 0.05 % decides nothing
+    assert [row.error for row in rows] == ["± 0.00050", "± 0.10", "", "± 0.0034"]
 
 
 def test_every_block_has_its_macro(tmp_path):

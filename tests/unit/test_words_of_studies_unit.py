@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fegear.base.notes import exceeding
 from fegear.engine.named import Named
 from fegear.engine.processes import Failure
 from fegear.engine.table import Column, Table
@@ -71,7 +72,7 @@ def results_of(values, outcomes=None, solver="condensed"):
     accuracy = SimpleNamespace(tolerance=1e-2, solver=solver)
     return SimpleNamespace(
         scene=SimpleNamespace(case=SimpleNamespace(accuracy=accuracy)), values=values, seconds={"geometry": 0.5},
-        outcomes=outcomes or {},
+        outcomes=outcomes or {}, remarks=(),
     )  # fmt: skip
 
 
@@ -92,6 +93,11 @@ def test_values_are_counted_by_what_is_known_of_their_errors():
     one = accuracy_blocks(results_of([Value("a", 2.0, "", 0.01), Value("c", 1.0, "", 0.0), Value("d", 1.0, "", 0.0)]))
     assert "1 have an estimated error, 2 are exact. No estimated error exceeds the tolerance." in one[0].words
     assert len(one) == 3  # one error is no figure
+    noted = results_of([Value("a", 2.0, "", 0.01)])
+    noted.remarks = (exceeding("Gear a: estimated error of c_self up to 8 % (tolerance 1 %)."),)
+    assert "exceeds" not in accuracy_blocks(noted)[0].words  # a note names columns that do
+    large = accuracy_blocks(results_of([Value("a", 2.0, "", 0.01), Value("b", 1.0, "", 0.7)]))
+    assert large[0].words.endswith("Above tolerance: b.")
     assert accuracy_blocks(results_of([]))[0] == Paragraph("CPU time of each task:", "table-title")
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.formulas.agma.agma2101 import (
     HARD_CASES,
     RECALLED_ROOTS,
@@ -83,20 +84,26 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
         allowed.append(found.reversed_bending if asked.stress_ratio[i] < 0.0 else found)
     if allowed[1].treatment == "through-hardened" and allowed[0].treatment in HARD_CASES:
         said.append(
-            f"Pair {asked.name}: Z_W of AGMA 2101 (through-hardened driven gear, surface-hardened pinion) is "
-            "not verified against a printed source."
+            assuming(
+                f"Pair {asked.name}: Z_W of AGMA 2101 (through-hardened driven gear, surface-hardened pinion) is "
+                "not verified against a printed source."
+            )
         )
     if _ABOVE_MEDIAN < scene.case.rating.reliability < _USUAL_TABLE:
         said.append(
-            f"Pair {asked.name}: Y_Z of AGMA 2101 for reliabilities between 0.5 and 0.9 is not verified "
-            "against a printed source."
+            assuming(
+                f"Pair {asked.name}: Y_Z of AGMA 2101 for reliabilities between 0.5 and 0.9 is not verified "
+                "against a printed source."
+            )
         )
     shafts, grade = part.shafts, max(one.grade for one in asked.conditions.quality)
     level = min(max(grade, _LEVELS[0]), _LEVELS[1])
     offset = shafts.offset / shafts.bearing_span if shafts and shafts.bearing_span else 0.0
     said.append(
-        f"Pair {asked.name}: AGMA 2101 assumes accuracy level A_v = {level}, an enclosed commercial gear unit and "
-        f"reliability {scene.case.rating.reliability:g}; K_o is K_A K_gamma."
+        assuming(
+            f"Pair {asked.name}: AGMA 2101 assumes accuracy level A_v = {level}, an enclosed commercial gear unit and "
+            f"reliability {scene.case.rating.reliability:g}; K_o is K_A K_gamma."
+        )
     )
     backup = [math.inf if g.rim_thickness is None else g.rim_thickness / g.depth for g in geometry.gears]
     pitch_radius = asked.pair.driver.base_radius / math.cos(asked.pair.working_pressure_angle)
@@ -124,7 +131,9 @@ def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStr
         return None
     grade = min(_GRADES[strength.quality], _HIGHEST[treatment])
     if grade != _GRADES[strength.quality]:
-        said.append(f"Gear {gear}: AGMA 2101 defines no grade 3 for {treatment} steel; grade {grade} is used.")
+        said.append(
+            assuming(f"Gear {gear}: AGMA 2101 defines no grade 3 for {treatment} steel; grade {grade} is used.")
+        )
     if treatment == "through-hardened":
         hardness = strength.hardness
         if hardness is None:
@@ -134,11 +143,17 @@ def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStr
     else:
         hardness = strength.core_hardness or HRC_30
         if strength.core_hardness is None:
-            said.append(f"Gear {gear}: core hardness {HRC_30 * BRINELL:.0f} HBW assumed for AGMA 2101 (core_hardness).")
+            said.append(
+                assuming(
+                    f"Gear {gear}: core hardness {HRC_30 * BRINELL:.0f} HBW assumed for AGMA 2101 (core_hardness)."
+                )
+            )
     found = allowable_stress(treatment, 1 if grade == 1 else 2 if grade == 2 else 3, hardness * BRINELL)
     if treatment in RECALLED_ROOTS:
         said.append(
-            f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa (AGMA 2101, {treatment} steel) is not verified "
-            "against a printed source."
+            assuming(
+                f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa (AGMA 2101, {treatment} steel) is not "
+                "verified against a printed source."
+            )
         )
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming, neglecting
 from fegear.case.built.gear_deviations import Deviation, gear_deviations
 from fegear.case.gear import GearPart
 from fegear.case.part import at
@@ -28,16 +29,18 @@ def gear_quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality
         grade = max(scene.case.pair[name].iso_6336.accuracy_grade, 1)
         rest = "" if part.deviations is None else " for deviations not specified"
         said.append(
-            f"Gear {gear}: tolerance class {grade} assumed{rest} (from iso_6336.accuracy_grade; specify "
-            "tolerance_class)."
+            assuming(
+                f"Gear {gear}: tolerance class {grade} assumed{rest} (from iso_6336.accuracy_grade; specify "
+                "tolerance_class)."
+            )
         )
     pitch, form, slope = _deviations(part, made, grade, gear)
     rough = part.roughness
     flank, root = (None, None) if rough is None else (rough.flank_height, rough.root_height)
     if flank is None:
-        said.append(f"Gear {gear}: flank roughness Rz = {USUAL_FLANK * 1e6:g} um assumed (roughness).")
+        said.append(assuming(f"Gear {gear}: flank roughness Rz = {USUAL_FLANK * 1e6:g} um assumed (roughness)."))
     if root is None:
-        said.append(f"Gear {gear}: root fillet roughness Rz = {USUAL_ROOT * 1e6:g} um assumed (roughness).")
+        said.append(assuming(f"Gear {gear}: root fillet roughness Rz = {USUAL_ROOT * 1e6:g} um assumed (roughness)."))
     return Quality(
         grade, pitch, form, slope, flank or USUAL_FLANK, root or USUAL_ROOT, _tip_relief(scene, gear, part, said)
     )  # fmt: skip
@@ -60,6 +63,6 @@ def _tip_relief(scene: Scene, gear: str, part: GearPart, said: list[str]) -> flo
     if not amounts:
         return 0.0
     if not scene.case.effects.relief:
-        said.append(f"Gear {gear}: relief ignored in the rating because effects.relief is off.")
+        said.append(neglecting(f"Gear {gear}: relief ignored in the rating because effects.relief is off."))
         return 0.0
     return float(max(amounts))

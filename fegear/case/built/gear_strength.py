@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.formulas.iso6336.part5_materials import BRINELL, MATERIALS, SOFT_IRON, TOUGH_IRON, allowable, usual_hardness
@@ -57,7 +58,7 @@ def gear_strength(scene: Scene, gear: str, said: list[str]) -> Strength:
             said += [f"Gear {gear}: {one}." for one in law.remark.split("; ") if one]
         hardness = usual_hardness(part.material, part.quality) if part.hardness is None else part.hardness
         if part.hardness is None and len(found) == 2:  # of own numbers no law has said it; Z_W asks for it
-            said.append(f"Gear {gear}: hardness {hardness:.4g} HV assumed (middle of the range).")
+            said.append(assuming(f"Gear {gear}: hardness {hardness:.4g} HV assumed (middle of the range)."))
         modulus = scene.gears[gear].material.young_modulus
         if MATERIALS[part.material] in TOUGH_IRON | SOFT_IRON and modulus > _STIFFEST_IRON:
             said.append(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.effects import AT_REST, CORNER_CONTACT, EFFECTS
+from fegear.base.notes import neglecting
 from fegear.base.printed import figures, percent
 from fegear.base.tally import note
 from fegear.case.effects import EffectsPart
@@ -43,7 +44,7 @@ _NEAR_WHOLE = 1e-3
 def remark(who: str, effects: EffectsPart, tolerance: float, effect: str, sizes: Iterable[str]) -> str:
     """Say which effect is off, how much it would change, for which tolerance, and what to write to have it."""
     now = 'is "linear"' if effects.is_on(effect) else "is off"
-    return (
+    return neglecting(
         f"{who}: {effect} {now}; including it changes {', '.join(sizes)} (tolerance {100.0 * tolerance:g} %). "
         f"{remedy(effects, effect)}"
     )
@@ -62,8 +63,8 @@ def neglected_remarks(
     name: str, found: Neglected, effects: EffectsPart, tolerance: float, nominal: float
 ) -> tuple[str, ...]:
     """Effects of load sharing that are off and would change the wanted answers by more than the tolerance."""
-    said = [
-        f"Pair {name}: {effect} is off; its influence cannot be estimated from the data specified: {error}"
+    said: list[str] = [
+        neglecting(f"Pair {name}: {effect} is off; its influence cannot be estimated from the data specified: {error}")
         for effect, error in found.wrong.items()
     ]
     for effect, parts in found.changes.items():
@@ -79,7 +80,7 @@ def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart)
     off = ratio - round(ratio)
     if engagement.corner_contact or abs(off) >= _NEAR_WHOLE:
         return ()
-    said = (
+    said = neglecting(
         f"Pair {name}: the contact ratio is {ratio:.9g}, within {_NEAR_WHOLE:g} of an integer, and corner_contact is "
         f"off: one tooth pair {'more' if off >= 0.0 else 'less'} is in contact over only "
         f"{abs(off) * engagement.pair.base_pitch * 1e6:.3g} um of the base pitch, which gives a very narrow spike in "

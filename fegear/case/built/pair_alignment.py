@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fegear.base.errors import InputError
+from fegear.base.notes import neglecting
 from fegear.case.built.shafts import gearbox_of, on_shafts
 from fegear.case.operation import HelixModification
 from fegear.case.reading import Scene
@@ -28,7 +29,10 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
         return Alignment(modification=modification, computed=_of_computed_shafts(scene, name))
     if shafts is None:
         said.append(
-            f"Pair {name}: no shaft data; K_Hbeta of ISO 6336 includes manufacturing misalignment f_ma only (f_sh = 0)."
+            neglecting(
+                f"Pair {name}: no shaft data; K_Hbeta of ISO 6336 includes manufacturing misalignment f_ma only "
+                "(f_sh = 0)."
+            )
         )
         return Alignment(deformation=0.0, modification=modification)
     shaft = None
@@ -67,7 +71,9 @@ def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixM
     if not leads:
         return "none"
     if not scene.case.effects.relief:
-        said.append("Lead modification of the gears ignored in K_Hbeta of ISO 6336 because effects.relief is off.")
+        said.append(
+            neglecting("Lead modification of the gears ignored in K_Hbeta of ISO 6336 because effects.relief is off.")
+        )
         return "none"
     crowned, sloped = any(lead.crowning for lead in leads), any(lead.slope for lead in leads)
     if sloped:

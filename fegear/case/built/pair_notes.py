@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fegear.base.notes import failing, neglecting
 from fegear.case.built.members import gear_name
 from fegear.case.built.table_ends import table_end_notes
 from fegear.geometry.pair import MEMBERS
@@ -30,17 +31,22 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
     from fegear.case.built.rated_duty import bore_remarks, width_remarks
     from fegear.geometry.tip_interference import interference
 
-    notes, effects = [], scene.case.effects
+    notes: list[str] = []
+    effects = scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]
         if part.relieved and not effects.relief:
-            notes.append(f"Gear {gear}: relief ignored because effects.relief is off (unmodified involute flanks).")
+            notes.append(
+                neglecting(f"Gear {gear}: relief ignored because effects.relief is off (unmodified involute flanks).")
+            )
         if part.spacing_errors is not None and not effects.spacing_errors:
-            notes.append(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch).")
+            notes.append(neglecting(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch)."))
         if part.over_face:
             notes.append(
-                f"Gear {gear}: {' and '.join(part.over_face)} ignored in the plane (2D) model, which has no "
-                f'variation along the face; set width = "solid" for pair {name}.'
+                neglecting(
+                    f"Gear {gear}: {' and '.join(part.over_face)} ignored in the plane (2D) model, which has no "
+                    f'variation along the face; set width = "solid" for pair {name}.'
+                )
             )
         notes += width_remarks(scene, gear)
         if scene.case.pair[name].compliance.source == "fe":
@@ -48,16 +54,20 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
     given = [key for key in ("misalignment", "line_error", "modification") if getattr(scene.case.pair[name], key)]
     if given:
         notes.append(
-            f"Pair {name}: {' and '.join(given)} ignored in the plane (2D) model, which has no variation along the "
-            'face; set width = "solid".'
+            neglecting(
+                f"Pair {name}: {' and '.join(given)} ignored in the plane (2D) model, which has no variation along the "
+                'face; set width = "solid".'
+            )
         )
     pair = scene.pairs[name]
     if sentence := heavy_load(pair, max(scene.case.pair[name].all_loads(pair), default=0.0)):
-        notes.append(f"Pair {name}: {sentence}")
+        notes.append(failing(f"Pair {name}: {sentence}"))
     if effects.corner_contact:
         notes += [
-            f"Pair {name}: tip of the {member} gear reaches below the root form circle of the mating gear "
-            "(interference); the path of contact ends there and no corner contact is computed at that end."
+            failing(
+                f"Pair {name}: tip of the {member} gear reaches below the root form circle of the mating gear "
+                "(interference); the path of contact ends there and no corner contact is computed at that end."
+            )
             for member in MEMBERS
             if interference(pair, member).below_form_circle
         ]

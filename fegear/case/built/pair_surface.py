@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.notes import assuming
 from fegear.case.built.train import train_inputs
 from fegear.dynamics.train.train_spec import build_train, speed_ratio
 from fegear.geometry.pair import MEMBERS, GearPair
@@ -251,7 +252,7 @@ def load_factors(scene: Scene, name: str) -> tuple[LoadFactors, tuple[str, ...]]
         missing = [key for key in missing if key not in by_standard]
     if missing:
         names = ", ".join(missing)
-        told = (
+        told = assuming(
             f"Pair {name}: {names} = 1 for scuffing and micropitting. Specify strength of both gears (ISO 6336-1) or "
             "operation.dynamic_factor, face_load_factor, transverse_load_factor."
         )
@@ -310,11 +311,11 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
     classes = [gear.tolerance_class for gear in gears]
     told = list(remarks)
     if None in classes:
-        told.append(f"Pair {name}: flank tolerance class {_CLASS} assumed (tolerance_class).")
+        told.append(assuming(f"Pair {name}: flank tolerance class {_CLASS} assumed (tolerance_class)."))
     if any(gear.flank_treatment is None for gear in gears):
-        told.append(f"Pair {name}: X_W = 1 (through-hardened flanks) assumed (flank_treatment).")
+        told.append(assuming(f"Pair {name}: X_W = 1 (through-hardened flanks) assumed (flank_treatment)."))
     if oil.viscosity_100 is None:
-        told.append(f"Pair {name}: viscosity_100 assumed for a mineral oil of viscosity index 95.")
+        told.append(assuming(f"Pair {name}: viscosity_100 assumed for a mineral oil of viscosity index 95."))
     single, mesh = _USUAL_STIFFNESS
     try:
         applied = factors.application * pair.specific_load(load)
@@ -322,7 +323,9 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
         single, mesh = stiffness.single, stiffness.mesh_alpha
     except RangeError as error:
         told.append(
-            f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um) assumed, outside the range of ISO 6336-1: {error}"
+            assuming(
+                f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um) assumed, outside the range of ISO 6336-1: {error}"
+            )
         )
     relief = _with_running_in(scene, name, tip_relief, told)
     rated = RatedSurface(
@@ -348,7 +351,9 @@ def _with_running_in(scene: Scene, name: str, relief: Both, told: list[str]) -> 
     if all(relief):
         return relief
     if any(scene.case.gear[gear].strength is None for gear in gears):
-        told.append(f"Pair {name}: C_a = 0 for tips without relief (running-in not included, strength not specified).")
+        told.append(
+            assuming(f"Pair {name}: C_a = 0 for tips without relief (running-in not included, strength not specified).")
+        )
         return relief
     one, other = (gear_strength(scene, gear, []).contact for gear in gears)
     worn = running_in_relief((one, other))
@@ -367,13 +372,17 @@ def _material_factor(scene: Scene, name: str, told: list[str]) -> float:
     for gear, steel in steels.items():
         if steel not in MATERIAL_FACTOR:
             told.append(
-                f"Gear {gear}: W_W = 1 of carburized flanks was taken for micropitting, on the safe side "
-                "(flank_treatment, strength, or micropitting_material_factor of iso_6336)."
+                assuming(
+                    f"Gear {gear}: W_W = 1 of carburized flanks was taken for micropitting, on the safe side "
+                    "(flank_treatment, strength, or micropitting_material_factor of iso_6336)."
+                )
             )
         elif steel in RECALLED_MATERIALS:
             told.append(
-                f"Gear {gear}: W_W = {MATERIAL_FACTOR[steel]:g} for {steel} flanks is not verified against a printed "
-                "source (iso_6336.micropitting_material_factor)."
+                assuming(
+                    f"Gear {gear}: W_W = {MATERIAL_FACTOR[steel]:g} for {steel} flanks is not verified against a "
+                    "printed source (iso_6336.micropitting_material_factor)."
+                )
             )
     one, other = (MATERIAL_FACTOR.get(steels[gear], 1.0) for gear in (part.driver, part.driven))
     return 0.5 * (one + other)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.case.reading import Scene
 from fegear.formulas.iso6336.pair_geometry import Body
 from fegear.formulas.iso6336.part1_stiffness import pair_blank_factor
@@ -35,7 +36,7 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
             "reduce bore_radius, or specify the rim_thickness below the teeth",
         )  # fmt: skip
     if backup < SOLID_RIM or part.web_thickness is not None:
-        said.append(f"Gear {gear}: rim thickness {told} from bore_radius used (rim_thickness).")
+        said.append(assuming(f"Gear {gear}: rim thickness {told} from bore_radius used (rim_thickness)."))
     return body
 
 

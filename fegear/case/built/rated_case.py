@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.notes import assuming
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.formulas.hardened_case import HardenedCase, Profile, depth_of
@@ -47,7 +48,7 @@ def gear_case(scene: Scene, gear: str, said: list[str]) -> HardenedCase:
         )  # fmt: skip
     surface = usual_hardness(part.material, part.quality) if part.hardness is None else part.hardness
     if part.hardness is None:
-        said.append(f"Gear {gear}: hardness {surface:.4g} HV assumed (middle of the range).")
+        said.append(assuming(f"Gear {gear}: hardness {surface:.4g} HV assumed (middle of the range)."))
     case = HardenedCase(surface, part.core_hardness, part.case_depth or 0.0, None, residual)
     try:
         case.hardness(0.0)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.notes import assuming, neglecting
 from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 
@@ -88,7 +89,9 @@ def load_cycles(part: PairPart, pair: GearPair, said: list[str], name: str) -> B
     if life is None:
         if not operation.spectrum:
             said.append(
-                f"Pair {name}: required life not specified; rated for {UNLIMITED:g} load cycles (operation.life)."
+                assuming(
+                    f"Pair {name}: required life not specified; rated for {UNLIMITED:g} load cycles (operation.life)."
+                )
             )
         return UNLIMITED, UNLIMITED
     turns = life * speed / (2.0 * math.pi)
@@ -165,7 +168,7 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
     part, pair = scene.case.pair[name], scene.pairs[name]
     operation = part.operation
     if "application_factor" not in operation.model_fields_set and not operation.spectrum:
-        said.append(f"Pair {name}: K_A = 1 assumed (operation.application_factor).")
+        said.append(assuming(f"Pair {name}: K_A = 1 assumed (operation.application_factor)."))
     for gear in dict.fromkeys((part.driver, part.driven)):
         _assumed_of_gear(scene, gear, said)
     for member, gear in zip(MEMBERS, (part.driver, part.driven), strict=True):
@@ -177,8 +180,11 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
             )
     if pair.normal_backlash < 0.0:
         said.append(
-            f"Pair {name}: without thickness allowance the backlash is negative by {-pair.normal_backlash * 1e6:.2g} "
-            "um along the line of action (rounded profile shifts); rated with zero backlash."
+            assuming(
+                f"Pair {name}: without thickness allowance the backlash is negative by "
+                f"{-pair.normal_backlash * 1e6:.2g} um along the line of action "
+                "(rounded profile shifts); rated with zero backlash."
+            )
         )
 
 
@@ -210,14 +216,16 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
         if part.outer_radius is not None or part.rim_thickness is not None:
             return ()
         held = f"fixed outside a rim of {USUAL_RING_RIM:g} modules, at radius {bore:.6g} mm"
-        return (f"Gear {gear}: outer_radius or rim_thickness not specified; gear body {held}.",)
+        return (assuming(f"Gear {gear}: outer_radius or rim_thickness not specified; gear body {held}."),)
     if part.body is not None and part.face_width is not None:
-        plane = f"Gear {gear}: plane (2D) results use a solid disc; rim, web and hub are included in 3D results only."
+        plane = neglecting(
+            f"Gear {gear}: plane (2D) results use a solid disc; rim, web and hub are included in 3D results only."
+        )
         return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
     if part.bore_radius is not None:
         return thin_rim_remarks(gear, scene.gears[gear])
     held = f"fixed at half the root radius, {bore:.6g} mm"
-    return (f"Gear {gear}: bore_radius not specified; gear body {held}.",)
+    return (assuming(f"Gear {gear}: bore_radius not specified; gear body {held}."),)
 
 
 def thin_rim_remarks(gear: str, made: Gear) -> tuple[str, ...]:
@@ -227,7 +235,7 @@ def thin_rim_remarks(gear: str, made: Gear) -> tuple[str, ...]:
     backup = (made.root_radius - made.bore_radius) / (made.tip_radius - made.root_radius)
     if made.tooth.internal or backup >= LEAST_RIM:
         return ()
-    said = (
+    said = neglecting(
         f"Gear {gear}: rim of {backup:.2g} tooth depths (below {LEAST_RIM:g}) fixed around the bore; root stress and "
         "deflection are underestimated. Specify rim and web in body (rim_thickness, web_thickness) and set width = "
         '"solid" for its pairs.'
@@ -240,4 +248,4 @@ def width_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
     if scene.case.gear[gear].face_width is not None:
         return ()
     remedy = f"Specify gear.{gear}.face_width."
-    return (f"Gear {gear}: face_width not specified, 1 mm assumed. {remedy}",)
+    return (assuming(f"Gear {gear}: face_width not specified, 1 mm assumed. {remedy}"),)

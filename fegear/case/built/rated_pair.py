@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.case.built.gear_quality import gear_quality
 from fegear.case.built.gear_strength import gear_strength
 from fegear.case.built.members import gear_name
@@ -145,7 +146,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
     driver, driven = (gear_body(scene, gear, said, fixed=_stands_still(scene, name, gear)) for gear in gears)
     said += [
-        f"Gear {gear}: C_R is computed for a straight web of the same axial thickness."
+        assuming(f"Gear {gear}: C_R is computed for a straight web of the same axial thickness.")
         for gear in gears
         if (body := scene.gears[gear].body) is not None and body.lean
     ]
@@ -160,7 +161,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     tangential = pair.tangential_load(load)
     speed = (part.speed or math.nan) * pair.driver.teeth / pair.gear(geometry.members[0]).teeth
     if part.lubricant is None:
-        said.append(f"Pair {name}: oil ISO VG 220 assumed (lubricant).")
+        said.append(assuming(f"Pair {name}: oil ISO VG 220 assumed (lubricant)."))
     viscosity = USUAL_VISCOSITY if part.lubricant is None else part.lubricant.viscosity_40
     first = geometry.members[0] == "driver"
     refuse_fast(part, pair, name)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import assuming
 from fegear.geometry.flank_modification import LeadTable, Topography
 from fegear.geometry.pair import MEMBERS
 
@@ -67,9 +68,11 @@ def _ends_of_profile(
             continue
         here, there = (float(gear.tooth.radius_of_roll(t)) * gear.module * 1e3 for t in (at, end))
         yield (
-            f"Gear {name}: {what} ends at radius {here:.6g} mm, before the {side} end of the active profile at "
-            f"{there:.6g} mm; last value {value * 1e6:.4g} um used beyond it. Extend the table to the end of the "
-            "profile."
+            assuming(
+                f"Gear {name}: {what} ends at radius {here:.6g} mm, before the {side} end of the active profile at "
+                f"{there:.6g} mm; last value {value * 1e6:.4g} um used beyond it. Extend the table to the end of the "
+                "profile."
+            )
         )
 
 
@@ -80,6 +83,8 @@ def _ends_of_face(pair: GearPair, member: Member, name: str, what: str, z: Array
         if abs(there) - abs(at) <= _UNCOVERED * width or abs(at) > abs(there):
             continue
         yield (
-            f"Gear {name}: {what} ends at z = {at * 1e3:.6g} mm, before end {end} of the face at {there * 1e3:.6g} "
-            "mm; last values used beyond it. Extend the table to the end of the face."
+            assuming(
+                f"Gear {name}: {what} ends at z = {at * 1e3:.6g} mm, before end {end} of the face at {there * 1e3:.6g} "
+                "mm; last values used beyond it. Extend the table to the end of the face."
+            )
         )

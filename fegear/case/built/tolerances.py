@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.case.built.gear_deviations import Deviation, gear_deviations, own_deviation
 from fegear.case.built.members import gear_name
 from fegear.case.part import at
@@ -118,11 +119,13 @@ def untold(scene: Scene, gears: tuple[str, str], usual: tuple[Kind, ...]) -> tup
             continue
         missing = [kind for kind in kinds if own_deviation(part, kind) is None]
         if len(missing) == len(kinds):
-            told.append(f"Gear {gear}: no tolerance_class specified; nominal flanks used in every sample.")
+            told.append(assuming(f"Gear {gear}: no tolerance_class specified; nominal flanks used in every sample."))
         elif missing:
             told.append(
-                f"Gear {gear}: no tolerance_class and no {', '.join(missing)} specified in its deviations; nominal "
-                "values of these used in every sample."
+                assuming(
+                    f"Gear {gear}: no tolerance_class and no {', '.join(missing)} specified in its deviations; nominal "
+                    "values of these used in every sample."
+                )
             )
     return tuple(told)
 

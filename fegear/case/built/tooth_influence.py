@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import RangeError
+from fegear.base.notes import exceeding, neglecting
 from fegear.base.printed import percent
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.accuracy import AccuracyPart
@@ -201,7 +202,7 @@ def teeth_on_pins_differ(name: str, pins: int, where: str, c: Array, tension: Ar
 
 def planets_taken_alone(name: str) -> str:
     """What a ring that is not held all round leaves out."""
-    return (
+    return neglecting(
         f"Gear {name}: flexible ring rim; each planet-ring mesh is computed separately, rim deflection at one planet "
         "due to the others is neglected."
     )
@@ -220,7 +221,8 @@ def _tolerance_remarks(name: str, influence: GearInfluence, tolerance: float) ->
         end = f"the last mesh (finest allowed) is used although {worst} exceeds the tolerance."
     times = "once" if len(rounds) == 2 else f"{len(rounds) - 1} times"
     how = f"mesh refined {times}" if len(rounds) > 1 else "solved"
-    return (f"Gear {name}: {how} for tolerance {100.0 * tolerance:g} %; maximum estimated errors: {steps}; {end}",)
+    said = f"Gear {name}: {how} for tolerance {100.0 * tolerance:g} %; maximum estimated errors: {steps}; {end}"
+    return (exceeding(said) if last.error > tolerance else said,)
 
 
 def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:

@@ -15,6 +15,7 @@ from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
+from fegear.geometry.rack import BasicRack
 
 _HEAD = """\
 # {about}.
@@ -34,7 +35,7 @@ pressure_angle = {pressure_angle}
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
-# bore_radius = "20 mm"        # radius at which the gear body is fixed; default: half the root radius
+bore_radius = "{bore_radius}"     # gear body fixed there: half the root radius; replace by that of the drawing
 # tip_diameter = "{tip_diameter}"     # default: this value, d + 2 m (1 + x)
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
 {relief}
@@ -107,6 +108,8 @@ _BODIES = 10.0
 _STEEL = 7850.0
 #: Backlash of a train's mesh, assumed [modules].
 _BACKLASH = 0.05
+#: Radius at which a gear body is fixed, over its root radius; half a contact's width [modules]: as a case without them.
+_BORE, _HALF_WIDTH = 0.5, 0.02
 #: Mesh stiffness per face width, assumed for a ring [Pa]: c_gamma of ISO 6336 for steel.
 _PER_WIDTH = 20e9
 
@@ -146,6 +149,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
+        "half_width": _length(_HALF_WIDTH * answers.si("module")),
         "relief": _EFFECTS["tip_relief"][not answers.has("tip_relief")],
         "misalignment": _EFFECTS["lead_error"][not answers.has("lead_error")],
         **(_train(answers) if answers.kind == "train" else {}),
@@ -180,7 +184,10 @@ def _gear(answers: Answers, number: int) -> str:
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
     if answers.kind == "helical":
         return _HELICAL.format(**texts, hand=("right", "left")[number])
-    texts["tip_diameter"] = _length(answers.si("module") * (int(texts["teeth"]) + 2.0 * (1.0 + shift)))
+    module, teeth = answers.si("module"), int(texts["teeth"])
+    texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
+    dedendum = BasicRack.named(answers["rack"]).dedendum
+    texts["bore_radius"] = _length(_BORE * module * (0.5 * teeth - dedendum + shift))
     return _SPUR.format(**texts)
 
 

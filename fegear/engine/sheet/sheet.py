@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from fegear.base.notes import Note, class_of
 from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.outcome import Outcome
 from fegear.engine.sheet.answer import Answer
@@ -20,15 +21,19 @@ from fegear.engine.value import Value
 
 @dataclass(frozen=True)
 class Remark:
-    """A sentence that the user should read, where a condition holds, for each of some objects."""
+    """A note that the user should read, where a condition holds, for each of some objects; of its text's class."""
 
     text: Text
     when: Where | None = None
     each: Where | None = None
 
-    def sentences(self, seen: Seen) -> Iterable[str]:
+    def sentences(self, seen: Seen) -> Iterable[Note]:
         """Those that hold."""
-        return [one.said(self.text) for one in seen.each(self.each) if one.holds(self.when)]
+        return [self._note(one) for one in seen.each(self.each) if one.holds(self.when)]
+
+    def _note(self, seen: Seen) -> Note:
+        said = seen.said(self.text)
+        return said if isinstance(said, Note) else Note(said, class_of(self.text))
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import NoteClass, class_of
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Mark, Points
@@ -56,7 +57,7 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
     tolerance = results.scene.case.accuracy.tolerance
     found = _errors(results)
     estimated = [value for value in results.values if value.error is not None]
-    over = [name for name, share in found if share > tolerance]
+    over = [value.name for value in results.values if value.error and value.error > tolerance * abs(value.value) > 0.0]
     exact = sum(not value.error for value in estimated)
     kinds = (
         (len(estimated) - exact, "have an estimated error"),
@@ -67,7 +68,7 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
     summary += ", ".join(f"{count} {words}" for count, words in kinds if count) + "."
     if over:
         summary += f" Above tolerance: {', '.join(over)}."
-    elif found:
+    elif found and not any(class_of(one) is NoteClass.BEYOND_TOLERANCE for one in results.remarks):
         summary += " No estimated error exceeds the tolerance."
     settings = tuple(
         Folded(f"Settings: {task}", (Facts(outcome.settings),))

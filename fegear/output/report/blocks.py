@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from fegear.base.printed import rounded
+from fegear.engine.inexact import is_inexact
 from fegear.output.numbers import plain_number, pretty_unit, with_error
 from fegear.output.tables import cell, table_file
 
 if TYPE_CHECKING:
+    from fegear.base.notes import Note
     from fegear.engine.figure.figure import Figure
     from fegear.engine.table import Column, Table
     from fegear.engine.value import Value
@@ -21,6 +26,8 @@ _ROWS = 6
 _BESIDE = 8
 #: More columns than this cannot be read on a sheet of paper.
 _ON_PAPER = 11
+#: Digits of a number that a person reads where nothing is known of its error.
+_READ = 4
 #: Larger errors than this share of the value are given as absolute numbers alone.
 _MEANINGLESS = 0.5
 
@@ -50,6 +57,13 @@ class Notes(Block):
 
     sentences: Sequence[str]
     kind: str = "note-list"
+
+
+@dataclass(frozen=True)
+class ClassifiedNotes(Block):
+    """Notes of a run, each with its class."""
+
+    notes: Sequence[Note]
 
 
 @dataclass(frozen=True)
@@ -112,6 +126,14 @@ class Code(Block):
 
 
 @dataclass(frozen=True)
+class Switch(Block):
+    """A box to tick that shows what is hidden without it; the page's style knows it by its name."""
+
+    name: str
+    words: str
+
+
+@dataclass(frozen=True)
 class Download(Block):
     """A button that hands out a file of the page."""
 
@@ -120,26 +142,73 @@ class Download(Block):
 
 @dataclass(frozen=True)
 class Values(Block):
-    """Single results with their errors, and how these compare with the tolerance."""
+    """Single results: what they are, their numbers as people read them, and with all digits and errors on request."""
 
     values: Sequence[Value]
     tolerance: float | None = None
 
     @property
-    def rows(self) -> list[tuple[Value, str, str, str, bool]]:
-        """Each value with its own text, its error's, a remark on the error, and whether that is over the tolerance."""
-        return [(value, *self._texts(value)) for value in self.values]
+    def rows(self) -> list[ValueRow]:
+        """Each value as it stands in the table."""
+        words = Counter(_first_clause(value) for value in self.values)
+        return [self._row(value, alone=words[_first_clause(value)] == 1) for value in self.values]
 
-    def _texts(self, value: Value) -> tuple[str, str, str, bool]:
+    def _row(self, value: Value, *, alone: bool) -> ValueRow:
+        what, _, more = value.meaning.partition("; ")
+        if what and not alone and (of := value.name.split(".")[1:-1]):
+            what = f"{what}, {' '.join(of)}"
         shown, error = value_cells(value)
+        row = ValueRow(value.name, what, more.strip(), _short_value(value), shown, "", error, "", value.unit)
         if error in ("exact", "not estimated"):
-            return shown, "", error, False
+            return row
         share = relative_error(value)
-        if share is None:
-            return shown, f"± {error}", "", False
-        over = self.tolerance is not None and share > self.tolerance
-        percent = f"{plain_number(100.0 * share, 2)} %"
-        return shown, f"± {error}", f"({percent}, above tolerance)" if over else f"({percent})", over
+        percent = "" if share is None else f"{plain_number(100.0 * share, 2)} %"
+        over = self.tolerance is not None and is_inexact(value, self.tolerance)
+        rough = f"± {percent or _short(f'{value.error:.1g}')}" if over else ""
+        return replace(row, error=f"± {error}", remark=f"({percent})" if percent else "", rough=rough)
+
+
+@dataclass(frozen=True)
+class ValueRow:
+    """A single result as a table has it.
+
+    Parameters
+    ----------
+    name : str
+        Its identifier.
+    what, more : str
+        What it is, for people: first clause of its meaning, and the others. Without a meaning: the identifier.
+    short, shown : str
+        The number as a person reads it, and with all digits that its error leaves.
+    error, remark : str
+        Its estimated error, and the error's share or what there is in place of it.
+    rough : str
+        The error where it is large enough to change a decision; else empty.
+    unit : str
+    """
+
+    name: str
+    what: str
+    more: str
+    short: str
+    shown: str
+    error: str
+    remark: str
+    rough: str
+    unit: str
+
+
+def _first_clause(value: Value) -> str:
+    return value.meaning.partition("; ")[0]
+
+
+def _short_value(value: Value) -> str:
+    """Few digits of what is computed; sizes that are exact keep theirs."""
+    if not math.isfinite(value.value) or value.error == 0.0:
+        return plain_number(value.value)
+    if value.error is None:
+        return plain_number(value.value, _READ)
+    return plain_number(float(rounded(value.value, value.error).partition(" ")[0]))
 
 
 def value_cells(value: Value) -> tuple[str, str]:

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 
 import fegear
 from fegear.base.effects import EFFECTS
+from fegear.base.notes import counted, open_and_folded, ordered
 from fegear.engine.citation import Citation, bibliography
 from fegear.output.fields import field_file
 from fegear.output.file_names import file_name
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
     Block,
+    ClassifiedNotes,
     Code,
     DataTable,
     Download,
@@ -24,6 +26,7 @@ from fegear.output.report.blocks import (
     Paragraph,
     Plot,
     Still,
+    Switch,
     Values,
 )
 from fegear.output.report.gear_data import gear_sections
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from fegear.base.notes import Note
     from fegear.engine.run import Results
     from fegear.engine.run_answer import RunAnswer
     from fegear.engine.stage import Task
@@ -66,7 +70,8 @@ def _values(results: Results) -> tuple[Block, ...]:
         if rest := values[_MOST_OPEN:]:
             group += (Folded(f"{len(rest)} more value{'s' if len(rest) > 1 else ''}", (Values(rest, tolerance),)),)
         open_.append(Group(group))
-    return (*open_, *folded)
+    switch = (Switch("all-digits", "All digits and estimated errors"),) if found else ()
+    return (*switch, *open_, *folded)
 
 
 def _answer(answer: RunAnswer, drawn: Sequence[Drawn], shown: frozenset[str]) -> tuple[Block, ...]:
@@ -106,7 +111,16 @@ def _stage(results: Results, task: Task, drawn: Sequence[Drawn], shown: frozense
         if field := field_file(one.figure):
             blocks.append(Paragraph(str(field)))
     blocks += [DataTable(table) for table in outcome.tables if table.name not in shown]
+    if information := results.information(task):
+        blocks.append(Notes(ordered(information), "information"))
     return Section(_title(results, task), (*blocks, *_sources(results, task)) if blocks else ())
+
+
+def _notes(notes: Sequence[Note]) -> tuple[Block, ...]:
+    """The first ones open, the others behind a line that counts them."""
+    shown, folded = open_and_folded(notes)
+    blocks: tuple[Block, ...] = (ClassifiedNotes(shown),) if shown else ()
+    return (*blocks, Folded(counted(folded), (ClassifiedNotes(folded),))) if folded else blocks
 
 
 def _plan(results: Results) -> tuple[Block, ...]:
@@ -169,12 +183,12 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     shown = frozenset(
         {"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs), *(f"gear_body_{gear}" for gear in scene.gears)}
     )
-    values, answer = _values(results), results.answer
+    values, answer, notes = _values(results), results.answer, results.notes(remarks, information=False)
     pictures = {task: [one for one in drawn if one.task == task] for task in results.outcomes}
     # Pictures before what is a table only: the mesh under load before the data of its gears.
     order = sorted(results.outcomes, key=lambda task: not any(_drawable(one, shown) for one in pictures[task]))
     stages = [_stage(results, task, pictures[task], shown | {answer.figure}) for task in order]
-    warned = f" {len(remarks)} note{'s' if len(remarks) > 1 else ''}, below the results." if remarks and values else ""
+    warned = f" {len(notes)} note{'s' if len(notes) > 1 else ''}, below the answer." if notes else ""
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
@@ -183,8 +197,8 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
         f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
         sections=(
             Section("Answer", _answer(answer, drawn, shown)),
+            Section("Notes", _notes(notes)),
             Section("Results", values),
-            Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
             *stages,
             *gear_sections(results),
             Section("Accuracy and computing time", accuracy_blocks(results)),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import assuming
 from fegear.base.shown import shown, shows
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
@@ -403,7 +404,7 @@ def _silent_iso(seen: Seen) -> list[str]:
 
 def _on_load(seen: Seen) -> str:
     load = f"{seen.one.check.line_load * 1e-3:.6g} N/mm"
-    return f"Pair {seen.key}: no load was given; its contact is that of {load}."
+    return assuming(f"Pair {seen.key}: no load was given; its contact is that of {load}.")
 
 
 _SHEET = Sheet(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.base.shown import shows
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
@@ -231,7 +232,7 @@ def on_iso(seen: Seen) -> Iterator[str]:
     yield from one.asked.said
     if one.asked.chosen:
         load = f"F_t/b = {USUAL_SPECIFIC_LOAD * 1e-3:.6g} N/mm"
-        yield f"Pair {seen.key}: no load was given; ISO 6336 takes {load}."
+        yield assuming(f"Pair {seen.key}: no load was given; ISO 6336 takes {load}.")
     if one.found.stiffness is None:
         return
     if one.stiffness is None:

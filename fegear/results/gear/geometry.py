@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from fegear.base.notes import assuming, failing
 from fegear.base.printed import figures
 from fegear.base.shown import shows
 from fegear.case.gear import GearPart
@@ -142,8 +143,10 @@ def drawing_of(scene: Scene) -> Drawing:
 def assumed_cutters(scene: Scene) -> tuple[str, ...]:
     """Sentences on ring gears whose cutter the case leaves open."""
     return tuple(
-        f"Gear {name}: cutter.teeth not specified, {gear.tooth.cutter.teeth} assumed (largest cutter that does not "
-        "trim the ring tips); affects the fillet only."
+        assuming(
+            f"Gear {name}: cutter.teeth not specified, {gear.tooth.cutter.teeth} assumed (largest cutter that does not "
+            "trim the ring tips); affects the fillet only."
+        )
         for name, gear in scene.gears.items()
         if isinstance(gear.tooth, InternalTooth)
         and (part := scene.case.gear[name].cutter) is not None
@@ -162,7 +165,7 @@ def assumed_bodies(scene: Scene) -> tuple[str, ...]:
         if part.face_width is None:
             lacking.append(f"face_width = {gear.face_width * 1e3:.6g} mm")
         if lacking:
-            found.append(f"Gear {name}: mass and inertia computed with the default {' and '.join(lacking)}.")
+            found.append(assuming(f"Gear {name}: mass and inertia computed with the default {' and '.join(lacking)}."))
     return tuple(found)
 
 
@@ -276,20 +279,22 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
     for name, pair in pairs.items():
         if pair.total_contact_ratio < 1.0:
             yield (
-                f"Pair {name}: contact ratio {pair.total_contact_ratio:.4f} is below 1, motion is not transmitted "
-                "continuously. Increase tooth depth or number of teeth, or reduce the centre distance."
+                failing(
+                    f"Pair {name}: contact ratio {pair.total_contact_ratio:.4f} is below 1, motion is not transmitted "
+                    "continuously. Increase tooth depth or number of teeth, or reduce the centre distance."
+                )
             )
     for name, pair in pairs.items():
         for sentence in (interference(pair, "driver").sentence, interference(pair, "driven").sentence):
             if sentence:
-                yield f"Pair {name}: {sentence}."
+                yield failing(f"Pair {name}: {sentence}.")
     for name, pair in pairs.items():
         for one in pair.internal_checks:
             if one.margin < 0.0 and (one.fouls(pair.driver.module) or not one.refused):
-                yield f"Pair {name}: {one.of_pinion.sentence(pair.driver.module)}."
+                yield failing(f"Pair {name}: {one.of_pinion.sentence(pair.driver.module)}.")
     for name, pair in pairs.items():
         if pair.clearing:
-            yield f"Pair {name}: tip interference; {pair.clearing} to avoid it."
+            yield failing(f"Pair {name}: tip interference; {pair.clearing} to avoid it.")
 
 
 def _figures(seen: Seen) -> Iterator[Figure | DeferredFigure]:

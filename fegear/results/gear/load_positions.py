@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.case.built.rated_duty import bore_remarks
 from fegear.case.reading import Scene
 from fegear.geometry.gear import Gear
@@ -157,6 +158,6 @@ def stiffness_inputs(scene: Scene, name: str) -> StiffnessInputs:
     assumed = () if wide and gear.body else bore_remarks(scene, name)
     if part.contact_half_width is None and part.load is None:
         usual = f"c_self is for a contact half-width of {USUAL_HALF_WIDTH} modules."
-        assumed = (f"Gear {name}: contact_half_width or load not specified; {usual}", *assumed)
+        assumed = (assuming(f"Gear {name}: contact_half_width or load not specified; {usual}"), *assumed)
     places, tolerance = face_positions(scene, name) if wide else None, scene.case.accuracy.tolerance
     return StiffnessInputs(gear, radii, contact_half_width(scene, name, radii), places, tolerance, assumed, name)

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.base.notes import exceeding
 from fegear.base.shown import shown, shows
 from fegear.case.built.flank_modifications import described_relief, gear_face
 from fegear.case.built.measured_flanks import Kind, MeasuredGear, Traces, measured_gear
@@ -390,7 +391,7 @@ _SHEET = Sheet(
             _kinds,
             Remark(_where_from),
             Remark(
-                "Gear {name}: {key} deviations of a tooth exceed class 11, the widest of ISO 1328-1.",
+                exceeding("Gear {name}: {key} deviations of a tooth exceed class 11, the widest of ISO 1328-1."),
                 when="beyond_all_classes",
             ),
         ),

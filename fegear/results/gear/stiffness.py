@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, first_of_largest
+from fegear.base.notes import exceeding
 from fegear.base.printed import percent, rounded
 from fegear.base.shown import shown
 from fegear.case.built.tooth_influence import solution_settings
@@ -110,7 +111,7 @@ def tolerance_remarks(who: str, label: str, relative: Array, radius: Array, tole
     """Where the estimated relative errors of a quantity over the radius [m] miss the tolerance, if anywhere."""
     i = int(first_of_largest(relative))
     within, reached = percent(float(np.mean(relative <= tolerance))), percent(float(relative[i]))
-    said = (
+    said = exceeding(
         f"{who}: estimated error of {label} up to {reached} (tolerance {100.0 * tolerance:g} %) at radius "
         f"{radius[i] * 1e3:.6g} mm; within tolerance at {within} of the {of}."
     )

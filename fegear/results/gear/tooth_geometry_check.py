@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.notes import failing
 from fegear.base.shown import shown, shows
 from fegear.case.reading import Scene
 from fegear.engine.citation import citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Rows
@@ -173,6 +175,16 @@ def _points(word: str, role: str, *, holds: bool) -> Line:
     )
 
 
+def _verdict(seen: Seen) -> Iterator[str]:
+    broken, count = seen.data.broken, len(seen.data.rows)
+    if not count:
+        return
+    if not broken:
+        yield "Design check: the one rule is met." if count == 1 else f"Design check: all {count} rules are met."
+        return
+    yield f"Design check: {len(broken)} of {count} rules not met, first {broken[0].sentence}"
+
+
 _TITLE = "Design check (rules of thumb)"
 _SHEET = Sheet(
     name=lambda _asked: "",
@@ -192,7 +204,8 @@ _SHEET = Sheet(
             when="drawn",
         ),
     ),
-    remarks=(Remark("{one.sentence}", each="broken"), _unchecked_rims),
+    answer=Answer(_verdict, figure="tooth_geometry_check"),
+    remarks=(Remark(failing("{one.sentence}"), each="broken"), _unchecked_rims),
 )  # fmt: skip
 
 

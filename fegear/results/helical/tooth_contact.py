@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import failing, neglecting
 from fegear.base.printed import percent
 from fegear.case.part import at
 from fegear.contact.unloaded.manufacture import lead_angle_error_of_cut, lead_error_as_cut
@@ -127,23 +128,27 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
     kinds, counts = np.unique(t.mesh.kind, return_counts=True)
     share = {str(k): c / t.mesh.kind.size for k, c in zip(kinds, counts, strict=True)}
     edges = {k: s for k, s in share.items() if k != "surface"}
-    remarks = []
+    remarks: list[str] = []
     total = t.pair.transverse_contact_ratio + t.pair.overlap_ratio
     if total < 1.0:
         remarks.append(
-            f"Pair {name}: total contact ratio {total:.3g} is below 1; over {percent(1.0 - total)} of a pitch "
-            "motion is transmitted by edge contact."
+            failing(
+                f"Pair {name}: total contact ratio {total:.3g} is below 1; over {percent(1.0 - total)} of a pitch "
+                "motion is transmitted by edge contact."
+            )
         )
     if edges:
         shares = ", ".join(f"{k} {percent(s)}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
         remarks.append(f"Pair {name}: edge contact over part of the mesh cycle: {shares}.")
     if any("circle" in k or "tangent" in k for k in edges):
-        remarks.append(f"Pair {name}: contact reaches the root form circle (interference with the fillet).")
+        remarks.append(failing(f"Pair {name}: contact reaches the root form circle (interference with the fillet)."))
     for member, hit in zip(("pinion", "gear"), t.pair.interferes, strict=True):
         if hit:
             remarks.append(
-                f"Pair {name}: the mating tip reaches below the root form circle of the {member}; contact with the "
-                "fillet is not analysed."
+                failing(
+                    f"Pair {name}: the mating tip reaches below the root form circle of the {member}; contact with the "
+                    "fillet is not analysed."
+                )
             )
     vague = float(np.mean(t.mesh.ill_defined))
     if vague > 0.0:
@@ -216,13 +221,17 @@ def _all_remarks(seen: Seen) -> Iterator[str]:
     if asked.relieved:
         of = " and ".join(f"gear {gear}" for gear in asked.relieved)
         yield (
-            f"Pair {name}: relief, lead, bias and topography of {of} ignored: tooth contact analysis uses the "
-            "generated flanks with the modification of the pair."
+            neglecting(
+                f"Pair {name}: relief, lead, bias and topography of {of} ignored: tooth contact analysis uses the "
+                "generated flanks with the modification of the pair."
+            )
         )
     if asked.ignored:
         yield (
-            f"Pair {name}: {asked.ignored} is ignored in tooth contact analysis (rigid flanks); set "
-            "tooth_contact.load for contact ellipses."
+            neglecting(
+                f"Pair {name}: {asked.ignored} is ignored in tooth contact analysis (rigid flanks); set "
+                "tooth_contact.load for contact ellipses."
+            )
         )
     if data.no_ellipses:
         yield f"Pair {name}: no contact ellipses: {data.no_ellipses}."

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.notes import assuming, failing, neglecting
 from fegear.base.printed import percent
 from fegear.case.built.pair_surface import PairSurface, pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
@@ -105,7 +106,8 @@ def _settings(seen: Seen) -> dict[str, object]:
 
 def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]:
     """What a reader must know of the numbers."""
-    told, pair = [], data.pair
+    told: list[str] = []
+    pair = data.pair
     if math.isnan(data.scuffing):
         told.append(
             f"Pair {name}: safety factor for scuffing not computed: lubricant.scuffing_load_stage or "
@@ -114,8 +116,10 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
     oil = asked.rated.surface.temperature
     if data.scuffing <= oil:
         told.append(
-            f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of "
-            f"{data.scuffing:.4g} degC: S_B is zero or negative and has no quantitative meaning."
+            failing(
+                f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of "
+                f"{data.scuffing:.4g} degC: S_B is zero or negative and has no quantitative meaning."
+            )
         )
     if math.isnan(data.permissible_film):
         told.append(
@@ -126,19 +130,25 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
         told.append(f"Pair {name}: no integral temperature: {data.why_not}")
     if pair.contact_ratio >= 2.0 and pair.driver.helix_angle == 0.0:
         told.append(
-            f"Pair {name}: load sharing factors of ISO/TS 6336-20 and -22 are defined for contact ratios below 2; 1 "
-            "used here (see the FE load sharing)."
+            assuming(
+                f"Pair {name}: load sharing factors of ISO/TS 6336-20 and -22 are defined for contact ratios below 2; "
+                "1 used here (see the FE load sharing)."
+            )
         )
     if pair.internal:
         told.append(
-            f"Pair {name}: ISO/TS 6336-22 applies to external gears; film computed with the signed curvature of the "
-            "concave flank, safety factor for micropitting not verified by tests."
+            assuming(
+                f"Pair {name}: ISO/TS 6336-22 applies to external gears; film computed with the signed curvature of "
+                "the concave flank, safety factor for micropitting not verified by tests."
+            )
         )
     told += _recalled(name, asked)
     if data.share_outside > 0.0:
         told.append(
-            f"Pair {name}: corner contact outside the path of contact carries up to {percent(data.share_outside)} of "
-            "the load; no temperature and film computed there."
+            neglecting(
+                f"Pair {name}: corner contact outside the path of contact carries up to {percent(data.share_outside)} "
+                "of the load; no temperature and film computed there."
+            )
         )
     if asked.rated.factors.product != 1.0:
         told.append(
@@ -160,16 +170,20 @@ def _recalled(name: str, asked: PairSurface) -> list[str]:
     """Say which factors are those of no printed source."""
     from fegear.formulas.iso6336.part22_micropitting import narrow
 
-    told = []
+    told: list[str] = []
     if narrow(asked.rated.pair):
         told.append(
-            f"Pair {name}: X_Y of ISO/TS 6336-22 for overlap ratio {asked.rated.pair.overlap_ratio:.3g} is not "
-            "verified against a printed source (verified from 1.2)."
+            assuming(
+                f"Pair {name}: X_Y of ISO/TS 6336-22 for overlap ratio {asked.rated.pair.overlap_ratio:.3g} is not "
+                "verified against a printed source (verified from 1.2)."
+            )
         )
     if asked.tests.micropitting_stage is not None:
         told.append(
-            f"Pair {name}: line load at A of the FZG gears scaled with torque for lambda_GFP (published for load "
-            "stage 10 only, 236.3 N/mm)."
+            assuming(
+                f"Pair {name}: line load at A of the FZG gears scaled with torque for lambda_GFP (published for load "
+                "stage 10 only, 236.3 N/mm)."
+            )
         )
     return told
 

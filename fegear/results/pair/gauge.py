@@ -9,6 +9,7 @@ from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
 from fegear.case.built.pair_checks import check_relief
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
@@ -138,6 +139,11 @@ _SHEET = Sheet(
             (Over("displacement", (Line("peak"),), marks=lambda _seen: (Mark("x", 0.0),)),),
             of="places", under="{load:.5g} N",
         ),
+    ),
+    answer=Answer(
+        "Gauge {name}: peak strain {v[peak_strain]}, peak stress {v[peak_stress]}.",
+        "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
+        figure="gauge_{name}",
     ),
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="compared"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.base.notes import assuming
 from fegear.base.shown import shown, shows
 from fegear.case.built.pair_surface import PairFriction, check_speed, pair_friction, pair_speed
 from fegear.case.reading import Scene
@@ -265,7 +266,7 @@ _SHEET = Sheet(
             f"Pair {{name}}: loss of sliding teeth only; {_NEGLECTED}. Loads are those without friction."
         ),
         Remark(
-            "Pair {name}: friction law not specified; Schlenk with the lubricant of the case assumed.",
+            assuming("Pair {name}: friction law not specified; Schlenk with the lubricant of the case assumed."),
             when=lambda seen: not seen.asked.given,
         ),
         Remark(

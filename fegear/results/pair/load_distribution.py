@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import exceeding
 from fegear.base.printed import percent
 from fegear.case.built.solid_influence import check_ends
 from fegear.contact.error_over_pitch import ErrorOverPitch
@@ -254,7 +255,7 @@ def limit_remarks(name: str, found: LoadedFlanks, i: int) -> tuple[str, ...]:
     if largest < _OF_MOST * most:
         return ()
     width = float(found.cells[1] - found.cells[0])
-    said = (
+    said = exceeding(
         f"Pair {name}: K_Hbeta is {largest:.4g}, the maximum that can be resolved ({most}): line loads are averaged "
         f"over {width * 1e3:.4g} mm of face width (half a module or less). A larger misalignment or crown shows in "
         "largest_line_load and largest_hertz_pressure, not in K_Hbeta."

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from fegear.base import effects
+from fegear.base.notes import exceeding, failing, neglecting
 from fegear.base.printed import percent
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
@@ -97,7 +98,7 @@ def _heavy(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     """Say where no metal carries the load, spread over the face or where it stands."""
     found = data.over.found
     sentence = heavy_load(data.flanks.pair, float(found.load.max()), float(found.largest_pressure.max()))
-    return (f"Pair {name}: {sentence}",) if sentence else ()
+    return (failing(f"Pair {name}: {sentence}"),) if sentence else ()
 
 
 def _sliced(name: str, data: LoadedWidePair) -> tuple[str, ...]:
@@ -116,7 +117,7 @@ def _beside(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     mean = float(data.stated.mean[data.at])
     if data.beside <= _UNREMARKED * mean:
         return ()
-    remark = (
+    remark = neglecting(
         f"Pair {name}: steep modifications or deviations shift the contact away from the theoretical contact lines, "
         f"changing gaps by up to {data.beside * 1e6:.3g} um (mean transmission error {mean * 1e6:.4g} um). Included "
         f"in te_unloaded of load_distribution_roll_{name}, neglected in loads."
@@ -131,7 +132,7 @@ def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     if fewest.min() > _FEWEST:
         return ()
     i = int(fewest.argmin())
-    remark = (
+    remark = exceeding(
         f"Pair {name}: at {found.load[i]:.4g} N as few as {fewest[i]} points carry load at a roll position, too few "
         "to resolve the load distribution. Increase load_distribution.panels."
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import neglecting
 from fegear.base.printed import figures
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.loaded_teeth import HARMONICS, MOST_CYCLES
@@ -173,9 +174,11 @@ _REMARKS = (
         when=lambda seen: seen.data.found.mesh_compliance_mean is None,
     ),
     Remark(
-        "Pair {name}: hunting tooth cycle of {d.found.cycles} base pitches exceeds the maximum of "
-        f"{MOST_CYCLES}; rotational harmonics of pitch deviations are neglected. Specify spacing_errors of one gear "
-        "only to see its harmonics.",
+        neglecting(
+            "Pair {name}: hunting tooth cycle of {d.found.cycles} base pitches exceeds the maximum of "
+            f"{MOST_CYCLES}; rotational harmonics of pitch deviations are neglected. Specify spacing_errors of one "
+            "gear only to see its harmonics."
+        ),
         when=lambda seen: seen.data.found.rotational is None and seen.data.found.cycles > MOST_CYCLES,
     ),
     Remark(

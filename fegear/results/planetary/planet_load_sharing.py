@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.base.printed import percent
 from fegear.base.shown import declared, shown, shown_as
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
@@ -410,7 +411,7 @@ _SHEET = Sheet(
     remarks=(
         Remark(lambda seen: f"Set {seen.name}: loss of contact: {_apart(seen)}.", when=_apart),
         Remark(
-            "Set {name}: specified stiffnesses are assumed exact; errors include the mesh positions only.",
+            assuming("Set {name}: specified stiffnesses are assumed exact; errors include the mesh positions only."),
             when=lambda seen: not seen.data.loads.cycle.off.size,
         ),
     ),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import assuming, failing
 from fegear.base.shown import shown
 from fegear.case.built.planetary import planetary_part, ring_checks, set_inputs
 from fegear.case.planetary import PHASED_HARMONICS
@@ -126,12 +127,12 @@ def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
     if found.count > 1:
         said[0] += f" Clearance between adjacent planets {found.neighbour_clearance * 1e3:.4g} mm."
     if asked.base_twist:
-        said.append(f"Set {name}: bearings are assumed rigid for axial forces of sun and ring and for tilting "
-                    "moments of the planets.")  # fmt: skip
-    said += [f"Set {name}: {one.sentence(inputs.module)}." for one in inputs.checks if one.margin < 0.0]
+        said.append(assuming(f"Set {name}: bearings are assumed rigid for axial forces of sun and ring and for tilting "
+                    "moments of the planets."))  # fmt: skip
+    said += [failing(f"Set {name}: {one.sentence(inputs.module)}.") for one in inputs.checks if one.margin < 0.0]
     if not asked.at_speed:
-        said.append(f"Set {name}: speed not specified: frequencies require planetary.{name}.speed; member speeds are "
-                    "for 1 rad/s input speed.")  # fmt: skip
+        said.append(assuming(f"Set {name}: speed not specified: frequencies require planetary.{name}.speed; member "
+                    "speeds are for 1 rad/s input speed."))  # fmt: skip
     return tuple(said)
 
 

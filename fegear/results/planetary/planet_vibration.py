@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import neglecting
 from fegear.base.shown import shown
 from fegear.case.built.planetary import body_masses, check_masses, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, set_pair
@@ -374,10 +375,10 @@ _VIBRATION = Sheet(
     remarks=(
         Remark("Set {name}: linearised at the mean load, damping ratio of all modes {asked.damping_ratio:.3g}."),
         Remark(
-            lambda seen: f"Set {seen.name}: linear mesh force falls to "
+            lambda seen: neglecting(f"Set {seen.name}: linear mesh force falls to "
             f"{seen.data.found.least_share[seen.data.low]:.3g} of its mean at "
             f"{seen.data.speed[seen.data.low] * 30.0 / math.pi:.5g} rpm (loss of contact, not modelled here); use "
-            "planet-motion.",
+            "planet-motion."),
             when=lambda seen: seen.data.found.least_share.min() < 0.0,
         ),
     ),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import FegearError, InputError, RangeError
+from fegear.base.notes import assuming, failing, neglecting
 from fegear.base.shown import shown, shows
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
@@ -288,58 +289,70 @@ def _check(scene: Scene, name: str) -> None:
 
 def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[str, ...]:
     """What falls short, then what is assumed and what is not verified against the standard."""
-    name, told = inputs.asked.name, []
+    name = inputs.asked.name
+    told: list[str] = []
     for i, (member, gear) in enumerate(zip(MEMBERS, inputs.asked.gears, strict=True)):
         found, case = data.gears[member], inputs.cases[i]
         if found.most > PERMISSIBLE:
             told.append(
-                f"Pair {name}: A_FF = {found.most:.4g} of gear {gear} ({member}) at a depth of "
-                f"{found.at_depth * 1e3:.3g} mm is above the permissible {PERMISSIBLE:g}."
+                failing(
+                    f"Pair {name}: A_FF = {found.most:.4g} of gear {gear} ({member}) at a depth of "
+                    f"{found.at_depth * 1e3:.3g} mm is above the permissible {PERMISSIBLE:g}."
+                )
             )
         largest = recommended(inputs.asked.pair.gear(member).module)[2]
         needed = float(np.nanmax([found.crushing, found.least_agma, 0.0]))
         if case.case_depth < needed:
             told.append(
-                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is below the {needed * 1e3:.3g} mm "
-                "required against case crushing."
+                failing(
+                    f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is below the {needed * 1e3:.3g} mm "
+                    "required against case crushing."
+                )
             )
         if case.case_depth > largest:
             told.append(
-                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm exceeds {largest * 1e3:.3g} mm (0.4 "
-                "m_n, at most 6 mm)."
+                failing(
+                    f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm exceeds {largest * 1e3:.3g} mm "
+                    "(0.4 m_n, at most 6 mm)."
+                )
             )
         if inputs.materials[i] != "case-hardened-steel":
-            told.append(
-                f"Gear {gear}: ISO/TS 6336-4 covers case-carburized steel only; the exposure for "
-                f"{inputs.materials[i]} is an extrapolation."
-            )
+            covers = "ISO/TS 6336-4 covers case-carburized steel only"
+            told.append(assuming(f"Gear {gear}: {covers}; the exposure for {inputs.materials[i]} is an extrapolation."))
         for what, measured, rule in (
             ("hardness over depth", case.measured, "hardness_profile"),
             ("residual stress", case.residual, "residual_stress"),
         ):
             if measured is None:
-                told.append(f"Gear {gear}: {what} by Lang, not verified against a printed source (strength.{rule}).")
+                told.append(
+                    assuming(f"Gear {gear}: {what} by Lang, not verified against a printed source (strength.{rule}).")
+                )
     if inputs.asked.levels:
         told.append(
-            f"Pair {name}: exposure and case depths are for the maximum level of the load spectrum, "
-            f"{data.load / inputs.asked.load:.4g} times the load."
+            neglecting(
+                f"Pair {name}: exposure and case depths are for the maximum level of the load spectrum, "
+                f"{data.load / inputs.asked.load:.4g} times the load."
+            )
         )
     told += inputs.said
     told.append(
-        f"Pair {name}: structure, symbols and scope of A_FF (case-carburized external gears) are those that printed "
-        f"sources give of ISO/TS 6336-4. Not verified against a source: K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa "
-        f"per HV, c_1 = {CALIBRATION:g}, permissible A_FF = {PERMISSIBLE:g}, and that A_FF counts from the "
-        f"half-width on; K_material = {inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). "
-        "tau_eff is the mean shear over all planes below a Hertzian contact without friction, instead of the "
-        "standard's fitted formulas. "
-        "Residual stress reduces the exposure in the case; A_FF_load excludes it."
+        assuming(
+            f"Pair {name}: structure, symbols and scope of A_FF (case-carburized external gears) are those that "
+            f"printed sources give of ISO/TS 6336-4. Not verified against a source: K_tau,per = "
+            f"{HARDNESS_FACTOR * 1e-6:g} MPa per HV, c_1 = {CALIBRATION:g}, "
+            f"permissible A_FF = {PERMISSIBLE:g}, and that A_FF counts from the "
+            f"half-width on; K_material = {inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). "
+            "tau_eff is the mean shear over all planes below a Hertzian contact without friction, instead of the "
+            "standard's fitted formulas. "
+            "Residual stress reduces the exposure in the case; A_FF_load excludes it."
+        )
     )
-    told.append(
-        f"Pair {name}: limits of the case depth are not verified against a printed source: 0.15 to 0.25 and 0.4 m_n, "
-        "U_H of ISO 6336-5 (66,000 N/mm^2 of MQ and ME, 44,000 of ML) and of AGMA 2101 (44,000 carburized, 30,000 "
-        "induction-hardened)."
+    limits = assuming(
+        f"Pair {name}: limits of the case depth are not verified against a printed source: 0.15 to 0.25 and 0.4 "
+        "m_n, U_H of ISO 6336-5 (66,000 N/mm^2 of MQ and ME, 44,000 of ML) and of AGMA 2101 (44,000 carburized, "
+        "30,000 induction-hardened)."
     )
-    return tuple(dict.fromkeys(told))
+    return tuple(dict.fromkeys((*told, limits)))
 
 
 def _present(data: FlankFractureData | NotRated, inputs: FlankFractureInputs | NotRated) -> Outcome:

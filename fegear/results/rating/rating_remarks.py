@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
+from fegear.base.notes import assuming, exceeding, failing, neglecting
 from fegear.base.printed import percent
 from fegear.geometry.pair import MEMBERS
 from fegear.results.rating.shared_load import bending_said
@@ -44,7 +45,9 @@ def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
     found, told = data.spectrum, []
     if found is not None:
         told = [
-            f"Pair {asked.name}: {what} of gear {gear} exceed the static strength at one level of the spectrum."
+            failing(
+                f"Pair {asked.name}: {what} of gear {gear} exceed the static strength at one level of the spectrum."
+            )
             for what, sums in (("flanks", found.contact_damage), ("roots", found.bending_damage))
             for member, gear in zip(MEMBERS, asked.gears, strict=True)
             if math.isinf(sums[asked.of(member)])
@@ -57,16 +60,20 @@ def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
             value = safety[asked.of(member)]
             if value < least:
                 told.append(
-                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the "
-                    f"minimum {least:g}."
+                    failing(
+                        f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the "
+                        f"minimum {least:g}."
+                    )
                 )
     levels = [] if found is None else [one.rating for one in found.levels if one.rating is not None]
     most = max(one["K_v"].value for one in (levels or [data.formula]))
     if most > _SHAKEN and "K_v" not in asked.given:
         told.append(
-            f"Pair {asked.name}: K_v = {most:.4g} of ISO 6336-1 is above {_SHAKEN:g}: dynamic forces from flank "
-            "deviations are many times the load (loss of contact), outside the scope of the formula; check the load "
-            "or set operation.dynamic_factor."
+            exceeding(
+                f"Pair {asked.name}: K_v = {most:.4g} of ISO 6336-1 is above {_SHAKEN:g}: dynamic forces from flank "
+                "deviations are many times the load (loss of contact), outside the scope of the formula; check the "
+                "load or set operation.dynamic_factor."
+            )
         )
     return tuple(told)
 
@@ -105,7 +112,7 @@ def _recalled(data: RatingData, asked: PairToRate) -> list[str]:
     if asked.mean_stress is not None or not any(asked.stress_ratio):
         return []
     values = ", ".join(f"{value:.3g}" for value in data.formula["Y_M"].values)
-    told = (
+    told = assuming(
         f"Pair {asked.name}: Y_M = {values} (pinion, wheel): mean stress ratios M of ISO 6336-3 annex B are not "
         "verified against a printed source, except 0.7 for idlers (operation.mean_stress_factor)."
     )
@@ -143,7 +150,7 @@ def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
     if asked.misaligned or not counted:
         return []
     gap = f"{counted[0] * 1e6:.3g} um"
-    told = (
+    told = neglecting(
         f"Pair {asked.name}: the FE load distribution has no misalignment, ISO 6336 uses F_betay = {gap}. For the "
         f'same input set pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and effects.misalignment = true.'
     )

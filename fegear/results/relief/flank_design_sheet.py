@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.contact.wide.lines import ContactLines
 from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Map, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -226,6 +227,11 @@ FLANK_DESIGN_SHEET = Sheet(
             ),
             views="mapped", view="{one.relief}", columns=2,
         ),
+    ),
+    answer=Answer(
+        "Pair {name}: the exact topography leaves {v[exact_topography.te_peak_to_peak]} peak to peak.",
+        Remark(_keys, each=lambda seen: (seen.data.design.best, *seen.data.design.robust)),
+        figure="flank_topography_{name}",
     ),
     remarks=(
         Remark(_keys, each=lambda seen: (seen.data.design.best, *seen.data.design.robust)),

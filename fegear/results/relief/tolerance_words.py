@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import neglecting
 from fegear.base.printed import percent
 from fegear.results.relief.tolerance_data import NOMINAL, ROBUST, OneDeviation, ToleranceShown
 
@@ -33,7 +34,9 @@ def tolerance_remarks(seen: Seen) -> tuple[str, ...]:
     )
     remarks = [told, *asked.untold]
     if asked.own_spacing:
-        remarks.append(f"Pair {name}: spacing_errors of its gears are not used (pitch deviations are sampled).")
+        remarks.append(
+            neglecting(f"Pair {name}: spacing_errors of its gears are not used (pitch deviations are sampled).")
+        )
     if data.reasons:
         first = min(data.reasons)
         remarks.append(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import MISALIGNMENT, WIDE_EFFECTS
+from fegear.base.notes import assuming, neglecting
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
@@ -116,8 +117,10 @@ def _remarks(data: LoadedShafts, assumed: tuple[str, ...]) -> list[str]:
     even = [mesh.pair for mesh, feeding in zip(meshes, data.feeding, strict=True) if not feeding]
     if even:
         said.append(
-            f"Shafts: uniform load distribution over the face assumed for {', '.join(even)}; effects.misalignment = "
-            'true couples load distribution and shaft deflection for pairs with width = "solid" or "slices".'
+            neglecting(
+                f"Shafts: uniform load distribution over the face assumed for {', '.join(even)}; effects.misalignment "
+                '= true couples load distribution and shaft deflection for pairs with width = "solid" or "slices".'
+            )
         )
     if any(data.feeding):
         said.append(
@@ -126,7 +129,7 @@ def _remarks(data: LoadedShafts, assumed: tuple[str, ...]) -> list[str]:
         )
     seats = [seat.bearing for shaft in data.gearbox.shafts for seat in shaft.seats]
     if any(isinstance(one, RollingBearing) and one.kind == "roller" for one in seats):
-        said.append("Shafts: roller contact law (ISO/TS 16281) is not verified against a printed source.")
+        said.append(assuming("Shafts: roller contact law (ISO/TS 16281) is not verified against a printed source."))
     return said
 
 

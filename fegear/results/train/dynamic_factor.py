@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import neglecting
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.case.built.train import motion_spec, train_inputs
@@ -399,8 +400,8 @@ _SHEET = Sheet(
         ),
         lambda seen: pull_remarks(seen.data.found.pull),
         Remark(
-            "Mesh {name}: effects.parametric is off: constant mean mesh stiffness; the dynamic factor refers to the "
-            "mesh force.",
+            neglecting("Mesh {name}: effects.parametric is off: constant mean mesh stiffness; the dynamic factor "
+            "refers to the mesh force."),
             when=_constant_stiffness,
         ),
     ),

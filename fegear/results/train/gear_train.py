@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming, neglecting
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.pair_checks import check_relief
@@ -206,7 +207,7 @@ def _whose_speeds(seen: Seen) -> list[str]:
     if not asked.assumed or float(np.ptp(ratios)) <= 1e-12 * float(ratios.max()):
         return []
     low, high = (float(ratio) / data.speed_ratio for ratio in (ratios.min(), ratios.max()))
-    said = (
+    said = assuming(
         f"dynamics.speed_of not specified: speeds refer to {asked.spec.reference}, the first table under [train.body]. "
         f"Other bodies rotate at {low:.4g} to {high:.4g} times this speed; set speed_of under [dynamics]."
     )
@@ -214,7 +215,7 @@ def _whose_speeds(seen: Seen) -> list[str]:
 
 
 def _on_axial_force(seen: Seen) -> str:
-    return (
+    return neglecting(
         f"Mesh {seen.key}: its axial force of {seen.one.axial_force:.5g} N is carried by bearings taken as rigid; the "
         "train turns only. Ask for transmissibility with mesh.pair for motion along the axis and tilting."
     )
@@ -235,7 +236,7 @@ _SHEET = Sheet(
     remarks=(
         _whose_speeds,
         Remark(
-            "train.torque_ripple ignored because effects.torque_ripple is off (constant torques).",
+            neglecting("train.torque_ripple ignored because effects.torque_ripple is off (constant torques)."),
             when=lambda seen: seen.asked.idle_ripple,
         ),
         Each(
@@ -347,7 +348,7 @@ def pull_remarks(pull: Pull | None) -> tuple[str, ...]:
     if pull is None:
         return ()
     where = f"{percent(pull.share)} of the mean force, at {pull.speed * RPM:.5g} rpm of {pull.speed_of}"
-    sentence = (
+    sentence = neglecting(
         f"Mesh {pull.mesh}: minimum linearised mesh force {pull.force:.4g} N ({where}), i.e. loss of contact, not "
         "modelled here; request dynamic-factor with effects.contact_loss = true."
     )

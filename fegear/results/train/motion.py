@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import neglecting
 from fegear.base.printed import percent
 from fegear.case.built.neglected_in_motion import SIZED, NeglectedInMotion, motion_remarks, neglected_in_motion
 from fegear.case.built.train import motion_spec, train_inputs
@@ -306,7 +307,8 @@ _SHEET = Sheet(
         lambda seen: motion_remarks(seen.data.neglected, seen.data.train, seen.asked.effects, seen.asked.tolerance),
         lambda seen: _without_backlash(seen.data.train) if seen.asked.motion.contact_loss else [],
         Remark(
-            "dynamics.friction ignored because effects.friction is off.", when=lambda seen: seen.asked.idle_friction
+            neglecting("dynamics.friction ignored because effects.friction is off."),
+            when=lambda seen: seen.asked.idle_friction,
         ),
         lambda seen: _common_period(seen.data.train, seen.data.states),
         _how_it_settled,

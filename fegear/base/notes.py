@@ -1,0 +1,149 @@
+"""Notes of a run: sentences that a reader should see, each of a class, so that what matters comes first.
+
+A note is a text that knows its class; a plain text among notes is information.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from enum import IntEnum
+from typing import NamedTuple
+
+
+class NoteClass(IntEnum):
+    """What a note means for the numbers; the smaller, the sooner a reader has to act."""
+
+    FAILS = 1
+    BEYOND_TOLERANCE = 2
+    NEGLECTED = 3
+    ASSUMED = 4
+    INFORMATION = 5
+
+    @property
+    def words(self) -> str:
+        """As people read it."""
+        return _WORDS[self]
+
+
+_WORDS = {
+    NoteClass.FAILS: "fails",
+    NoteClass.BEYOND_TOLERANCE: "beyond the tolerance",
+    NoteClass.NEGLECTED: "neglected",
+    NoteClass.ASSUMED: "assumed",
+    NoteClass.INFORMATION: "information",
+}
+
+
+class Note(str):
+    """A sentence with its class.
+
+    Parameters
+    ----------
+    text : str
+    kind : NoteClass
+    """
+
+    __slots__ = ("kind",)
+    kind: NoteClass
+
+    def __new__(cls, text: str, kind: NoteClass = NoteClass.INFORMATION) -> Note:
+        """Make the text and remember its class."""
+        made = super().__new__(cls, text)
+        made.kind = kind
+        return made
+
+    def __reduce__(self) -> tuple[type[Note], tuple[str, NoteClass]]:
+        """Travel to other processes with the class."""
+        return Note, (str(self), self.kind)
+
+
+def failing(text: str) -> Note:
+    """Something does not hold: a safety below the required one, tips that jam."""
+    return Note(text, NoteClass.FAILS)
+
+
+def exceeding(text: str) -> Note:
+    """An estimated error exceeds what the case allows, or a formula is used outside its range."""
+    return Note(text, NoteClass.BEYOND_TOLERANCE)
+
+
+def neglecting(text: str) -> Note:
+    """An effect or a part is left out that changes what is wanted."""
+    return Note(text, NoteClass.NEGLECTED)
+
+
+def assuming(text: str) -> Note:
+    """A value was taken that the case does not give."""
+    return Note(text, NoteClass.ASSUMED)
+
+
+def class_of(note: object) -> NoteClass:
+    """Class of a note; anything else is information."""
+    return note.kind if isinstance(note, Note) else NoteClass.INFORMATION
+
+
+#: Notes that stand open on a page, a terminal and in the window; the others are folded or counted.
+OPEN = 2
+#: Subjects that a merged note names.
+_NAMED = 6
+_SUBJECT = re.compile(r"(Gear|Pair|Mesh|Set|Shaft|Bearing|Gauge) ([^\s:,]+)((?: over [^:]*)?: .*)", re.DOTALL)
+_NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
+_PLURAL = {"Mesh": "Meshes"}
+
+
+class _Subject(NamedTuple):
+    """Where one of several notes that say the same comes from."""
+
+    name: str
+    note: str
+    rest: str
+
+
+def ordered(notes: Iterable[str]) -> tuple[Note, ...]:
+    """Notes with repeats merged, the class to act on first; within a class as they were.
+
+    Notes that say the same of several gears, pairs or shafts become one, "Gears p1, w1: ..."; where their numbers
+    differ, the merged one has those of two, or the range of more.
+    """
+    groups: dict[tuple[NoteClass, str, str], list[_Subject]] = {}
+    for note in dict.fromkeys(notes):
+        found = _SUBJECT.fullmatch(note)
+        noun, name, rest = found.groups() if found else ("", "", str(note))
+        key = (class_of(note), noun, _NUMBER.sub("#", rest) if found else rest)
+        groups.setdefault(key, []).append(_Subject(name, str(note), rest))
+    merged = [Note(_merged(noun, members), kind) for (kind, noun, _), members in groups.items()]
+    return tuple(sorted(merged, key=lambda note: note.kind))
+
+
+def _merged(noun: str, members: Sequence[_Subject]) -> str:
+    if len(members) == 1:
+        return members[0].note
+    names = ", ".join(dict.fromkeys(one.name for one in members[:_NAMED]))
+    more = f" and {len(members) - _NAMED} more" if len(members) > _NAMED else ""
+    numbers = iter(zip(*(_NUMBER.findall(one.rest) for one in members), strict=True))
+    rest = _NUMBER.sub(lambda _: _together(next(numbers)), members[0].rest)
+    return f"{_PLURAL.get(noun, noun + 's')} {names}{more}{rest}"
+
+
+def _together(numbers: Sequence[str]) -> str:
+    """Numbers of one place in several notes."""
+    if len(set(numbers)) == 1:
+        return numbers[0]
+    if len(numbers) == 2:
+        return " and ".join(numbers)
+    return f"{min(numbers, key=float)} to {max(numbers, key=float)}"
+
+
+def open_and_folded(notes: Sequence[Note]) -> tuple[Sequence[Note], Sequence[Note]]:
+    """Those to show at once, and those behind a line to click on; a single one is not worth a line."""
+    count = len(notes) if len(notes) <= OPEN + 1 else OPEN
+    return notes[:count], notes[count:]
+
+
+def counted(notes: Sequence[Note]) -> str:
+    """How many of which class: ``"5 more notes: 2 neglected, 3 assumed"``."""
+    count = Counter(note.kind for note in notes)
+    kinds = ", ".join(f"{count[kind]} {kind.words}" for kind in NoteClass if count[kind])
+    return f"{len(notes)} more note{'' if len(notes) == 1 else 's'}: {kinds}"

@@ -1,0 +1,101 @@
+"""Notes of a run: classes that travel, repeats merged, the first ones open and the others counted."""
+
+import copy
+import json
+import pickle
+from dataclasses import dataclass
+
+import pytest
+
+from fegear.base.notes import (
+    Note,
+    NoteClass,
+    assuming,
+    class_of,
+    counted,
+    exceeding,
+    failing,
+    neglecting,
+    open_and_folded,
+    ordered,
+)
+from fegear.engine.sheet.sheet import Remark, Sheet
+
+
+def test_a_note_is_a_text_and_its_class_travels():
+    note = failing("Pair I: S_H = 0.6 is below 1.")
+    assert note == "Pair I: S_H = 0.6 is below 1."
+    assert json.loads(json.dumps([note])) == [str(note)]
+    for again in (pickle.loads(pickle.dumps(note)), copy.deepcopy(note)):  # noqa: S301
+        assert (again, again.kind) == (note, NoteClass.FAILS)
+    assert class_of("plain") is NoteClass.INFORMATION
+
+
+def test_the_class_to_act_on_comes_first_and_the_order_within_a_class_stays():
+    notes = ordered(["b", assuming("c"), "a", neglecting("d"), exceeding("e"), failing("f"), assuming("c")])
+    assert notes == ("f", "e", "d", "c", "b", "a")
+    assert [note.kind.words for note in notes] == [
+        "fails", "beyond the tolerance", "neglected", "assumed", "information", "information",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("notes", "merged"),
+    [
+        (
+            [f"Gear {n}: bore_radius not specified; gear body fixed at half the root radius, {r} mm."
+             for n, r in (("p1", "15.825"), ("w1", "40.725"))],
+            ["Gears p1, w1: bore_radius not specified; gear body fixed at half the root radius, 15.825 and 40.725 mm."],
+        ),
+        (
+            [f"Gear {n}: core hardness {r} HBW assumed." for n, r in (("a", "300"), ("b", "280.5"), ("c", "310"))],
+            ["Gears a, b, c: core hardness 280.5 to 310 HBW assumed."],
+        ),
+        ([f"Mesh {n}: linearised." for n in "abcdefgh"], ["Meshes a, b, c, d, e, f and 2 more: linearised."]),
+        (["Gear a: E assumed.", "Pair a: E assumed."], ["Gear a: E assumed.", "Pair a: E assumed."]),
+        ([f"Gear {n} over its face: up to 3 %." for n in "ab"], ["Gears a, b over its face: up to 3 %."]),
+        (["Pair I: pair.I.load is high.", "Pair II: pair.II.load is high."],
+         ["Pair I: pair.I.load is high.", "Pair II: pair.II.load is high."]),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_several_is_said_once(notes, merged):
+    assert list(ordered(notes)) == merged
+
+
+def test_notes_of_different_classes_are_not_merged():
+    assert len(ordered([failing("Gear a: thin."), assuming("Gear b: thin.")])) == 2
+
+
+def test_numbers_in_names_are_no_numbers_of_a_note():
+    assert list(ordered(["Gear a: key x_1 of 3.", "Gear b: key x_2 of 3."])) == [
+        "Gear a: key x_1 of 3.",
+        "Gear b: key x_2 of 3.",
+    ]
+
+
+@pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (3, 3), (4, 2), (65, 2)])
+def test_at_most_three_stand_open(count, shown):
+    first, others = open_and_folded([Note(str(n)) for n in range(count)])
+    assert (len(first), len(others)) == (shown, count - shown)
+
+
+def test_folded_notes_are_counted_by_class():
+    assert counted([assuming("a"), neglecting("b"), assuming("c")]) == "3 more notes: 1 neglected, 2 assumed"
+    assert counted([assuming("a")]) == "1 more note: 1 assumed"
+
+
+@dataclass(frozen=True)
+class _Data:
+    name: str = "I"
+
+
+def test_a_sheet_keeps_the_class_of_a_template_and_of_what_a_function_gives():
+    sheet = Sheet(
+        remarks=(
+            Remark(neglecting("Pair {name}: film.")), Remark(lambda seen: assuming(f"Pair {seen.name}: oil.")),
+            Remark(lambda seen: f"Pair {seen.name}: plain."), lambda _: [failing("jam")],
+        )
+    )  # fmt: skip
+    found = sheet.present(_Data(), _Data()).remarks
+    assert found == ("Pair I: film.", "Pair I: oil.", "Pair I: plain.", "jam")
+    assert [class_of(note).name for note in found] == ["NEGLECTED", "ASSUMED", "INFORMATION", "FAILS"]
