@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from fegear.base.errors import GeometryError, InputError
+from fegear.base.errors import GeometryError, InputError, shown
 from fegear.case.derived import keys_of
 from fegear.case.deviations import DeviationsPart
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_teeth import TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
+from fegear.case.nearest import nearest
 from fegear.case.part import (
     LengthOrZero,
     Part,
@@ -22,6 +23,7 @@ from fegear.case.part import (
     Table,
     at,
     refuse,
+    spelt_also,
 )
 from fegear.case.relief import BiasPart, LeadPart, MeasuredPart, ReliefPart, SpacingErrorsPart, TopographyPart
 from fegear.case.strength import StrengthPart
@@ -30,6 +32,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
 from fegear.geometry.inspection import span
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.materials import NAMES, named_material
 from fegear.geometry.over_balls import over_balls
 from fegear.geometry.plausible import refuse_material
 
@@ -50,7 +53,38 @@ else:
 
 
 class MaterialPart(_MaterialKeys):  # type: ignore[misc]  # frozen by pydantic
-    """``material = { young_modulus, poisson_ratio, density }``."""
+    """``material = { young_modulus, poisson_ratio, density }``, or the name of a material."""
+
+    model_config = spelt_also(lambda _table: {"type": "string", "examples": ["18CrNiMo7-6", "42CrMo4"]})
+
+    name: str | None = Field(
+        default=None,
+        description="Material by name (steels, POM, PA66), for keys not specified: E = 206 GPa for steel (ISO 6336-2). "
+        "Plastics require poisson_ratio.",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, value: Any) -> Any:
+        """Fill in the numbers of a named material."""
+        given = {"name": value} if isinstance(value, str) else value
+        if not isinstance(given, dict) or not isinstance(given.get("name"), str):
+            return given
+        name = given["name"]
+        found = named_material(name)
+        if found is None:
+            near = nearest(name, NAMES)
+            raise refuse("is not a known material", near, key="name", value=shown(name))
+        numbers = {"young_modulus": f"{found.young_modulus!r} Pa", "density": f"{found.density!r} kg/m^3"}
+        if found.poisson_ratio is not None:
+            numbers["poisson_ratio"] = found.poisson_ratio  # type: ignore[assignment]
+        elif "poisson_ratio" not in given:
+            raise refuse(
+                f"is required for {found.name}: the source of its modulus has none",
+                f'set material = {{ name = "{found.name}", poisson_ratio = ... }} from the data sheet',
+                key="poisson_ratio", value="(not given)",
+            )  # fmt: skip
+        return {**numbers, **given, "name": found.name}
 
     def build(self) -> Material:
         """Make the material."""
@@ -58,6 +92,28 @@ class MaterialPart(_MaterialKeys):  # type: ignore[misc]  # frozen by pydantic
         refuse_material(made.young_modulus, made.density)
         return made
 
+
+#: Classes by name: ISO 1328-1 6, DIN ISO 1328-1:2013 class 6, ANSI/AGMA ISO 1328-1-B14 A6.
+_CLASS = re.compile(
+    r"(?:DIN |ANSI/AGMA )?ISO ?1328(?:-1)?(?::2013|-B14)?[ ,]*(?:class|grade|quality)? ?A?(\d+)|(\d+)", re.IGNORECASE
+)
+
+
+def _class_of(value: Any) -> Any:
+    """The number of a class of ISO 1328-1 that is given by name; those of other standards have other tolerances."""
+    if not isinstance(value, str):
+        return value
+    found = _CLASS.fullmatch(" ".join(value.split()))
+    if found is None:
+        raise refuse(
+            "is not a class of ISO 1328-1:2013",
+            'set "ISO 1328-1 6"; tolerances of DIN 3962, DIN 58405 or AGMA Q numbers can be given as deviations',
+            value=shown(value),
+        )  # fmt: skip
+    return int(found[1] or found[2])
+
+
+ToleranceClass = Annotated[int, BeforeValidator(_class_of, json_schema_input_type=int | str), Field(ge=1, le=11)]
 
 #: Keys of gears that an internal one has not, and what it has instead.
 _EXTERNAL_ONLY = {
@@ -75,7 +131,7 @@ class GearPart(TeethPart):
 
     rack: Table[RackPart] = Field(
         default_factory=RackPart,
-        description="Basic rack (tool): profile of ISO 53 by name, or a table in modules. Default: ISO 53 C.",
+        description="Basic rack (tool): profile by name (`rack.profile`), or a table in modules. Default: ISO 53 C.",
     )
     tip_radius_rounding: LengthOrZero = Field(default=0.0, description="Tip rounding radius; 0: sharp tip edge.")
     tip_chamfer: LengthOrZero = Field(default=0.0, description="Height of the tip chamfer; 0: none.")
@@ -170,9 +226,10 @@ class GearPart(TeethPart):
         description="what was done to the flanks: X_W of scuffing (default: that of `through-hardened`, 1) and W_W of "
         "micropitting (default: by the gear's `strength`, else 1)",
     )
-    tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
+    tolerance_class: ToleranceClass | None = Field(
         default=None,
-        description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11; requires `face_width`.",
+        description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11, or by name as `ISO 1328-1 6`; "
+        "requires `face_width`.",
     )
     deviations: Table[DeviationsPart] | None = Field(
         default=None,
@@ -329,7 +386,7 @@ class GearPart(TeethPart):
                 cutter.teeth,
                 lambda z0: InternalTooth(self.teeth, cutter.build(module, z0), self.pressure_angle, *shape),
             )
-        return Tooth(self.teeth, self.rack.build(self.pressure_angle), *shape)
+        return Tooth(self.teeth, self.rack.build(self.pressure_angle, module), *shape)
 
     def _cut(self, given: int | None, made: Callable[[int], InternalTooth]) -> InternalTooth:
         """The tooth that a cutter makes; the largest cutter that clears where none is given, and in refusals."""

@@ -9,22 +9,24 @@ from pydantic import Field, model_validator
 
 from fegear.case.part import Angle, Number, Part, PositiveLength, refuse, spelt_also
 from fegear.geometry.internal_tooth import PinionCutter
+from fegear.geometry.named_racks import named_rack
 from fegear.geometry.rack import BasicRack
 
-#: Names of the profiles of ISO 53, as `BasicRack.named` reads them.
-_ISO_53 = r"^\s*([Ii][Ss][Oo])?\s*(53)?[ ._-]*[A-Da-d][ ._-]*$"
+#: How profiles may be written; `fegear.geometry.named_racks` reads them.
+_WRITTEN = r"^((ISO ?)?(53 ?)?[A-Da-d]|DIN 867|JIS B 1701(-1)?|DIN 3972 (I|II)|[0-9.]+ ?/ ?[0-9.]+ ?/ ?[0-9.]+)$"
 
 
 class RackPart(Part):
-    """``rack = { addendum, dedendum, tip_radius, protuberance, ... }`` in modules, or the name of an ISO 53 profile."""
+    """``rack = { addendum, dedendum, tip_radius, protuberance, ... }`` in modules, or the name of a profile."""
 
     model_config = spelt_also(
-        lambda _table: {"type": "string", "pattern": "^(ISO ?)?(53 ?)?[A-Da-d]$", "examples": ["ISO 53 A"]}
+        lambda _table: {"type": "string", "pattern": _WRITTEN, "examples": ["ISO 53 A", "DIN 867", "1.25/0.38/1.0"]}
     )
 
     profile: str | None = Field(
         default=None,
-        description="Profile of ISO 53, A to D, for keys not specified. Default: C.",
+        description="Profile for keys not specified: ISO 53 A to D, DIN 867, JIS B 1701, DIN 3972 I or II, or "
+        "dedendum/tip radius/addendum as `1.25/0.38/1.0`. Default: C.",
     )
     addendum: Number | None = Field(
         default=None,
@@ -52,9 +54,9 @@ class RackPart(Part):
     def _name_alone(cls, value: Any) -> Any:
         return {"profile": value} if isinstance(value, str) else value
 
-    def build(self, pressure_angle: float) -> BasicRack:
-        """Make the rack; what is not given comes from the named profile, else from ISO 53 C."""
-        base = BasicRack.named(self.profile or "C", pressure_angle)
+    def build(self, pressure_angle: float, module: float = math.nan) -> BasicRack:
+        """Make the rack of a module [m]; what is not given comes from the named profile, else from ISO 53 C."""
+        base = named_rack("C" if self.profile is None else self.profile, pressure_angle, module)
         addendum = base.addendum if self.addendum is None else self.addendum
         dedendum = base.dedendum if self.dedendum is None else self.dedendum
         more = (self.protuberance, self.grinding_allowance, self.protuberance_angle)

@@ -12,6 +12,7 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.case.gear_teeth import DERIVED
 from fegear.case.part import at
 from fegear.case.settled_pairs import numbers_of, settled_pairs
+from fegear.geometry.materials import named_material
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +50,7 @@ def settled(case: Case) -> tuple[Case, tuple[str, ...]]:
 def settled_gear(part: GearPart, name: str) -> tuple[GearPart, list[str]]:
     """One gear, and sentences about what was made of what."""
     said = []
-    for step in (_size, _angle, _allowance, _shift, _measured):
+    for step in (_size, _angle, _allowance, _shift, _measured, _material, _steel):
         part, note = step(part, name)
         said += [f"Gear {name}: {note}."] if note else []
     return part, said
@@ -100,7 +101,7 @@ def _shift(part: GearPart, name: str) -> tuple[GearPart, str]:
                 "give the profile shift as a number",
             )  # fmt: skip
         numbers = numbers_of(part)
-        rack = _under(name, lambda: part.rack.build(numbers.normal_pressure_angle))
+        rack = _under(name, lambda: part.rack.build(numbers.normal_pressure_angle, part.module_length))
         least = max(numbers.least_shift(rack) + _thinner(part), 0.0)
         rounded = math.ceil(least * _STEPS - 1e-6) / _STEPS
         note = f"profile shift coefficient x = {rounded:.4f}, the minimum without undercut"
@@ -155,6 +156,26 @@ def _generating_shift(part: GearPart, numbers: ToothNumbers, m: float) -> float:
     if part.chordal_height is None:
         return numbers.shift_of_chord(chord)
     return numbers.shift_of_chord_at(chord, part.chordal_height / m, 0.5 * (part.tip_diameter or math.nan) / m)
+
+
+def _material(part: GearPart, _name: str) -> tuple[GearPart, str]:
+    found = None if part.material.name is None else named_material(part.material.name)
+    if found is None:
+        return part, ""
+    material = part.material
+    return part, (
+        f"material {found.name}: E = {material.young_modulus * 1e-9:.4g} GPa, nu = {material.poisson_ratio:.4g}, "
+        f"density {material.density:.4g} kg/m^3 ({found.source}); stress numbers are those of strength"
+    )
+
+
+def _steel(part: GearPart, _name: str) -> tuple[GearPart, str]:
+    if part.strength is None or part.strength.steel is None:
+        return part, ""
+    return part, (
+        f"{part.strength.steel} is rated as {part.strength.material} of ISO 6336-5; confirm heat treatment, hardness "
+        "and stress numbers of strength"
+    )
 
 
 def _reading(part: GearPart, key: str) -> str:

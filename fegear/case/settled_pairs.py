@@ -144,7 +144,7 @@ def _sliding(part: PairPart, gears: Mapping[str, GearPart], total: float) -> Cal
     def difference(first: float) -> float | None:
         tips = []
         for gear, numbers in zip(_with(part, gears, first, total), (mesh.driver, mesh.driven), strict=True):
-            usual = numbers.pitch_radius + gear.x + gear.rack.build(gear.pressure_angle).addendum
+            usual = numbers.pitch_radius + gear.x + gear.rack.build(gear.pressure_angle, m).addendum
             tips.append(usual if gear.tip_diameter is None else 0.5 * gear.tip_diameter / m)
         one, other = mesh.end_sliding(distance, (tips[0], tips[1]))
         return one - other if math.isfinite(one) and math.isfinite(other) else None

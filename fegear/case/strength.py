@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from fegear.base.errors import InputError
 from fegear.base.unit_text import UnreadableError, split
 from fegear.case.part import LengthOrZero, Part, PositiveLength, PositivePressure, quantity, refuse
+from fegear.geometry.materials import named_material
 
 #: Materials of ISO 6336-5 by the words that a case writes; `fegear.formulas.iso6336.part5_materials` knows their laws.
 MaterialName = Literal[
@@ -138,7 +139,14 @@ class StrengthPart(Part):
     factors depend on its kind.
     """
 
-    material: MaterialName = Field(description="Material type to ISO 6336-5.")
+    material: MaterialName = Field(
+        description="Material type to ISO 6336-5; or the name of a steel, see `steel`, whose usual type is taken."
+    )
+    steel: str | None = Field(
+        default=None,
+        description="Name of the steel (16MnCr5, 18CrNiMo7-6, 42CrMo4, ...), from which `material` follows: "
+        "type of its usual heat treatment.",
+    )
     quality: Literal["ML", "MQ", "ME"] = Field(
         default="MQ",
         description="Material quality ML, MQ or ME (ISO 6336-5).",
@@ -194,6 +202,21 @@ class StrengthPart(Part):
     pitting_allowed: bool = Field(
         default=False, description="Limited pitting permitted (higher Z_NT in the limited life range)."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, value: Any) -> Any:
+        """Take the type of a named steel, unless the case gives one."""
+        if not isinstance(value, dict):
+            return value
+        key = next((key for key in ("steel", "material") if isinstance(value.get(key), str)), None)
+        named = None if key is None else named_material(value[key])
+        if key == "steel" and (named is None or not named.kind):
+            raise refuse("is not a known steel", "set material to its type of ISO 6336-5", key="steel")
+        if named is None or not named.kind:
+            return value
+        kept = value.get("material") if key == "steel" else None
+        return {**value, "material": kept or named.kind, "steel": named.name}
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Self:

@@ -156,7 +156,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
      ("gear.NAME.material.young_modulus",), ""),
     ("nu poisson poissons_ratio querkontraktionszahl querdehnzahl", ("gear.NAME.material.poisson_ratio",), ""),
     ("rho dichte mass_density", ("gear.NAME.material.density",), ""),
-    ("steel werkstoff material_name", ("gear.NAME.strength", "gear.NAME.material"), ""),
+    ("steel werkstoff material_name stahl", ("gear.NAME.strength.steel", "gear.NAME.material"), ""),
     ("hb hbw hrc hv haerte surface_hardness hardness", ("gear.NAME.strength.hardness",), ""),
     ("sigma_hlim shlim sac s_ac allowable_contact_stress contact_fatigue_limit", ("gear.NAME.strength.contact",), ""),
     ("sigma_flim sflim sat s_at allowable_bending_stress bending_fatigue_limit", ("gear.NAME.strength.bending",), ""),

@@ -31,7 +31,7 @@ _GEAR = frozenset(
         "over_pins", "chordal_thickness", "chordal_height",
     }
 )  # fmt: skip
-_STRENGTH = frozenset({"material", "hardness", "core_hardness", "contact", "bending"})
+_STRENGTH = frozenset({"material", "steel", "hardness", "core_hardness", "contact", "bending"})
 _RELIEF = frozenset({"tip", "root", "crowning"})
 _LEAD = frozenset({"crowning", "slope", "end_relief"})
 #: What a rim is where nothing is said of it [modules]; so much of a module is round-off.
@@ -93,7 +93,7 @@ def _tip(gear: Gear, part: GearPart) -> float | None:
     """Tip diameter where it is given, or not that of an addendum of one module."""
     if part.tip_diameter is not None or part.internal:
         return 2.0 * gear.tip_radius
-    addendum = part.rack.build(part.pressure_angle).addendum
+    addendum = part.rack.build(part.pressure_angle, gear.module).addendum
     return None if abs(addendum - 1.0) < _ROUNDED else 2.0 * gear.tip_radius
 
 
@@ -115,7 +115,7 @@ def _tool(written: Written, gear: Gear, part: GearPart, flanks: list[Part]) -> N
         if part.cutter.root_diameter is not None:
             written.remarks.append(f"Gear {flanks[0].name}: cutter.root_diameter not written to REXS.")
     else:
-        rack = part.rack.build(part.pressure_angle)
+        rack = part.rack.build(part.pressure_angle, gear.module)
         made = written.part("rack_shaped_tool").say(
             "number", addendum_coefficient_reference_profile=rack.dedendum, tip_radius_factor=rack.tip_radius,
             dedendum_coefficient_reference_profile=rack.addendum, protuberance_amount_factor=rack.protuberance or None,
