@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve
+from fegear.contact.fitted_curve import FITTED, NothingToCompareError, _standard_errors, fit_curve
 from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet, Grid, grid_weights
 from fegear.fem.plane.root_stress import smooth_curve
 from fegear.fem.plane.settings import MeshSettings
@@ -173,3 +173,27 @@ def test_a_trace_upside_down_has_a_negative_gain():
     made = fit_curve(angle, -0.9 * curve + 2e-5, angle, curve, ("offset",))
     assert made.gain == pytest.approx(-0.9, rel=1e-9)
     assert made.correlation == pytest.approx(-1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [40, 400])
+def test_standard_errors_are_those_of_linear_regression_and_grow_where_residuals_follow_each_other(count):
+    """Of offset, scale and shift by the inverse of X'X, of samples that count for less by (1 - r)/(1 + r)."""
+    random = np.random.default_rng(3)
+    turn = 2.0 * np.pi * np.arange(count) / count
+    curve, slope, scale = 30.0 + 7.0 * np.sin(turn), 7.0 * np.cos(turn), 1.3
+    residual = random.standard_normal(count)
+    follows = max(float(residual[1:] @ residual[:-1] / (residual @ residual)), 0.0)
+    columns = {"offset": np.ones(count), "scale": curve, "shift": -scale * slope}
+    for asked in (("offset",), ("scale",), ("offset", "scale"), ("offset", "scale", "shift")):
+        X = np.stack([columns[one] for one in asked], axis=1)
+        variance = float(residual @ residual) / (count - len(asked)) * (1.0 + follows) / (1.0 - follows)
+        wanted = np.sqrt(np.diag(np.linalg.inv(X.T @ X)) * variance)
+        found = _standard_errors(curve, slope, scale, residual, asked)
+        assert list(found) == list(asked)
+        assert list(found.values()) == pytest.approx(wanted.tolist(), rel=1e-6)
+    smooth = np.convolve(residual, np.ones(5) / 5.0, mode="same")
+    smooth *= np.linalg.norm(residual) / np.linalg.norm(smooth)
+    wider = _standard_errors(curve, slope, scale, smooth, ("offset",))["offset"]
+    assert wider > 1.5 * _standard_errors(curve, slope, scale, residual, ("offset",))["offset"]
+    assert _standard_errors(curve, slope, scale, residual, ()) == {}
+    assert _standard_errors(curve, slope, scale, 0.0 * residual, ("offset",)) == {"offset": 0.0}

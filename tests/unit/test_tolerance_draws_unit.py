@@ -16,6 +16,7 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.design.robustness import tolerance_draws
 from fegear.design.robustness.deviated_pair import OUTCOMES, bench, deviated, drawn_outcomes, loaded, quadrature
 from fegear.design.robustness.draw_statistics import influences, percentile, sure_of_less, together
 from fegear.design.robustness.tolerance_draws import NO_LIMITS, Limits, ProfileDeviation, draw, unit_points
@@ -91,6 +92,19 @@ def test_draws_fill_their_distributions():
             assert np.abs(values).max() > 0.9 * limit
             assert values.std() == pytest.approx(spread * limit, rel=3e-3)
             assert abs(values.mean()) < 2e-3 * limit
+
+
+def test_waves_and_their_phases_are_even_over_what_they_may_be():
+    found, (low, high) = drawn(4096), tolerance_draws._WAVES
+    for values, first, last in ((found.waves, low, high), (found.phase, 0.0, 2.0 * math.pi)):
+        assert values.shape == (4096, 2)
+        assert first <= values.min() < first + 1e-2 * (last - first)
+        assert last - 1e-2 * (last - first) < values.max() <= last
+        assert values.mean(axis=0) == pytest.approx(np.full(2, 0.5 * (first + last)), rel=5e-3)
+    columns = [found.profile_slope[:, 0], found.profile_form[:, 0], found.helix_slope[:, 1]]
+    columns += [found.waves[:, 0], found.phase[:, 1]]
+    columns = [one for one in columns if np.ptp(one) > 0.0]
+    assert np.abs(np.corrcoef(columns) - np.eye(len(columns))).max() < 0.02  # each has numbers of its own
 
 
 def test_pitch_tolerances_are_those_along_the_line_of_action():

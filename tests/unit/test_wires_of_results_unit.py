@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fegear.contact.plane.moved_outlines import _half_width, _removed
+from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.contact.wide.loaded_pair import LoadedWidePair, _between, _without_edges
 from fegear.dynamics.train import single_tooth
 from fegear.dynamics.train.single_tooth import heaviest_pair, summed_harmonics
@@ -154,6 +155,28 @@ def test_a_surface_shows_line_loads_over_path_and_face_and_none_below_zero():
     assert (len(x), len(z)) == (122, 42)
     np.testing.assert_array_equal(shown.line_load, np.maximum(np.subtract.outer(z, x), 0.0))
     assert (shown.x is x, shown.z is z, shown.over_face, shown.outside) == (True, True, True, 0.0)
+
+
+def test_just_beyond_the_limits_of_smooth_flanks_stands_the_pressure_at_the_limit():
+    """Of line load and width factor where the clearance is nil: 2/pi sqrt(w/f), no less than what is there."""
+    load = np.array([[[10.0], [20.0], [40.0], [80.0]]])
+    factor = np.array([[2.0, 4.0, 4.0, 5.0]])
+    own = np.array([[[1.0], [2.0], [3.0], [99.0]]])
+    smooth = np.array([[False, True, True, False]])
+    clearance = np.array([[-1.0, 3.0, 2.0, -2.0]])
+    flanks = SimpleNamespace(
+        smooth=smooth, pressure=own, long=np.ones((1, 4), dtype=bool), line_load=load,
+        lines=SimpleNamespace(panel=np.ones((1, 3)), clearance=lambda pair, room: clearance),
+        pair=SimpleNamespace(driver=SimpleNamespace(module=2e-3)), known=SimpleNamespace(width_factor=factor),
+    )  # fmt: skip
+    found = LoadedFlanks.smooth_pressure.func(flanks)
+    low = 2.0 / math.pi * math.sqrt((20.0 - 0.75 * 10.0) / (4.0 - 0.75 * 2.0))  # three quarters of the way
+    high = 2.0 / math.pi * math.sqrt(60.0 / 4.5)
+    np.testing.assert_allclose(found[0, :, 0], [low, 2.0, 3.0, high])
+    flanks.lines.panel = np.array([[0.0, 1.0, 1.0]])  # of another line
+    np.testing.assert_allclose(LoadedFlanks.smooth_pressure.func(flanks)[0, :, 0], [0.0, 2.0, 3.0, high])
+    flanks.long = np.array([[True, True, True, False]])
+    np.testing.assert_allclose(LoadedFlanks.smooth_pressure.func(flanks)[0, :, 0], [0.0, 2.0, 3.0, 0.0])
 
 
 # ---- motions of a set ------------------------------------------------------------------------------------------------
