@@ -12,10 +12,13 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.wide import maker
 from fegear.design.loading import Ramp
 from fegear.fem.plane import gear as plane_gear
+from fegear.fem.plane import outline_motion
 from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.imported_mesh import _check_boundary
 from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.outline_motion import OutlineMotion
+from fegear.fem.revolved_body import RevolvedBody, _basis
 from fegear.fem.solid.body_modes import _cuts
 from fegear.fem.solid.extruded import with_stations
 from fegear.fem.solid.face import face_functions
@@ -255,3 +258,60 @@ def test_a_sector_is_one_part_whose_edges_belong_to_two_elements_at_most():
     assert boundary(touching, [(0, 1, 2), (0, 2, 3), (2, 4, 5)]).startswith(
         "is connected by a single node only (at 1, 1)"
     )
+
+
+# ---- bodies on shafts and moved outlines -----------------------------------------------------------------------------
+@pytest.mark.parametrize("lean", [0.0, 0.3])
+def test_elements_of_a_body_on_a_shaft_fill_rim_web_and_hub_and_end_where_these_do(lean):
+    """Of the cross-section's area, wherever an inclined web lies, and with rows of nodes at the ends of the hub."""
+    width, outer, rim, web, bore = 0.04, 0.1, 0.08, 0.04, 0.02
+    body = RevolvedBody(
+        outer, width, ((rim, -0.02, 0.02), (web, -0.006, 0.006), (bore, -0.017, 0.0185)), (-0.017, 0.0185), lean=lean
+    )
+    basis, seat, teeth = _basis(body, 1)
+    mesh = basis.mesh
+    x, y = (mesh.p[k][mesh.t] for k in range(2))
+    area = 0.5 * np.abs((x[0] - x[2]) * (y[1] - y[3]) - (x[1] - x[3]) * (y[0] - y[2])).sum()
+    assert area == pytest.approx((outer - rim) * width + (rim - web) * 0.012 + (web - bore) * 0.0355, rel=1e-6)
+    place = basis.doflocs[:, seat]
+    np.testing.assert_allclose(place[0], bore)
+    assert (place[1, 0], place[1, -1]) == (pytest.approx(-0.017), pytest.approx(0.0185))
+    tip = basis.doflocs[:, teeth]
+    np.testing.assert_allclose(tip[0], outer)
+    assert (tip[1, 0], tip[1, -1]) == (pytest.approx(-0.02), pytest.approx(0.02))
+    assert (np.diff(place[1]) > 0.0).all()
+    # The web's middle line leans by its tangent from the rim to the hub.
+    in_web = (mesh.p[0] > web + 1e-6) & (mesh.p[0] < rim - 1e-6)
+    for r in np.unique(np.round(mesh.p[0, in_web], 9)):
+        at = mesh.p[1, np.abs(mesh.p[0] - r) < 1e-8]
+        shift = lean * (rim - r)
+        assert (at.min() - shift, at.max() - shift) == (pytest.approx(-0.006), pytest.approx(0.006))
+
+
+@pytest.mark.parametrize(
+    ("arc", "half_width", "patch", "wide"),
+    [
+        (5.0, 0.01, 0.18, 0.18),  # in the middle of the flank the mesh's own pressure
+        (5.0, 0.3, 0.18, 0.3),  # which is no narrower than the contact
+        (1.1, 0.01, 0.18, None),  # narrowed where the flank ends
+        (1.0, 0.01, 0.18, 0.02),  # by no more than the corner's distance
+    ],
+)
+def test_the_pressure_that_moves_an_outline_fits_on_the_flank(arc, half_width, patch, wide):
+    asked = []
+
+    def patches(at, width):
+        asked.append((at.tolist(), width.tolist()))
+        raise NotImplementedError
+
+    flank = SimpleNamespace(flank_start=1.0, flank_end=9.0, arc_of_radius=lambda radius: radius, patches=patches)
+    one = SimpleNamespace(influence=SimpleNamespace(flank=flank, corner_distance=0.02))
+    with pytest.raises(NotImplementedError):
+        OutlineMotion.displacement(one, np.array([arc]), patch, np.array([half_width]))
+    (((at,), (width,)),) = asked
+    assert at == max(arc, 1.02)
+    if wide is None:
+        assert 0.01 <= width <= at - 1.0
+        assert width == pytest.approx(outline_motion._ROOM_SHARE * 0.1)
+    else:
+        assert width == pytest.approx(wide)
