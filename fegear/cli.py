@@ -15,6 +15,7 @@ import fegear
 from fegear.base.errors import NO_ROOM, FegearError, lacks_memory
 from fegear.base.interrupts import between_imports, heed_ctrl_c
 from fegear.base.streams import give_up
+from fegear.commands.apply import apply
 from fegear.commands.common import INTERRUPTED, leave
 from fegear.commands.export import export
 from fegear.commands.help_texts import Command, Group, context_settings
@@ -93,6 +94,7 @@ COMMANDS = (
     (cost, "Accuracy versus computing time."),
     (check, "Independent FE solution (scikit-fem) of the spur gears, compared with the estimated errors."),
     (verify, "Run the verification against published values, other programs and independent code."),
+    (apply, "Write a designed relief into a case."),
     (export, "Export drawings, solids and meshes."),
     (schema, "Write the JSON schema for editors."),
 )

@@ -55,9 +55,9 @@ def migrated(text: str, document: Mapping[str, object]) -> tuple[str, list[str]]
     InputError
         If a key stands where it cannot be changed by itself, or was written for a later version.
     """
+    from fegear.case.changed_text import literal, value_at, with_values
     from fegear.case.renamed import SCHEMA_VERSION, changes, current
     from fegear.results.catalogue import STAGES
-    from fegear.window.case_text import literal, value_at, with_values
 
     current(document)  # refuses what cannot be read
     edits: dict[tuple[str, ...], str | None] = {}

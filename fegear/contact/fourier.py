@@ -47,27 +47,22 @@ class Panels:
         """Largest value of a function known at the points, shape (Q,), and between them where it turns smoothly.
 
         Between three points of one piece, the highest in the middle, it is the vertex of the parabola through them;
-        not where they stand too unevenly for that, beside break points, where they are close together anyway, and not
-        in a piece so narrow that one of its points may belong to the other side of a jump (`SIDE`).
+        not where they stand too unevenly for that, beside break points, where they are close together anyway.
         """
         i = int(np.argmax(values))
         top = float(values[i])
         piece = np.searchsorted(self.breaks, self.x[max(i - 1, 0) : i + 2], side="right")
         if piece.size < 3 or piece[0] != piece[2]:
             return top
-        if 0 < piece[0] < self.breaks.size and np.ptp(self.breaks[piece[0] - 1 : piece[0] + 1]) < _NARROW * self.period:
-            return top
         before, after = self.x[i] - self.x[i - 1], self.x[i + 1] - self.x[i]
+        if not 0.0 < max(before, after) <= _UNEVEN * min(before, after):
+            return top
         falls, rises = (top - values[i + 1]) / after, (top - values[i - 1]) / before
         bend = (falls + rises) / (before + after)
-        if not bend > 0.0 or max(before, after) > _UNEVEN * min(before, after):
+        if not bend > 0.0:
             return top
         slope = (rises * after - falls * before) / (before + after)
         return top + float(slope * slope / (4.0 * bend))
-
-
-#: Pieces narrower than this have no points that surely lie beyond the slack at both of their ends [periods].
-_NARROW = 4e-9
 
 
 #: Distance from break points at which both sides of them are looked at [periods]: beyond the slack that a pair at the
@@ -108,9 +103,11 @@ def panels(
         parts = max(1, math.ceil(1.5 * waves * (b - a) / period / (0.16 * order)))
         s = (np.arange(parts)[:, None] + t).ravel() / parts
         at, weights = s * s * (3.0 - 2.0 * s), np.tile(w, parts) / parts * 6.0 * s * (1.0 - s)
-        aside = SIDE * period / (b - a)
-        if ends and aside < 0.25:
-            at, weights = np.concatenate([[aside], at, [1.0 - aside]]), np.concatenate([[0.0], weights, [0.0]])
+        aside = min(SIDE * period / (b - a), 0.5)
+        if ends:
+            # Of a narrow piece no point may stand nearer to a jump than that: it would belong to the other side.
+            at = np.concatenate([[aside], np.clip(at, aside, 1.0 - aside), [1.0 - aside]])
+            weights = np.concatenate([[0.0], weights, [0.0]])
         xs.append(a + (b - a) * at)
         ws.append((b - a) * weights)
     return Panels(start + np.concatenate(xs), np.concatenate(ws), period, start + edges)

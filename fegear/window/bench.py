@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError
+from fegear.case.changed_text import literal, with_value, with_values
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
-from fegear.window.case_text import literal, with_value, with_values
 from fegear.window.computing import whole
 from fegear.window.document import Desk
 from fegear.window.drag_handles import moved_relief, own_name, without_relief
@@ -26,8 +26,8 @@ from fegear.window.on_gears import UNASKED
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fegear.case.changed_text import Path as KeyPath
     from fegear.results.relief.relief_in_case import How
-    from fegear.window.case_text import Path as KeyPath
     from fegear.window.computing import Computing
     from fegear.window.document import Verdict
     from fegear.window.journal import Left

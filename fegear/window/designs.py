@@ -9,18 +9,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.errors import InputError
+from fegear.case.changed_text import literal, value_at, with_values
 from fegear.engine.run import key_without_needs
 from fegear.results.relief.relief_in_case import relief_for_case, what_it_leaves
-from fegear.window.case_text import literal, value_at, with_values
 from fegear.window.order import ANSWERS, in_order
 
 if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
+    from fegear.case.changed_text import Path
     from fegear.case.reading import Scene
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.results.relief.relief_in_case import How
-    from fegear.window.case_text import Path
     from fegear.window.job_queue import Asked
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.errors import PATH, FegearError, InputError, shown
+from fegear.case.changed_text import with_value
 from fegear.case.reading import build_scene, parse_document
 from fegear.case.text_file import TextFile, digest_of, read_file, write_file
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
-from fegear.window.case_text import with_value
 from fegear.window.journal import HALVES, Journal, Kept, Left, drop, left_behind, now
 
 if TYPE_CHECKING:

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError
+from fegear.case.changed_text import literal, value_at, with_value, with_values
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
-from fegear.window.case_text import literal, value_at, with_value, with_values
 from fegear.window.on_gears import gears_in_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.case.changed_text import Path
     from fegear.case.reading import Scene
-    from fegear.window.case_text import Path
     from fegear.window.document import Desk
 
 

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
+from fegear.case.changed_text import as_typed, literal, value_at
 from fegear.case.known_keys import help_of
 from fegear.case.schema import case_schema
 from fegear.case.schema_nodes import SchemaNodes
 from fegear.results.catalogue import STAGES
-from fegear.window.case_text import as_typed, literal, value_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from fegear.window.case_text import Path
+    from fegear.case.changed_text import Path
 
 Kind = Literal["text", "toml", "number", "choice", "switch", "several"]
 #: Tables that carry names of the user's choice.

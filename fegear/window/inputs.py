@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from nicegui.element import Element
 
+    from fegear.case.changed_text import Path
     from fegear.window.bench import Bench
-    from fegear.window.case_text import Path
 
 
 #: Kinds of fields that are typed into.

@@ -216,6 +216,37 @@ class Results(Found):
             write_results(self, scratch, Silence(), plots=plots)
         return target
 
+    def apply(self, case: str | os.PathLike[str], relief: str = "", pair: str = "") -> Path:
+        """Write a designed relief into a case file, as ``fegear apply`` does.
+
+        Parameters
+        ----------
+        case : path
+            Its comments, order and form of the rest stay.
+        relief : str
+            Design of the grinding table, such as ``"linear"``, or ``"exact"``; the best by default.
+        pair : str
+            By default the only pair with a design.
+
+        Returns
+        -------
+        Path
+            The case.
+
+        Raises
+        ------
+        InputError
+            If there is no such design, or the case is of other gears.
+        """
+        from fegear.case.text_file import read_file, write_file
+        from fegear.results.relief.applied_design import applied_design
+
+        path, tables = Path(case), dict(self.tables.items())
+        file, source = read_file(path, "case"), f"results of {self.scene.name}"
+        found = applied_design(file.text, path, self.scene.document, tables, source, relief, pair)
+        write_file(path, file.written(found.text), "case")
+        return path
+
     def export(
         self, folder: str | os.PathLike[str], formats: str | list[str] = "dxf", gears: tuple[str, ...] = ()
     ) -> list[Path]:

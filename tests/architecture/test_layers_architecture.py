@@ -74,7 +74,7 @@ DOORS = {
     "pandas": ["fegear.engine.table"],
     "IPython": ["fegear.output.terminal", "fegear.workbench.plots"],  # there where a notebook runs
     "nicegui": ["fegear.window.*"],
-    "tomlkit": ["fegear.window.case_text"],
+    "tomlkit": ["fegear.case.changed_text"],
     "xarray": ["fegear.workbench.results"],  # a reader of what a run leaves behind
 }
 

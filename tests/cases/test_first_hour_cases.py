@@ -9,13 +9,13 @@ import pytest
 
 import fegear
 import fegear.cli
+from fegear.case.changed_text import as_typed
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
-from fegear.window.case_text import as_typed
 from fegear.window.document import Desk
 from fegear.window.form import fields, form
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.window import case_text
-from fegear.window.case_text import as_typed, literal, value_at, with_value, with_values
+from fegear.case import changed_text as case_text
+from fegear.case.changed_text import as_typed, literal, value_at, with_value, with_values
 from fegear.window.inputs import stepped
 
 CASES = sorted((Path(__file__).parents[2] / "cases").rglob("*.toml"))

@@ -1,11 +1,11 @@
 """Reliefs that a design found, as keys of a case and in a sentence; the design is made up."""
 
-import math
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.engine.table import Column, Table
 from fegear.results.relief.relief_data import ReliefData
 from fegear.results.relief.relief_in_case import relief_for_case, what_it_leaves
 
@@ -13,28 +13,33 @@ ROLL = np.array([30.0, 10.0, 20.0])
 REMOVAL = {"a": np.array([12.0, 0.0, 4.0]), "b": np.array([0.0, 9.0, 3.0])}
 
 
-def tip(amount, start):
-    return SimpleNamespace(amount=amount * 1e-6, start=math.radians(start))
-
-
-def results(shape="linear", driver=(12.3456, 25.5), driven=(8.0, 31.25), te=None, least_error=0.02):
+def results(shape="linear", driver=(12.3456, 25.5), driven=(8.0, 31.25), te=None, least_error=0.02, over=None):
     ground = {
-        "linear": SimpleNamespace(driver=tip(*driver), driven=tip(*driven), candidates=12345, least=1.5e-6,
+        "linear": SimpleNamespace(candidates=12345, least=1.5e-6,
                                   least_error=least_error * 1.5e-6),
-        "parabolic": SimpleNamespace(driver=tip(*driver), driven=tip(*driven), candidates=54321, least=0.0,
+        "parabolic": SimpleNamespace(candidates=54321, least=0.0,
                                      least_error=1.0),
     }  # fmt: skip
     te = {"no relief": 5.4321, "designed": 0.001, "linear tip relief": 1.5, "parabolic tip relief": 1.75} | (te or {})
     data = object.__new__(ReliefData)
     object.__setattr__(data, "design", SimpleNamespace(
-        best_ground=(shape, ground[shape]), ground=ground, task=SimpleNamespace(load=1234.567),
+        best_ground=(shape, ground[shape]), ground=ground, task=SimpleNamespace(load=1234.567, over=over),
         te={label: SimpleNamespace(peak_to_peak=one * 1e-6) for label, one in te.items()},
     ))  # fmt: skip
     part = SimpleNamespace(driver="a", driven="b")
+    words = {"gear": ["a", "b"], "design": [f"{shape} tip relief"] * 2, "modification": ["tip relief"] * 2,
+             "shape": [shape] * 2}  # fmt: skip
+    sizes = {"amount": ("um", [1e-6 * one[0] for one in (driver, driven)]),
+             "start_diameter": ("mm", [2e-3 * one[1] for one in (driver, driven)]),
+             "end_diameter": ("mm", [0.08, 0.09])}  # fmt: skip
+    columns = [Column(name, np.array(cells)) for name, cells in words.items()]
+    columns += [Column(name, np.array(si), unit) for name, (unit, si) in sizes.items()]
+    gears = {name: SimpleNamespace(involute_tip_radius=radius) for name, radius in (("a", 0.04), ("b", 0.046))}
     return SimpleNamespace(
-        scene=SimpleNamespace(case=SimpleNamespace(pair={"I": part})),
+        scene=SimpleNamespace(case=SimpleNamespace(pair={"I": part}), gears=gears),
         outcomes={"one": SimpleNamespace(data="of another result"), "two": SimpleNamespace(data=data)},
-        tables={f"relief_I_{name}": {"roll_angle": ROLL, "relief": one} for name, one in REMOVAL.items()},
+        tables={f"relief_I_{name}": {"roll_angle": ROLL, "relief": one} for name, one in REMOVAL.items()}
+        | {"grinding_I": Table("grinding_I", tuple(columns))},
     )
 
 
@@ -55,8 +60,8 @@ def test_an_exact_relief_is_a_table_of_straight_lines_by_rising_roll_angle():
 def test_a_ground_relief_is_amount_and_start_and_none_where_nothing_is_removed(shape):
     found = relief_for_case(results(shape), "I", "ground")
     more = {} if shape == "linear" else {"shape": "parabolic"}
-    assert found["a"] == {"tip": {"amount": "12.35 um", "start_roll_angle": "25.5 deg", **more}}
-    assert found["b"] == {"tip": {"amount": "8 um", "start_roll_angle": "31.25 deg", **more}}
+    assert found["a"] == {"tip": {"amount": "12.3456 um", "start_radius": "25.5 mm", **more}}
+    assert found["b"] == {"tip": {"amount": "8 um", "start_radius": "31.25 mm", "at_radius": "45 mm", **more}}
     assert relief_for_case(results(shape, driver=(0.004, 20.0)), "I", "ground")["a"] is None
     assert relief_for_case(results(shape, driven=(0.006, 20.0)), "I", "ground")["b"] is not None
 
@@ -73,3 +78,16 @@ def test_what_is_left_is_said_of_the_relief_that_was_taken():
     assert other.startswith("Best parabolic tip relief: transmission error 1.75 um")
     assert "; linear ones 1.5 um." in other
     assert "agree within 0 %" in other
+
+
+def test_of_a_range_of_torques_both_ends_are_said():
+    made = results(over=SimpleNamespace(loads=(1000.0, 2000.0)))
+    (data,) = (one.data for one in made.outcomes.values() if isinstance(one.data, ReliefData))
+    object.__setattr__(data, "pair", SimpleNamespace(pair=SimpleNamespace(driver=SimpleNamespace(base_radius=0.03))))
+    data.design.over_range = {
+        label: [SimpleNamespace(peak_to_peak=one * 1e-6) for one in both]
+        for label, both in (("no relief", (3.7, 7.0)), ("linear tip relief", (1.2, 2.4)))
+    }
+    said = what_it_leaves(made, "ground")
+    left = "transmission error 1.2 to 2.4 um peak to peak (3.7 to 7 um without relief)"
+    assert said.startswith(f"Best linear tip relief for 30 to 60 N m: {left}")

@@ -25,6 +25,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.changed_text import value_at
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
@@ -44,7 +45,6 @@ from fegear.results.relief.relief_handles import handled_relief
 from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper, Keys
 from fegear.window.bench import Bench
-from fegear.window.case_text import value_at
 from fegear.window.computing import PATIENCE, SAME, Computing, Sent, whole
 from fegear.window.designs import draft_of
 from fegear.window.document import Desk

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
 from fegear.base.printed import percent
+from fegear.results.relief.applied_design import EXACT, keys_of_design, short_keys
 from fegear.results.relief.relief_data import ReliefData
 
 if TYPE_CHECKING:
-    from fegear.design.relief_design import ReliefDesign
     from fegear.engine.run import Results
 
 #: ``exact``: by Mark's Eq. 4.6, as tables; ``ground``: linear or parabolic tip reliefs that a shop can grind.
 How = Literal["exact", "ground"]
-
-
-#: Points of a designed relief that a case is given: straight lines between them stay within its own error.
-_POINTS = 61
 
 
 #: A removal below this is none [um].
@@ -42,38 +35,38 @@ def relief_for_case(results: Results, pair: str, how: How) -> dict[str, dict[str
         By gear ``gear.NAME.relief`` as plain data; None where nothing is removed.
     """
     part = results.scene.case.pair[pair]
-    if how == "exact":
-        return {gear: {"table": _table(results, pair, gear)} for gear in (part.driver, part.driven)}
-    shape, best = _design(results).best_ground
-    form = {} if shape == "linear" else {"shape": shape}
-    found: dict[str, dict[str, Any] | None] = {}
-    for gear, relief in ((part.driver, best.driver), (part.driven, best.driven)):
-        amount, start = relief.amount * 1e6, math.degrees(relief.start)
-        tip = {"amount": f"{amount:.4g} um", "start_roll_angle": f"{start:.6g} deg", **form}
-        found[gear] = {"tip": tip} if amount > _NOTHING else None
-    return found
+    gears = (part.driver, part.driven)
+    found = keys_of_design(dict(results.tables.items()), pair, gears, EXACT if how == "exact" else "")
+    return {gear: short_keys(results.scene, gear, keys.get("relief")) for gear, keys in found.items()}
 
 
-def _design(results: Results) -> ReliefDesign:
+def _data(results: Results) -> ReliefData:
     (data,) = (one.data for one in results.outcomes.values() if isinstance(one.data, ReliefData))
-    return data.design
+    return data
 
 
-def _table(results: Results, pair: str, gear: str) -> dict[str, list[str]]:
-    table = results.tables[f"relief_{pair}_{gear}"]
-    roll, removal = (np.asarray(table[name], dtype=float) for name in ("roll_angle", "relief"))
-    order = np.argsort(roll)
-    places = np.linspace(roll.min(), roll.max(), _POINTS)
-    taken = np.interp(places, roll[order], removal[order])
-    return {
-        "roll_angles": [f"{one:.6g} deg" for one in places],
-        "removals": [f"{one:.4g} um" for one in taken],
-    }
+def _over(data: ReliefData, label: str) -> str:
+    """Peak-to-peak values with a relief from the smallest to the largest torque of a range."""
+    found = [one.peak_to_peak * 1e6 for one in data.design.over_range[label]]
+    return f"{found[0]:.3g} to {found[-1]:.3g} um"
+
+
+def _best_in_words(data: ReliefData, shape: str, before: str, left: float) -> str:
+    """What the best shape leaves, at the design load or at both ends of a range."""
+    over = data.design.task.over
+    if over is None:
+        return f"Best {shape} tip relief: transmission error {left:.3g} um {before}"
+    low, high = (load * data.pair.pair.driver.base_radius for load in (over.loads[0], over.loads[-1]))
+    return (
+        f"Best {shape} tip relief for {low:.4g} to {high:.4g} N m: transmission error "
+        f"{_over(data, f'{shape} tip relief')} peak to peak ({_over(data, 'no relief')} without relief)"
+    )
 
 
 def what_it_leaves(results: Results, how: How) -> str:
     """What the reliefs leave of the transmission error, peak to peak, in a sentence or two."""
-    design = _design(results)
+    data = _data(results)
+    design = data.design
     te, load = {label: one.peak_to_peak * 1e6 for label, one in design.te.items()}, f"{design.task.load:.5g} N"
     before = f"peak to peak ({te['no relief']:.3g} um without relief, at {load})"
     if how == "exact":
@@ -81,9 +74,10 @@ def what_it_leaves(results: Results, how: How) -> str:
         return f"Relief by Mark's Eq. 4.6: transmission error {left} {before}."
     shape, best = design.best_ground
     others = [f"{one} ones {te[f'{one} tip relief']:.3g} um" for one in design.ground if one != shape]
+    others = others if design.task.over is None else []
     beside = f"; {', '.join(others)}" if others else ""
     return (
-        f"Best {shape} tip relief: transmission error {te[f'{shape} tip relief']:.3g} um {before}{beside}. Two "
+        f"{_best_in_words(data, shape, before, te[f'{shape} tip relief'])}{beside}. Two "
         f"independent searches (after a scan of {best.candidates:,} reliefs) agree within "
         f"{percent(best.least_error / best.least if best.least > 0.0 else 0.0)}."
     )

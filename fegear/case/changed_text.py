@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import tomlkit
 from tomlkit.container import Container
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import AbstractTable, Table
+from tomlkit.items import AbstractTable, InlineTable, Table
 
 from fegear.base.errors import InputError
 from fegear.case.reading import typed_value
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Keys from table to table; the number of one of several tables in a list is a text as well.
 Path = tuple[str, ...]
+#: How remarks of fegear begin: a later one takes the place of an earlier one.
+REMARK = "fegear apply"
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: The text that was made last by other values alone, and its document: a value that is moved changes it again and
 #: again, and to parse it takes most of the time. After new keys it is parsed anew: spaces come out otherwise.
@@ -69,7 +71,9 @@ def with_value(text: str, path: Path, value: str | None) -> str:
     return with_values(text, {path: value})
 
 
-def with_values(text: str, changes: Mapping[Path, str | None]) -> str:
+def with_values(
+    text: str, changes: Mapping[Path, str | None], comments: Mapping[Path, str] | None = None
+) -> str:  # fmt: skip
     """The text of a case with some keys changed, added or removed, one after the other.
 
     Comments, order and spelling of all else stay, with one exception: tables ``[[a.b]]`` of one list that stand apart
@@ -81,6 +85,8 @@ def with_values(text: str, changes: Mapping[Path, str | None]) -> str:
         Valid TOML.
     changes : mapping of tuple of str to str or None
         Values as TOML writes them; None removes the key, and the tables that hold nothing after that.
+    comments : mapping of tuple of str to str, optional
+        Remarks that stand behind changed keys, after what the user has written there.
 
     Returns
     -------
@@ -102,7 +108,10 @@ def with_values(text: str, changes: Mapping[Path, str | None]) -> str:
             document = _last.pop(text, None) or tomlkit.parse(text)
         values_alone = values_alone and value is not None and value_at(now, path) is not None
         try:
-            _set(document, path, value) if value is not None else _remove(document, path, wanted)
+            if value is None:
+                _remove(document, path, wanted)
+            else:
+                _set(document, path, value, (comments or {}).get(path, ""))
         except (TOMLKitError, LookupError, TypeError, ValueError, AttributeError):
             raise _refused(path, value) from None
     if document is None or wanted == before:
@@ -167,7 +176,7 @@ def _innermost(document: Any, path: Path) -> tuple[Any, Path]:
     return found, path[-1:]
 
 
-def _set(document: Any, path: Path, value: str) -> None:
+def _set(document: Any, path: Path, value: str, comment: str = "") -> None:
     """Set a key where it stands, else in the innermost table that has a place, else below a head of its own."""
     holder, rest = _innermost(document, path)
     item = tomlkit.value(value)
@@ -176,6 +185,10 @@ def _set(document: Any, path: Path, value: str) -> None:
         held: Any = inside.item(rest[0]) if isinstance(inside, Container) else inside[rest[0]]
         item.trivia.indent, item.trivia.comment_ws = held.trivia.indent, held.trivia.comment_ws
         item.trivia.comment = held.trivia.comment
+    if comment and len(rest) == 1 and not isinstance(holder, InlineTable):  # inside braces a comment would end them
+        item.trivia.comment_ws = item.trivia.comment_ws or "  "
+        kept = item.trivia.comment.partition(REMARK)[0].rstrip("; ")
+        item.trivia.comment = f"{kept}; {comment}" if kept.strip("# ") else f"# {comment}"
     # A table that is only named in the heads of those below it gets the new one under a head as well.
     headed = holder is document or (isinstance(holder, Table) and holder.is_super_table())
     for step in reversed(rest[1:]):

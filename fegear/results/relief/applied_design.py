@@ -1,0 +1,264 @@
+"""A design in the tables of a run, written into the text of a case: keys of both gears, by the grinding table."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.base.effects import RELIEF
+from fegear.base.errors import InputError, shown
+from fegear.base.printed import figures
+from fegear.case.nearest import nearest
+from fegear.results.relief.grinding import BIAS, CROWNING, END, NOTHING, SLOPE, TIP
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from fegear.case.changed_text import Path as KeyPath
+    from fegear.case.reading import Scene
+    from fegear.engine.table import Table
+
+#: Name of the relief by theory, which a case holds as a table.
+EXACT = "exact"
+#: Points of it: straight lines between them stay within its own error.
+_POINTS = 61
+_GRINDING = "grinding_"
+#: Keys of a gear that a lead in the grinding table becomes.
+_LEAD = {SLOPE: "slope", CROWNING: "crowning"}
+#: Flank modifications of a gear.
+_MODIFIED = ("relief", "lead", "bias", "topography")
+#: Sizes of gears are the same within this of themselves.
+_SAME = 1e-6
+
+Keys = dict[str, dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A case with a design.
+
+    Parameters
+    ----------
+    text : str
+        Of the case.
+    said : str
+        What was written, in a sentence.
+    """
+
+    text: str
+    said: str
+
+
+def designs_of(tables: Mapping[str, Table], pair: str) -> list[str]:
+    """Designs of a pair that can be applied, the best first."""
+    table = tables.get(f"{_GRINDING}{pair}")
+    found = [] if table is None else list(dict.fromkeys(str(one) for one in table["design"]))
+    return [*found, *([EXACT] if any(_is_exact(name, pair) for name in tables) else [])]
+
+
+def _is_exact(name: str, pair: str) -> bool:
+    return name.startswith(f"relief_{pair}_")
+
+
+def keys_of_design(tables: Mapping[str, Table], pair: str, gears: tuple[str, str], design: str = "") -> Keys:
+    """Flank modifications of the gears of a pair, by gear and key as plain data; a gear that has none is there, too.
+
+    Parameters
+    ----------
+    tables : mapping of str to Table
+        Of a run.
+    pair : str
+    gears : tuple of str
+        Names of driver and driven gear.
+    design : str
+        Of the grinding table, the best by default; `EXACT` for the relief by theory.
+    """
+    if design == EXACT:
+        return {gear: {"relief": {"table": _exact(tables[f"relief_{pair}_{gear}"])}} for gear in gears}
+    table = tables[f"{_GRINDING}{pair}"]
+    chosen = design or str(table["design"][0])
+    found: Keys = {gear: {} for gear in gears}
+    for number in np.flatnonzero(np.asarray(table["design"]) == chosen):
+        row = {column.name: column.si[number] for column in table.columns}
+        kind, keys, amount = str(row["modification"]), found[str(row["gear"])], float(row["amount"])
+        if abs(amount) <= NOTHING:
+            continue
+        if kind == TIP:
+            keys["relief"] = {"tip": _tip(row)}
+        elif kind in _LEAD:
+            keys.setdefault("lead", {})[_LEAD[kind]] = _um(amount)
+        elif kind == END:
+            keys.setdefault("lead", {})["end_relief"] = {"amount": _um(amount), "length": _mm(row["face_length"])}
+        elif kind == BIAS:
+            keys["bias"] = _um(amount)
+    return found
+
+
+def _tip(row: Mapping[str, Any]) -> dict[str, str]:
+    shape = str(row["shape"])
+    return {
+        "amount": _um(row["amount"]), "start_radius": _mm(0.5 * row["start_diameter"]),
+        "at_radius": _mm(0.5 * row["end_diameter"]), **({} if shape == "linear" else {"shape": shape}),
+    }  # fmt: skip
+
+
+def _exact(table: Table) -> dict[str, list[str]]:
+    roll, removal = (np.asarray(table[name], dtype=float) for name in ("roll_angle", "relief"))
+    order = np.argsort(roll)
+    places = np.linspace(roll.min(), roll.max(), _POINTS)
+    taken = np.interp(places, roll[order], removal[order])
+    return {
+        "roll_angles": [f"{one:.6g} deg" for one in places],
+        "removals": [f"{one:.4g} um" for one in taken],
+    }
+
+
+def _um(value: float) -> str:
+    return f"{value * 1e6:.7g} um"
+
+
+def _mm(value: float) -> str:
+    return f"{value * 1e3:.9g} mm"
+
+
+def applied_design(
+    text: str, where: Path, document: Mapping[str, object], tables: Mapping[str, Table], source: str,
+    design: str = "", pair: str = "",
+) -> Applied:  # fmt: skip
+    """Write a design of a run into the text of a case, which keeps its form and its comments.
+
+    Parameters
+    ----------
+    text : str
+        Of the case.
+    where : Path
+        Its file, for names beside it and for messages.
+    document : mapping
+        The case of the run.
+    tables : mapping of str to Table
+        Of the run.
+    source : str
+        What the run is called.
+    design : str
+        Name of a design of the grinding table or its beginning (``linear``); the best by default.
+    pair : str
+        By default the only pair with a design.
+
+    Raises
+    ------
+    InputError
+        If the run has no such design, or the case is of other gears.
+    """
+    from fegear.case.changed_text import REMARK, literal, value_at, with_values
+    from fegear.case.reading import build_scene, parse_document
+
+    pair = _pair(tables, source, pair)
+    chosen = _chosen(designs_of(tables, pair), design, source)
+    before = build_scene(parse_document(text, f'"{where}"'), where.stem, where.parent)
+    gears = _gears(before, document, pair, where)
+    keys = keys_of_design(tables, pair, gears, chosen)
+    remark = f"{REMARK}: {chosen}, {source}, pair {pair}"
+    changes: dict[KeyPath, str | None] = {("effects", RELIEF.name): "true"}
+    comments: dict[KeyPath, str] = {}
+    for gear in gears:
+        for key in _MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",):
+            path, given = ("gear", gear, key), keys[gear].get(key)
+            held = value_at(before.document, path)
+            if given is None and held is not None:
+                changes[path] = None
+            elif given is not None:
+                changes[path], comments[path] = literal(short_keys(before, gear, given)), remark
+    try:
+        made = with_values(text, changes, comments)
+    except InputError:  # tables under heads of their own make room first
+        room: dict[KeyPath, str | None] = dict.fromkeys(comments, None)
+        made = with_values(with_values(text, room), changes, comments)
+    build_scene(parse_document(made, f'"{where}"'), where.stem, where.parent)
+    return Applied(made, f"{chosen} of {source} in {where}: {_in_words(keys)}.")
+
+
+def short_keys(scene: Scene, gear: str, keys: Any) -> Any:
+    """Without the radius at which the amount of a tip relief applies, where it is the end of the involute."""
+    tip = keys.get("tip") if isinstance(keys, dict) else None
+    if tip is None or tip["at_radius"] != _mm(scene.gears[gear].involute_tip_radius):
+        return keys
+    return {"tip": {key: value for key, value in tip.items() if key != "at_radius"}}
+
+
+def _pair(tables: Mapping[str, Table], source: str, wanted: str) -> str:
+    names = [name.removeprefix(_GRINDING) for name in tables if name.startswith(_GRINDING)]
+    names += [name for name in _of_exact(tables) if name not in names]
+    if not names:
+        raise InputError(
+            "RESULTS", shown(source), "has no relief design",
+            'request the result "relief" (spur) or "flank-design" (helical)',
+        )  # fmt: skip
+    if wanted and wanted not in names:
+        raise InputError("--pair", shown(wanted), f"has no relief design in {source}", nearest(wanted, names))
+    if not wanted and len(names) > 1:
+        raise InputError("--pair", "(not given)", "is required with several designs", f"choose from {', '.join(names)}")
+    return wanted or names[0]
+
+
+def _of_exact(tables: Mapping[str, Table]) -> list[str]:
+    """Pairs of whose reliefs only those by theory were designed."""
+    return [name.removeprefix("relief_over_torque_") for name in tables if name.startswith("relief_over_torque_")]
+
+
+def _chosen(designs: list[str], wanted: str, source: str) -> str:
+    if not wanted:
+        return designs[0]
+    fitting = [one for one in designs if one == wanted] or [one for one in designs if one.startswith(wanted)]
+    if not fitting:
+        raise InputError("--relief", shown(wanted), f"is no design of {source}", f"choose from {', '.join(designs)}")
+    return fitting[0]
+
+
+def _gears(scene: Scene, document: Mapping[str, object], pair: str, where: Path) -> tuple[str, str]:
+    """Driver and driven gear of the case, if they are those of the run."""
+    from fegear.case.reading import build_scene
+
+    part = scene.case.pair.get(pair)
+    if part is None:
+        raise InputError("--case", shown(str(where)), f"has no pair {pair}", "use the case of the results")
+    if part.driver == part.driven:
+        rule = "is also the driver; a design needs separate gears"
+        raise InputError(f"pair.{pair}.driven", shown(part.driven), rule, "use a separate name for the driven gear")
+    run = build_scene(document, where.stem, where.parent)
+    of_run = run.case.pair[pair]
+    for name, designed in ((part.driver, of_run.driver), (part.driven, of_run.driven)):
+        if name != designed:
+            rule = f"differs from that of the results, {shown(designed)}"
+            raise InputError(f"pair.{pair}", shown(name), rule, "use the case of the results")
+        now, then = (_sizes(one, name) for one in (scene, run))
+        for key, value in now.items():
+            if not math.isclose(value, then[key], rel_tol=_SAME, abs_tol=1e-9):
+                rule = f"differs from that of the results, {then[key]:.6g}"
+                raise InputError(f"gear.{name}.{key}", f"{value:.6g}", rule, "run the design for this case")
+    return part.driver, part.driven
+
+
+def _sizes(scene: Scene, name: str) -> dict[str, float]:
+    """What a relief depends on, as a gear has it."""
+    gear = scene.gears[name]
+    return {
+        "teeth": float(gear.teeth), "module": gear.module * 1e3, "profile_shift": gear.tooth.profile_shift,
+        "helix_angle": math.degrees(gear.helix_angle), "pressure_angle": math.degrees(gear.transverse_pressure_angle),
+        "tip_diameter": 2e3 * gear.involute_tip_radius,
+    }  # fmt: skip
+
+
+def _in_words(keys: Keys) -> str:
+    """What gears were given."""
+    parts = []
+    for gear, given in keys.items():
+        tip = given.get("relief", {}).get("tip")
+        words = [f"{figures(float(tip['amount'].split()[0]))} um tip relief"] if tip else []
+        words += ["relief table"] if "table" in given.get("relief", {}) else []
+        words += [key for key in ("lead", "bias") if key in given]
+        parts.append(f"gear {gear} {' and '.join(words) or 'no modification'}")
+    return ", ".join(parts)

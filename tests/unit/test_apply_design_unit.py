@@ -1,0 +1,173 @@
+"""A designed relief written into a case: what is written, what stays as it was, and what is refused."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from fegear.base.errors import InputError
+from fegear.case.changed_text import with_values
+from fegear.case.reading import build_scene
+from fegear.cli import app
+from fegear.engine.table import Column, Table
+from fegear.results.relief.applied_design import applied_design, designs_of, keys_of_design
+
+CASE = """# A drive of mine.
+results = [ "transmission-error" ]   # wanted
+
+[gear.p]
+teeth = 25
+module = "2.5 mm"   # as drawn
+profile_shift = 0.2
+{p}
+[gear.w]
+teeth = 67
+module = "2.5 mm"
+profile_shift = 0.1
+{w}
+[pair.I]
+driver = "p"
+driven = "w"
+torque = "300 N*m"
+compliance = {{ source = "weber-banaschek" }}
+{more}"""
+PARABOLIC = {"p": ("parabolic", 12e-6), "w": ("parabolic", 0.0)}
+
+
+def case(p="", w="", more=""):
+    return CASE.format(p=p, w=w, more=more)
+
+
+def grinding(rows):
+    """A grinding table, an object for each row."""
+    names = ("gear", "design", "modification", "shape", "amount", "start_diameter", "end_diameter", "face_length")
+    units = {"amount": "um", "start_diameter": "mm", "end_diameter": "mm", "face_length": "mm"}
+    return Table(
+        "grinding_I",
+        tuple(Column(name, np.array([row.get(name, np.nan) for row in rows]), units.get(name, "")) for name in names),
+    )
+
+
+def tip(gear, amount, start, end, shape="linear"):
+    design = f"{shape} tip relief"
+    return {
+        "gear": gear, "design": design, "modification": "tip relief", "shape": shape, "amount": amount,
+        "start_diameter": start, "end_diameter": end,
+    }  # fmt: skip
+
+
+TABLES = {
+    "grinding_I": grinding([
+        tip("p", 6.3e-6, 66.4e-3, 68.5e-3), tip("w", 18e-6, 168.7e-3, 173e-3),
+        tip("p", 12e-6, 61.6e-3, 68.5e-3, "parabolic"), tip("w", 0.0, 167e-3, 173e-3, "parabolic"),
+    ]),
+    "relief_I_p": Table("relief_I_p", (
+        Column("roll_angle", np.radians([10.0, 20.0, 30.0]), "deg"),
+        Column("relief", np.array([0.0, 1e-6, 9e-6]), "um"),
+    )),
+    "relief_I_w": Table("relief_I_w", (
+        Column("roll_angle", np.radians([18.0, 22.0]), "deg"), Column("relief", np.array([0.0, 4e-6]), "um"),
+    )),
+}  # fmt: skip
+
+
+def applied(text, design="", pair="", tables=TABLES, document=None):
+    document = tomllib.loads(case()) if document is None else document
+    return applied_design(text, Path("drive.toml"), document, tables, "results/drive", design, pair)
+
+
+@pytest.mark.parametrize("design", ["", "linear", "linear tip relief"])
+def test_a_design_is_written_with_where_it_came_from_and_all_else_stays(design):
+    made = applied(case(), design).text
+    lines, before = made.splitlines(), case().splitlines()
+    assert [line for line in before if line and line not in lines] == []
+    assert (
+        'relief = { tip = { amount = "6.3 um", start_radius = "33.2 mm" } }  '
+        "# fegear apply: linear tip relief, results/drive, pair I"
+    ) in lines
+    scene = build_scene(tomllib.loads(made), "drive", Path())
+    assert scene.case.effects.relief
+    assert scene.case.gear["w"].relief.tip[0].amount == pytest.approx(18e-6)
+    assert scene.case.gear["w"].relief.tip[0].start_radius == pytest.approx(84.35e-3)
+
+
+def test_the_same_design_again_changes_nothing_and_another_takes_its_place():
+    made = applied(case()).text
+    assert applied(made).text == made
+    other = applied(made, "parabolic").text
+    assert other.count("fegear apply") == 1
+    assert 'shape = "parabolic"' in other
+    assert "relief" not in tomllib.loads(other)["gear"]["w"]  # none is ground there
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        'relief = { root = { amount = "3 um", length = "1 mm" } }  # from the last drawing',
+        'relief.tip = { amount = "3 um", length = "1 mm" }',
+        '[gear.p.relief.tip]  # mine\namount = "3 um"\nlength = "1 mm"\n',
+        '[gear.p.relief]\ntip = [{ amount = "3 um", length = "1 mm" }]\n',
+    ],
+)
+def test_a_relief_that_is_there_is_replaced_however_it_is_written(held):
+    made = applied(case(p=held), "exact").text
+    relief = tomllib.loads(made)["gear"]["p"]["relief"]
+    assert relief["table"]["removals"][-1] == "9 um"
+    assert set(relief) == {"table"}
+    if "last drawing" in held:
+        assert "# from the last drawing; fegear apply: exact" in made
+
+
+def test_a_lead_in_the_grinding_table_is_written_too():
+    rows = [
+        tip("p", 6e-6, 66e-3, 67.9e-3),
+        *({"gear": "p", "design": "linear tip relief", "modification": kind, "shape": "linear", "amount": amount,
+           "face_length": 2e-3} for kind, amount in (
+            ("helix slope", -5e-6), ("crowning", 3e-6), ("end relief", 8e-6), ("flank twist", 2e-6))),
+    ]  # fmt: skip
+    found = keys_of_design({"grinding_I": grinding(rows)}, "I", ("p", "w"))
+    assert found["w"] == {}
+    assert found["p"]["relief"]["tip"]["at_radius"] == "33.95 mm"
+    assert found["p"]["lead"] == {
+        "slope": "-5 um", "crowning": "3 um", "end_relief": {"amount": "8 um", "length": "2 mm"}
+    }  # fmt: skip
+    assert found["p"]["bias"] == "2 um"
+
+
+@pytest.mark.parametrize(
+    ("text", "design", "pair", "tables", "key"),
+    [
+        (case(), "elliptic", "", TABLES, "--relief"),
+        (case(), "", "II", TABLES, "--pair"),
+        (case(), "", "", {}, "RESULTS"),
+        (case(), "", "", TABLES | {"grinding_II": TABLES["grinding_I"]}, "--pair"),
+        (case().replace("teeth = 25", "teeth = 26"), "", "", TABLES, r"gear\.p\.teeth"),
+        (case().replace('module = "2.5 mm"\nprofile_shift = 0.1', 'module = "2.5 mm"\nprofile_shift = 0.2'), "", "",
+         TABLES, r"gear\.w\.profile_shift"),
+        (case().replace("pair.I", "pair.J"), "", "", TABLES, "--case"),
+        (case().replace('driven = "w"', 'driven = "p"'), "", "", TABLES, r"pair\.I"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_refused_by_its_key(text, design, pair, tables, key):
+    with pytest.raises(InputError, match=key):
+        applied(text, design, pair, tables)
+
+
+def test_designs_are_those_of_the_table_and_the_one_of_theory():
+    assert designs_of(TABLES, "I") == ["linear tip relief", "parabolic tip relief", "exact"]
+
+
+def test_a_remark_stands_where_a_line_ends_only():
+    text = "gear = { p = { teeth = 25 } }\n[effects]\n"
+    made = with_values(text, {("gear", "p", "teeth"): "26"}, {("gear", "p", "teeth"): "fegear apply: x"})
+    assert tomllib.loads(made)["gear"]["p"]["teeth"] == 26
+
+
+def test_the_command_names_what_is_missing(tmp_path):
+    (tmp_path / "drive.toml").write_text(case(), "utf-8")
+    run = CliRunner().invoke(app, ["apply", str(tmp_path), "--case", str(tmp_path / "drive.toml")])
+    assert isinstance(run.exception, InputError)
+    assert "is not a results folder" in str(run.exception)
+    assert (tmp_path / "drive.toml").read_text("utf-8") == case()
