@@ -51,6 +51,7 @@ from fegear.output.report.blocks import (  # fmt: skip
     Values,
 )
 from fegear.output.report.page import Page, Section, page_text, render, write_page
+from fegear.output.spoken_names import spoken
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.loaded_pair import LOADED_PAIR
 
@@ -246,7 +247,8 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
     )
     rows = Values(values, 1e-4).rows
     assert [(row.what, row.more) for row in rows] == [
-        ("safety factor, driver", "tooth breakage"), ("safety factor, driven", ""), ("contact ratio", ""), ("", ""),
+        ("driver: safety factor; tooth breakage", ""), ("driven: safety factor", ""),
+        ("ratio", "contact ratio"), ("transmission error", ""),
     ]  # fmt: skip
     assert [row.short for row in rows] == ["1.05", "1.2", "1.638", "7.62"]
     assert [row.shown for row in rows] == ["1.05113", "1.20", "1.638", "7.6187"]
@@ -257,6 +259,21 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
         "",
     ]  # 0.05 % decides nothing
     assert [row.error for row in rows] == ["± 0.00050", "± 0.10", "", "± 0.0034"]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("I.te_peak_to_peak", "transmission error, peak to peak"),
+        ("I.unloaded_te_peak_to_peak", "unloaded transmission error, peak to peak"),
+        ("I.driver.largest_root_tension", "driver: maximum root stress, tension side"),
+        ("I.te_peak_to_peak.linear_tip_relief", "transmission error, peak to peak: linear tip relief"),
+        ("rules_checked", "rules checked"),
+        ("I.driver.S_F", ""), ("a.c_self_at_pitch", ""), ("I.K_Hbeta", ""),
+    ],
+)  # fmt: skip
+def test_an_identifier_is_said_in_words(name, said):
+    assert spoken(name) == said
 
 
 def test_every_block_has_its_macro(tmp_path):

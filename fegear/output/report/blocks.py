@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from fegear.base.printed import rounded
 from fegear.engine.inexact import is_inexact
 from fegear.output.numbers import plain_number, pretty_unit, with_error
+from fegear.output.spoken_names import spoken
 from fegear.output.tables import cell, table_file
 
 if TYPE_CHECKING:
@@ -150,15 +150,14 @@ class Values(Block):
     @property
     def rows(self) -> list[ValueRow]:
         """Each value as it stands in the table."""
-        words = Counter(_first_clause(value) for value in self.values)
-        return [self._row(value, alone=words[_first_clause(value)] == 1) for value in self.values]
+        return [self._row(value) for value in self.values]
 
-    def _row(self, value: Value, *, alone: bool) -> ValueRow:
-        what, _, more = value.meaning.partition("; ")
-        if what and not alone and (of := value.name.split(".")[1:-1]):
-            what = f"{what}, {' '.join(of)}"
+    def _row(self, value: Value) -> ValueRow:
+        what, more = spoken(value.name), value.meaning
+        if not what and more:
+            what, more = ": ".join((*value.name.split(".")[1:-1], more)), ""
         shown, error = value_cells(value)
-        row = ValueRow(value.name, what, more.strip(), _short_value(value), shown, "", error, "", value.unit)
+        row = ValueRow(value.name, what, more, _short_value(value), shown, "", error, "", value.unit)
         if error in ("exact", "not estimated"):
             return row
         share = relative_error(value)
@@ -177,7 +176,7 @@ class ValueRow:
     name : str
         Its identifier.
     what, more : str
-        What it is, for people: first clause of its meaning, and the others. Without a meaning: the identifier.
+        What it is, for people: its identifier in words, and its meaning; of a symbol its meaning only.
     short, shown : str
         The number as a person reads it, and with all digits that its error leaves.
     error, remark : str
@@ -198,15 +197,11 @@ class ValueRow:
     unit: str
 
 
-def _first_clause(value: Value) -> str:
-    return value.meaning.partition("; ")[0]
-
-
 def _short_value(value: Value) -> str:
     """Few digits of what is computed; sizes that are exact keep theirs."""
-    if not math.isfinite(value.value) or value.error == 0.0:
-        return plain_number(value.value)
-    if value.error is None:
+    if not math.isfinite(value.value) or (value.error == 0.0 and value.unit == "mm"):
+        return plain_number(value.value)  # sizes of a drawing
+    if not value.error:
         return plain_number(value.value, _READ)
     return plain_number(float(rounded(value.value, value.error).partition(" ")[0]))
 

@@ -204,7 +204,7 @@ _SHEET = Sheet(
             when="drawn",
         ),
     ),
-    answer=Answer(_verdict, figure="tooth_geometry_check"),
+    answer=Answer(_verdict, figure=lambda seen: "tooth_geometry_check" if seen.data.broken else ""),
     remarks=(Remark(failing("{one.sentence}"), each="broken"), _unchecked_rims),
 )  # fmt: skip
 

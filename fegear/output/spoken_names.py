@@ -1,0 +1,41 @@
+"""Identifiers of values as people say them: ``I.te_mean`` is "transmission error, mean"."""
+
+from __future__ import annotations
+
+import re
+
+#: Words of identifiers, and what people say.
+_WORDS = {
+    "te": "transmission error,", "fe": "FE", "largest": "maximum", "highest": "maximum", "smallest": "minimum",
+    "lowest": "minimum", "least": "minimum", "rms": "RMS", "iso": "ISO", "agma": "AGMA", "hertz": "Hertzian",
+}  # fmt: skip
+_PHRASES = {
+    "root tension": "root stress, tension side",
+    "root compression": "root stress, compression side",
+}
+#: Identifiers that are symbols: S_H, c_self, K_Hbeta.
+_SYMBOL = re.compile(r"(?:[A-Za-z]|eps|mu|kappa)_\w+|[A-Z]\w?")
+
+
+def spoken(name: str) -> str:
+    """What a value is, in words of its identifier; empty where that is a symbol, which its meaning explains.
+
+    Parameters
+    ----------
+    name : str
+        ``"I.driver.largest_root_tension"``: subject, parts, what it is.
+
+    Returns
+    -------
+    str
+        ``"driver: maximum root stress, tension side"``.
+    """
+    _, *parts = name.split(".") if "." in name else ("", name)
+    return "" if _SYMBOL.fullmatch(parts[-1]) else ": ".join(map(_said, parts))
+
+
+def _said(part: str) -> str:
+    said = " ".join(_WORDS.get(word, word) for word in part.split("_")).rstrip(",")
+    for phrase, better in _PHRASES.items():
+        said = said.replace(phrase, better)
+    return said
