@@ -208,6 +208,9 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     "Shafts and bearings": (
         Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes", effects=WIDE_EFFECTS,
               internal=True),
+        Entry("gearbox", "shafts.gearbox_overview.GEARBOX", "Gearbox at a glance", ("gearbox",),
+              "meshes and bearings of a gearbox, the weakest first; what to change first; drawing under load",
+              internal=True),
         Entry("shaft-deflection", "shafts.shaft_deflection.SHAFT_DEFLECTION",
               "Shaft deflection and bearing forces", ("shaft-deflection",),
               "shaft deflection under all mesh forces, bearing forces and bearing life (ISO 281)", internal=True),

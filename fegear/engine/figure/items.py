@@ -102,6 +102,8 @@ class Points(_Item):
         What the reader sees on pointing at each point.
     written : bool
         Whether paper has the notes beside the points; pages have them where they are single letters.
+    labels : tuple of str
+        Written beside the points, or in their place where the size is zero, on paper and in pages.
     """
 
     x: ArrayLike
@@ -115,6 +117,7 @@ class Points(_Item):
     error: ArrayLike | None = None
     notes: tuple[str, ...] = ()
     written: bool = False
+    labels: tuple[str, ...] = ()
     ARRAYS: ClassVar[tuple[str, ...]] = ("x", "y", "shade", "error")
 
     @property

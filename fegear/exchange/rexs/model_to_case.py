@@ -52,7 +52,15 @@ if TYPE_CHECKING:
     from fegear.exchange.rexs.places import Place, Stage
     from fegear.exchange.rexs.planetary import Planetary
 
-_RESULTS = ("geometry", "misalignment", "shaft-deflection", "load-distribution", "transmission-error", "rating")
+_RESULTS = (
+    "gearbox",
+    "geometry",
+    "misalignment",
+    "shaft-deflection",
+    "load-distribution",
+    "transmission-error",
+    "rating",
+)
 #: Rim below which a gear is no body of its own on its shaft [modules].
 _LEAST_RIM = 2.7
 #: Digits of what was solved: those behind them mean nothing.
@@ -252,7 +260,7 @@ def _rated(said: Said, stages: list[Stage], rest: dict[int, float | None]) -> bo
 def _head(sets: list[Planetary], said: Said, *, bent: bool, rated: bool) -> Table:
     left_out = [
         *(("rating",) * (not rated)),
-        *(("misalignment", "shaft-deflection") * (not bent)),
+        *(("gearbox", "misalignment", "shaft-deflection") * (not bent)),
     ]
     results = [one for one in _RESULTS if one not in left_out]
     results += ["planet-set", "planet-load-sharing", "root-stress-history"] if sets else []

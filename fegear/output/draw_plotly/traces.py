@@ -134,6 +134,10 @@ def _points(panel: Panel, item: Points) -> list[Spec]:
         trace |= {"text": [rich(note) for note in item.notes], "hovertemplate": f"%{{text}}<br>{place}"}
     if item.lettered:
         trace |= {"mode": "markers+text", "textposition": "top left"}
+    if item.labels:
+        mode = "markers+text" if item.size else "text"
+        trace |= {"mode": mode, "text": [rich(label) for label in item.labels], "textposition": "middle center",
+                  "textfont": {"size": 11}}  # fmt: skip
     return [trace]
 
 

@@ -86,6 +86,11 @@ def _points(axes: Any, _panel: Panel, item: Points) -> Any:
         axes.errorbar(item.x, item.y, item.error, fmt="none", ecolor=shade(item.role).light, elinewidth=1.0)
     if item.written:
         _write_notes(axes, item)
+    for label, a, b in zip(item.labels, np.asarray(item.x), np.asarray(item.y), strict=False):
+        axes.annotate(
+            words(label), (a, b), ha="center", va="center", fontsize=7, zorder=3.0,
+            bbox={"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.6},
+        )  # fmt: skip
     return None
 
 

@@ -22,11 +22,9 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Upstream, Work
 from fegear.results import forecasts
+from fegear.results.shafts.gearbox_data import CAUSE_WORDS
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
 from fegear.shafts.gearbox import CAUSES, MeshGap, MeshMisalignment, MeshState
-
-_WORDS = {"bearings": "bearing deflection", "housing": "deflection of the bearing seats",
-          "bending": "bending of the shafts", "torsion": "torsion of the shafts"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -100,7 +98,7 @@ class MisalignedMeshes:
 
 def _gap_by(n: int, cause: str) -> Cell:
     """Share of a cause in a gap."""
-    return Cell("gap.by_cause", lambda seen: seen.one.gap.by_cause[n], name=f"gap_{cause}", meaning=_WORDS[cause])
+    return Cell("gap.by_cause", lambda seen: seen.one.gap.by_cause[n], name=f"gap_{cause}", meaning=CAUSE_WORDS[cause])
 
 
 def _line_by(n: int, cause: str) -> Line:
@@ -122,7 +120,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
         most = f", the most of {len(seen.data.nominal)} meshes" if k == 0 and len(seen.data.nominal) > 1 else ""
         yield (
             f"Pair {one.pair}: misaligned by {figures(every)} µm over the face width{most}; main cause "
-            f"{_WORDS[CAUSES[main]]} ({figures(by[main])} µm)."
+            f"{CAUSE_WORDS[CAUSES[main]]} ({figures(by[main])} µm)."
         )
 
 

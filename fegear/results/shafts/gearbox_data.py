@@ -1,0 +1,230 @@
+"""A gearbox at a glance: its meshes and bearings, each with the load that it could take, and what to change first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fegear.base.printed import figures, percent
+from fegear.base.shown import shown
+from fegear.contact.wide.on_shafts import LoadedShafts
+from fegear.results.shafts.drawn_gearbox import DrawnGearbox
+from fegear.shafts.gearbox import CAUSES
+from fegear.shafts.life import EXPONENT, LifeRating
+
+#: What misaligns a mesh, and what makes it less.
+REMEDIES = {
+    "bearings": "stiffer or preloaded bearings",
+    "housing": "stiffer bearing seats",
+    "bending": "a thicker shaft, or bearings closer to the gear",
+    "torsion": "a thicker shaft, or the torque led in from the other side",
+}
+CAUSE_WORDS = {"bearings": "bearing deflection", "housing": "deflection of the bearing seats",
+               "bending": "bending of the shafts", "torsion": "torsion of the shafts"}  # fmt: skip
+#: K_Hbeta that a corrected lead leaves, and the one from which a correction is worth its price.
+_CORRECTED, _WORTH = 1.1, 1.25
+#: Half-length of the middle of the face, over half its width, in which a largest load is one of crowning.
+_MIDDLE = 0.4
+#: Parts that are to be changed first.
+_FIRST = 3
+
+
+@dataclass(frozen=True)
+class Safety:
+    """Lower safety factors of both gears by ISO 6336, the required ones, and the K_Hbeta that they contain."""
+
+    contact: float
+    bending: float
+    required: tuple[float, float]
+    face_load_factor: float
+
+    @property
+    def margins(self) -> tuple[float, float]:
+        """Load that flanks and roots could take over the present one, at equal load factors."""
+        return (self.contact / self.required[0]) ** 2, self.bending / self.required[1]
+
+
+@dataclass(frozen=True)
+class MeshAtGlance:
+    """One mesh: misalignment by cause, load factor, safeties, transmission error; NaN where not computed.
+
+    Parameters
+    ----------
+    safety : Safety or None
+    face_load_factor_error, te_error : float
+        Estimated.
+    peak : float
+        Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
+    """
+
+    safety: Safety | None
+    face_load_factor_error: float
+    te_error: float
+    peak: float
+    pair: str = shown("", "gear pair")
+    over_face: float = shown("um", "misalignment over the face, all causes together", name="misalignment")
+    by_cause: tuple[float, ...] = shown("um", "share of the misalignment", name="misalignment")
+    face_load_factor: float = shown("", "computed face load factor K_Hbeta", name="K_Hbeta")
+    contact: float = shown("", "lower safety factor against pitting, ISO 6336", name="S_H")
+    contact_required: float = shown("", "its minimum", name="S_H_min")
+    bending: float = shown("", "lower safety factor against tooth breakage, ISO 6336", name="S_F")
+    bending_required: float = shown("", "its minimum", name="S_F_min")
+    te_peak_to_peak: float = shown("um", "peak-to-peak transmission error", name="te_peak_to_peak")
+    margin: float = shown("", "load at the minimum safety factors over the present one", name="load_margin")
+
+    @property
+    def main_cause(self) -> int:
+        """Number of the cause with the largest share in the direction of the sum."""
+        return int(np.argmax(np.array(self.by_cause) * math.copysign(1.0, self.over_face)))
+
+
+@dataclass(frozen=True)
+class BearingAtGlance:
+    """One bearing: its forces and its life; NaN where no rating or no speed is known."""
+
+    bearing: str = shown("", "name")
+    shaft: str = shown("", "shaft on which it sits")
+    radial: float = shown("N", "radial bearing force", name="force_radial")
+    axial: float = shown("N", "axial bearing force", name="force_axial")
+    life: float = shown("", "basic rating life L_10, in revolutions (ISO 281)", name="life")
+    duration: float = shown("h", "basic rating life L_10h at the speed of its shaft", name="life_hours")
+    margin: float = shown("", "load at the required life over the present one", name="load_margin")
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something to change, with why and what it brings."""
+
+    margin: float
+    part: str = shown("", "pair or bearing")
+    finding: str = shown("", "what is found")
+    remedy: str = shown("", "what would help")
+
+
+@dataclass(frozen=True)
+class GearboxData:
+    """What the result found; meshes and bearings the weakest first.
+
+    Parameters
+    ----------
+    shafts : LoadedShafts
+    drawn : DrawnGearbox
+    meshes : tuple of MeshAtGlance
+    bearings : tuple of BearingAtGlance
+    required_hours : float
+        Largest life that a pair is rated for [s]; NaN where none is.
+    """
+
+    shafts: LoadedShafts
+    drawn: DrawnGearbox
+    meshes: tuple[MeshAtGlance, ...]
+    bearings: tuple[BearingAtGlance, ...]
+    required_hours: float
+
+    @cached_property
+    def changes(self) -> tuple[Change, ...]:
+        """At most three, the most urgent first: what fails, then what wastes load capacity, then the weakest."""
+        found = [*filter(None, map(_of_mesh, self.meshes)), *filter(None, map(self._of_bearing, self.bearings))]
+        return tuple(sorted(found, key=lambda one: one.margin))[:_FIRST]
+
+    def _of_bearing(self, one: BearingAtGlance) -> Change | None:
+        if not one.margin < 1.0:
+            return None
+        return Change(
+            one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
+            f"life {figures(one.duration / 3600.0)} h of {figures(self.required_hours / 3600.0)} h",
+            f"a dynamic load rating C {figures(1.0 / one.margin)} times as large",
+        )  # fmt: skip
+
+
+def _of_mesh(one: MeshAtGlance) -> Change | None:
+    """What is wrong with a mesh: a safety below its minimum, else load that is far from even."""
+    if one.margin < 1.0 and one.safety is not None:
+        return _too_weak(one, one.safety)
+    uneven = one.face_load_factor if math.isfinite(one.face_load_factor) else 1.0
+    if uneven <= _WORTH:
+        return None
+    if abs(one.peak) < _MIDDLE:
+        return Change(
+            1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, largest load at mid-face",
+            "less lead crowning C_β",
+        )  # fmt: skip
+    end = "II" if one.peak > 0.0 else "I"
+    return Change(
+        1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, largest load at end {end}", _against_tilt(one)
+    )
+
+
+def _against_tilt(one: MeshAtGlance) -> str:
+    """What evens out the load of a misaligned mesh."""
+    cause = CAUSES[one.main_cause]
+    share, every = figures(one.by_cause[one.main_cause] * 1e6), figures(one.over_face * 1e6)
+    return f"lead correction, or {REMEDIES[cause]} ({CAUSE_WORDS[cause]} {share} µm, all causes {every} µm)"
+
+
+def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
+    """A safety below its minimum: an even load where that helps, more face width where not."""
+    flank, root = safety.margins
+    symbol, what, value, least, power = (
+        ("S_H", "pitting", one.contact, one.contact_required, 0.5) if flank <= root
+        else ("S_F", "tooth breakage", one.bending, one.bending_required, 1.0)
+    )  # fmt: skip
+    finding = f"{symbol} {value:.2f} of {figures(least)} ({what}), {percent(one.margin, whole=True)} of the load"
+    factor = safety.face_load_factor
+    wider = f"{figures(1.0 / one.margin, 2)} times the face width at equal K factors, or a larger centre distance"
+    if factor > _WORTH and one.over_face:
+        better = value * (factor / _CORRECTED) ** power
+        wider = f"{_against_tilt(one)}: {symbol} about {better:.2f} at K_Hβ {_CORRECTED:g} in place of {factor:.2f}"
+    return Change(one.margin, f"pair {one.pair}", finding, wider)
+
+
+def safeties(found: Iterator[tuple[object, dict[str, tuple[float, float]]]], ending: str) -> tuple[float, float]:
+    """Lower S_H and S_F of both gears by the method with this ending."""
+    for method, known in found:
+        if getattr(method, "ending", None) == ending:
+            return min(known["contact_safety"]), min(known["bending_safety"])
+    return math.nan, math.nan
+
+
+def bearings_at_glance(
+    data: LoadedShafts,
+    names: Sequence[Sequence[str]],
+    lives: Sequence[Sequence[LifeRating | None]],
+    speeds: Sequence[Sequence[float]],
+    required: float,
+) -> tuple[BearingAtGlance, ...]:
+    """Every bearing, the least load margin first, then the shortest life.
+
+    Parameters
+    ----------
+    data : LoadedShafts
+    names, lives, speeds : sequence of sequence
+        Of every bearing by shafts: its name, rating, and the speed of its rings against each other [rad/s].
+    required : float
+        Life [s].
+    """
+    found = []
+    for shaft, bent, of_names, of_lives, of_speeds in zip(
+        data.gearbox.names, data.nominal.bent, names, lives, speeds, strict=True
+    ):
+        loads = bent.bearing_loads(tuple(of_lives))
+        for k, name in enumerate(of_names):
+            rating = of_lives[k]
+            duration = float(loads.life[k]) * 2.0 * math.pi / of_speeds[k] if of_speeds[k] > 0.0 else math.nan
+            margin = math.nan if rating is None else (duration / required) ** (1.0 / EXPONENT[rating.kind])
+            radial, axial = float(loads.force_radial[k]), abs(float(loads.force_axial[k]))
+            found.append(BearingAtGlance(name, shaft, radial, axial, float(loads.life[k]), duration, margin))
+    return tuple(sorted(found, key=lambda one: (_last(one.margin), _last(one.duration), _last(one.life))))
+
+
+def meshes_in_order(meshes: Sequence[MeshAtGlance]) -> tuple[MeshAtGlance, ...]:
+    """The least load margin first, then the largest K_Hbeta, then the largest misalignment."""
+    return tuple(sorted(meshes, key=lambda one: (_last(one.margin), _last(-one.face_load_factor), -abs(one.over_face))))
+
+
+def _last(value: float) -> float:
+    return math.inf if math.isnan(value) else value

@@ -1,0 +1,306 @@
+"""Result ``gearbox``: meshes and bearings at a glance, the weakest first, what to change first, and a drawing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.base.printed import figures
+from fegear.case.built.pair_checks import check_wide_pair
+from fegear.case.built.pair_surface import pair_speed
+from fegear.case.built.shafts import mesh_places
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import DeferredFigure
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.stage import Stage, Task
+from fegear.results import forecasts
+from fegear.results.pair.loaded_flanks import loaded_flanks
+from fegear.results.pair.loaded_teeth import check_teeth, loaded_pairs
+from fegear.results.rating.rated_methods import methods
+from fegear.results.rating.rating_data import RatingData
+from fegear.results.shafts.drawn_gearbox import drawn_gearbox
+from fegear.results.shafts.gearbox_data import (
+    CAUSE_WORDS,
+    GearboxData,
+    MeshAtGlance,
+    Safety,
+    bearings_at_glance,
+    meshes_in_order,
+    safeties,
+)
+from fegear.results.shafts.gearbox_scheme import scheme
+from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
+from fegear.shafts.gearbox import CAUSES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.base.arrays import Array
+    from fegear.case.built.rated_pair import PairToRate
+    from fegear.case.reading import Scene
+    from fegear.contact.wide.on_shafts import LoadedShafts
+    from fegear.engine.sheet.seen import Seen
+    from fegear.engine.stage import Upstream, Work
+    from fegear.results.pair.transmission_error import TransmissionErrorData
+    from fegear.results.shafts.drawn_gearbox import DrawnGearbox
+    from fegear.shafts.gearbox import MeshState
+    from fegear.shafts.life import LifeRating
+
+
+@dataclass(frozen=True)
+class GearboxInputs:
+    """What the result reads of the case.
+
+    Parameters
+    ----------
+    drawn : DrawnGearbox
+    rated : tuple of PairToRate or None
+        Of every mesh; None where the case lacks what a rating needs.
+    wide, loaded : tuple of bool
+        Of every mesh, whether its flanks are loaded over the face, and whether it has a transmission error.
+    bearings, lives, speeds : tuple of tuple
+        Of every bearing by shafts: its name, rating, and the speed of its rings against each other [rad/s].
+    required : float
+        Longest life that pairs are rated for [s]; NaN where none is given.
+    why : tuple of str
+        Why something is missing.
+    """
+
+    drawn: DrawnGearbox
+    rated: tuple[PairToRate | None, ...]
+    wide: tuple[bool, ...]
+    loaded: tuple[bool, ...]
+    bearings: tuple[tuple[str, ...], ...]
+    lives: tuple[tuple[LifeRating | None, ...], ...]
+    speeds: tuple[tuple[float, ...], ...]
+    required: float
+    why: tuple[str, ...]
+
+
+def _refused(check: object, scene: Scene, pair: str) -> str:
+    """Why something cannot be had of a pair; empty where it can."""
+    try:
+        check(scene, pair)  # type: ignore[operator]
+    except InputError as error:
+        return f"{error.key} {error.rule}" if error.value == "(not given)" else str(error)
+    return ""
+
+
+def _why_not_rated(scene: Scene, pair: str) -> str:
+    from fegear.case.built.rated_pair import pair_to_rate
+    from fegear.results.rating.rating import RATING
+
+    return _refused(RATING.check, scene, pair) or _refused(pair_to_rate, scene, pair)
+
+
+def _has_error(scene: Scene, pair: str) -> bool:
+    """Whether its transmission error is cheap or made anyway: of a pair loaded over the face."""
+    return _is_wide(scene, pair) and pair in loaded_pairs(scene) and not _refused(check_teeth, scene, pair)
+
+
+def _is_wide(scene: Scene, pair: str) -> bool:
+    return pair in scene.wide_pairs and not _refused(check_wide_pair, scene, pair)
+
+
+def _inputs(scene: Scene, _name: str) -> GearboxInputs:
+    from fegear.case.built.rated_pair import pair_to_rate
+
+    meshes = [mesh.pair for mesh in mesh_places(scene)]
+    reasons = {pair: _why_not_rated(scene, pair) for pair in meshes}
+    part = scene.case.bearing
+    shafts = scene.case.shaft
+    names = tuple(tuple(place.bearing for place in one.bearings) for one in shafts.values())
+    lives = tuple(tuple(rating.build() if (rating := part[one].life) else None for one in row) for row in names)
+    spins = _speeds(scene)
+    speeds = tuple(tuple(_against(spins, name, place.around) for place in one.bearings) for name, one in shafts.items())
+    required = max((life for pair in meshes if (life := scene.case.pair[pair].operation.life)), default=math.nan)
+    plane = [pair for pair in meshes if not _is_wide(scene, pair)]
+    why = [f"pair {pair} is not rated: {reason}" for pair, reason in reasons.items() if reason]
+    if plane:
+        why.append(
+            f"K_Hbeta and transmission error of {', '.join(plane)} are not computed for plane (2D) teeth: set "
+            'width = "slices" or "solid"'
+        )
+    return GearboxInputs(
+        drawn_gearbox(scene), tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
+        tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
+        names, lives, speeds, required, tuple(why),
+    )  # fmt: skip
+
+
+def _speeds(scene: Scene) -> dict[str, float]:
+    """Speeds of the shafts, positive about z, from those of the pairs [rad/s]; NaN where unknown."""
+    found = dict.fromkeys(scene.case.shaft, math.nan)
+    meshes = mesh_places(scene)
+    for mesh in meshes:
+        speed = pair_speed(scene, mesh.pair)
+        if speed > 0.0 and math.isnan(found[mesh.shafts[0]]):
+            found[mesh.shafts[0]] = mesh.sense * speed
+            for _ in meshes:
+                for one in meshes:
+                    ratio = -one.found.side * abs(one.found.driver.teeth / one.found.driven.teeth)
+                    first, second = one.shafts
+                    if math.isnan(found[second]):
+                        found[second] = found[first] * ratio
+                    elif math.isnan(found[first]):
+                        found[first] = found[second] / ratio
+    return found
+
+
+def _against(spins: dict[str, float], shaft: str, around: str | None) -> float:
+    return abs(spins[shaft] - (spins[around] if around else 0.0))
+
+
+def _compute(inputs: GearboxInputs, upstream: Upstream, _work: Work) -> GearboxData:
+    shafts = loaded_shafts(upstream)
+    states = shafts.gearbox.misalignment(shafts.nominal.bent, shafts.nominal.forces)
+    meshes = [_mesh(inputs, upstream, shafts, n, state) for n, state in enumerate(states)]
+    bearings = bearings_at_glance(shafts, inputs.bearings, inputs.lives, inputs.speeds, inputs.required)
+    return GearboxData(shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required)
+
+
+def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
+    pair, none = shafts.gearbox.meshes[n].pair, math.nan
+    every, *by_cause = (float(one) for one in state[0].over_face)
+    factor = factor_error = peak = swing = swing_error = none
+    if inputs.wide[n]:
+        teeth = loaded_flanks(upstream, pair)
+        factor, factor_error = (float(of.face_load_factor[teeth.at]) for of in (teeth.stated, teeth.error))
+        peak = _peak(teeth.found.cells, teeth.found.mean_over_face[:, teeth.at])
+    if inputs.loaded[n]:
+        found = cast("TransmissionErrorData", upstream[Task("transmission-error", pair)]).found
+        swing = float(found.te_peak_to_peak[found.at])
+        swing_error = none if found.shift is None else float(found.shift.peak_to_peak)
+    safety = _safety(inputs.rated[n], upstream, pair)
+    contact, bending = (none, none) if safety is None else (safety.contact, safety.bending)
+    required = (none, none) if safety is None else safety.required
+    margin = none if safety is None else min(safety.margins)
+    return MeshAtGlance(
+        safety, factor_error, swing_error, peak, pair, every, tuple(by_cause), factor, contact, required[0], bending,
+        required[1], swing, margin,
+    )  # fmt: skip
+
+
+def _peak(cells: Array, load: Array) -> float:
+    """Middle of the cell with the largest load, over half the face width."""
+    z = 0.5 * (cells[1:] + cells[:-1])
+    return float((2.0 * z[np.argmax(load)] - cells[0] - cells[-1]) / (cells[-1] - cells[0]))
+
+
+def _safety(asked: PairToRate | None, upstream: Upstream, pair: str) -> Safety | None:
+    """By ISO 6336, under the load spectrum where there is one; None where a pair is not rated."""
+    found = None if asked is None else upstream[Task("rating", pair)]
+    if asked is None or not isinstance(found, RatingData):
+        return None
+    ending = "_spectrum" if found.spectrum is not None else ""
+    known = safeties(methods(found, asked), ending)
+    return Safety(*known, asked.conditions.required, found.formula["K_Hbeta"].value)
+
+
+def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
+    found = [LOADED_SHAFTS_TASK]
+    for mesh in mesh_places(scene):
+        if not _why_not_rated(scene, mesh.pair):
+            found.append(Task("rating", mesh.pair))
+        if _is_wide(scene, mesh.pair):
+            found.append(Task("loaded-flanks", mesh.pair))
+        if _has_error(scene, mesh.pair):
+            found.append(Task("transmission-error", mesh.pair))
+    return tuple(found)
+
+
+def _check(scene: Scene, _name: str) -> None:
+    if not mesh_places(scene):
+        raise InputError("shaft", "(no pair)", "has no mesh to evaluate", "mount both gears of a pair on shafts")
+
+
+def _sentences(seen: Seen) -> Iterator[str]:
+    """The weakest mesh and bearing, and what to change first."""
+    data: GearboxData = seen.data
+    first = data.meshes[0]
+    many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
+    known = [f"misaligned by {figures(first.over_face * 1e6)} µm"]
+    if math.isfinite(first.face_load_factor):
+        known.append(f"K_Hβ {first.face_load_factor:.2f}")
+    if math.isfinite(first.margin):
+        known.append(f"S_H {first.contact:.2f}, S_F {first.bending:.2f}")
+    yield f"Pair {first.pair}{many}: {', '.join(known)}."
+    for number, one in enumerate(data.changes):
+        yield f"Change {number + 1}, {one.part}: {one.finding}; {one.remedy}."
+    lives = [one for one in data.bearings if math.isfinite(one.life)]
+    if lives and not any(one.part.startswith("bearing") for one in data.changes):
+        least = lives[0]
+        life = (
+            f"{figures(least.duration / 3600.0)} h" if math.isfinite(least.duration)
+            else f"{figures(least.life * 1e-6)} million revolutions"
+        )  # fmt: skip
+        yield f"Bearing {least.bearing} of shaft {least.shaft}: basic rating life {life}, the shortest."
+
+
+def _by_cause(n: int, cause: str) -> Cell:
+    return Cell(
+        "by_cause", lambda seen: [one.by_cause[n] for one in seen.data.meshes], name=f"misalignment_{cause}",
+        meaning=f"share by {CAUSE_WORDS[cause]}",
+    )  # fmt: skip
+
+
+def _known(key: str, of: str = "meshes") -> Cell:
+    """A column that is there where one of its numbers is known."""
+
+    def numbers(seen: Seen) -> list[float] | None:
+        found = [getattr(one, key) for one in getattr(seen.data, of)]
+        return found if np.isfinite(found).any() else None
+
+    return Cell(key, numbers)
+
+
+def _with_error(key: str, error: str) -> Cell:
+    return replace(_known(key), error=lambda seen: [getattr(one, error) for one in seen.data.meshes])
+
+
+_SHEET = Sheet(
+    answer=Answer(_sentences, figure="gearbox"),
+    name=lambda _asked: "",
+    tables=(
+        Rows(
+            "gearbox_meshes", "Meshes of the gearbox, the weakest first",
+            (
+                "pair", *map(_known, ("margin", "contact", "contact_required", "bending", "bending_required")),
+                _with_error("face_load_factor", "face_load_factor_error"), "over_face",
+                *(_by_cause(n, cause) for n, cause in enumerate(CAUSES)), _with_error("te_peak_to_peak", "te_error"),
+            ),
+            of="meshes",
+        ),
+        Rows(
+            "gearbox_bearings", "Bearings of the gearbox, the shortest life first",
+            (
+                "bearing", "shaft", "radial", "axial",
+                *(_known(key, "bearings") for key in ("life", "duration", "margin")),
+            ),
+            of="bearings", when="bearings",
+        ),
+        Rows(
+            "gearbox_changes", "What to change first", ("part", "finding", "remedy"), of="changes", when="changes",
+        ),
+    ),
+    figures=(lambda seen: (DeferredFigure("gearbox", "Gearbox under load", lambda: scheme(seen.data)),),),
+    remarks=(lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],),
+)  # fmt: skip
+
+
+GEARBOX = Stage(
+    subjects=shafts_of,
+    inputs=_inputs,
+    compute=_compute,
+    present=_SHEET.present,
+    needs=_needs,
+    check=_check,
+    cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
+    forecast=lambda _scene, _name: forecasts.constant(0.01),
+)

@@ -1,0 +1,142 @@
+"""A gearbox at a glance: margins that mean what they say, the weakest first, what to change, and the drawing."""
+
+import copy
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
+from fegear.results.shafts.gearbox_data import CAUSE_WORDS, MeshAtGlance, Safety, _of_mesh
+from fegear.results.shafts.gearbox_scheme import scheme, unrolled
+
+CASES = Path(__file__).parents[2] / "cases"
+RATED = {"strength": {"material": "case-hardened-steel"}, "tolerance_class": 6, "roughness": {"flank_rz": "4 um",
+         "root_rz": "16 um"}}  # fmt: skip
+
+#: Factors that do not follow the load.
+OPERATION = {"life": "5000 h", "dynamic_factor": 1.1, "face_load_factor": 1.3, "transverse_load_factor": 1.0}
+
+
+def overview(times=1.0, *, rated=True, **changed):
+    """Two stages of plane teeth on their shafts, rated for 5,000 h, at `times` their torques."""
+    case = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
+    case["results"] = ["gearbox"]
+    for gear in (case["gear"]["a"], case["gear"]["b"]):  # spur gears: plane teeth are loaded within a second
+        gear["module"] = gear.pop("normal_module")
+        del gear["helix_angle"], gear["hand"]
+    del case["pair"]["I"]["centre_distance"]
+    case["shaft"]["mid"]["axis"], case["shaft"]["out"]["axis"] = ["105 mm", "0 mm"], ["235 mm", "0 mm"]
+    for name, torque, speed in (("I", 100.0, 1500.0), ("II", 250.0, 600.0)):
+        case["pair"][name]["torque"] = f"{times * torque} N*m"
+        if rated:
+            case["pair"][name] |= {"speed": f"{speed} rpm", "operation": OPERATION,
+                                   "lubricant": {"viscosity_40": "220 mm^2/s", "temperature": "70 degC"}}  # fmt: skip
+    if rated:
+        for gear in case["gear"].values():
+            gear.update(copy.deepcopy(RATED))
+    for path, value in changed.items():
+        table, name, key = path.split("__")
+        case[table][name][key] = value
+    scene = build_scene(case, "box", Path())
+    run = run_plan(scene, make_plan(scene, STAGES))
+    return run, run.outcomes[Task("gearbox", "all")]
+
+
+@pytest.fixture(scope="module")
+def usual():
+    return overview()
+
+
+def test_at_its_margin_a_mesh_has_the_minimum_safety(usual):
+    worst = usual[1].data.meshes[0]
+    assert worst.margin == min(one.margin for one in usual[1].data.meshes)
+    again = next(one for one in overview(worst.margin)[1].data.meshes if one.pair == worst.pair)
+    assert again.margin == pytest.approx(1.0, rel=0.01)  # Z_L, Z_V and Y hardly follow the load
+
+
+def test_at_its_margin_a_bearing_lives_as_long_as_required(usual):
+    data = usual[1].data
+    first = data.bearings[0]
+    assert first.margin == min(one.margin for one in data.bearings if math.isfinite(one.margin))
+    (again,) = (one for one in overview(first.margin)[1].data.bearings
+                if one.shaft == first.shaft
+                and abs(one.radial / first.radial / first.margin - 1.0) < 0.02)  # fmt: skip
+    assert again.duration == pytest.approx(5000 * 3600.0, rel=0.05)
+    # 1,500 rpm at the input, 600 rpm in the middle: revolutions per hour
+    for one in data.bearings:
+        if math.isfinite(one.life):
+            speed = {"in": 1500.0, "mid": 600.0}[one.shaft]
+            assert one.duration / 3600.0 == pytest.approx(one.life / (60.0 * speed), rel=1e-9)
+
+
+def test_causes_add_up_and_the_table_is_in_order(usual):
+    tables = {table.name: table for table in usual[1].tables}
+    meshes = tables["gearbox_meshes"]
+    total = sum(np.array(meshes[f"misalignment_{cause} [um]"]) for cause in CAUSE_WORDS)
+    np.testing.assert_allclose(total, meshes["misalignment [um]"], rtol=1e-9)
+    assert np.all(np.diff(meshes["load_margin"]) >= 0.0)
+
+
+def test_an_overload_names_what_fails_first_and_at_most_three():
+    run, outcome = overview(6.0)
+    changes = outcome.data.changes
+    assert 0 < len(changes) <= 3
+    margins = [one.margin for one in changes]
+    assert margins == sorted(margins)
+    assert max(margins) < 1.0
+    everything = [one.margin for one in (*outcome.data.meshes, *outcome.data.bearings) if math.isfinite(one.margin)]
+    assert margins[0] == pytest.approx(min(everything))
+    said = run.answer.results[0].sentences if hasattr(run.answer, "results") else outcome.answer.sentences
+    assert any("Change 1" in one for one in said)
+    bearing = next(one for one in changes if one.part.startswith("bearing"))
+    assert "times as large" in bearing.remedy
+
+
+def test_what_cannot_be_computed_is_said_once():
+    _, outcome = overview(rated=False)
+    assert [one for one in outcome.remarks if "is not rated" in one]
+    (table,) = (table for table in outcome.tables if table.name == "gearbox_meshes")
+    assert not [column.name for column in table.columns if column.name.startswith(("S_", "K_", "load_margin"))]
+    assert not outcome.data.changes
+
+
+def mesh(peak=0.9, factor=1.5, margin=math.nan, over=12e-6, by=(10e-6, 1e-6, 3e-6, -2e-6)):
+    safety = Safety(0.8, 2.0, (1.0, 1.4), 1.8) if margin < 1.0 else None
+    return MeshAtGlance(safety, 0.0, 0.0, peak, "I", over, by, factor, 0.8, 1.0, 2.0, 1.4, 3e-6, margin)
+
+
+def test_the_remedy_follows_the_cause():
+    assert _of_mesh(mesh(factor=1.1)) is None
+    assert "crowning" in _of_mesh(mesh(peak=0.1)).remedy
+    assert "end II" in _of_mesh(mesh()).finding
+    assert "bearings" in _of_mesh(mesh()).remedy
+    assert "thicker shaft" in _of_mesh(mesh(by=(1e-6, 0.0, 13e-6, -2e-6))).remedy
+    # a cause against the sum is none: bending makes this misalignment smaller
+    assert mesh(over=-4e-6, by=(-10e-6, 0.0, 11e-6, -5e-6)).main_cause == 0
+    weak = _of_mesh(mesh(margin=0.64))
+    assert weak.finding.startswith("S_H 0.80 of 1 (pitting), 64 %")
+    assert f"S_H about {0.8 * math.sqrt(1.8 / 1.1):.2f}" in weak.remedy
+
+
+def test_the_drawing_has_its_centre_distances_and_displacements(usual):
+    data = usual[1].data
+    heights = unrolled(data.shafts)
+    assert heights["in"] - heights["mid"] == pytest.approx(0.105)
+    assert heights["mid"] - heights["out"] == pytest.approx(0.13)
+    figure = scheme(data)
+    curves = {item.name: item for item in figure.panels[0].items if item.name}
+    factor = float(figure.caption.partition("are drawn ")[2].partition(" times")[0].replace(" ", ""))
+    bent = dict(zip(data.shafts.gearbox.names, data.shafts.nominal.bent, strict=True))
+    largest = max(float(np.hypot(one.line.x, one.line.y).max()) for one in bent.values())
+    x = np.asarray(curves["axes under load"].x) * 1e-3
+    across = [-heights[name] for name in bent]
+    parts = np.split(x, np.flatnonzero(np.isnan(x)))
+    off = max(float(np.nanmax(np.abs(part - at))) for part, at in zip(parts, across, strict=False))
+    assert off == pytest.approx(factor * largest, rel=1e-6)
