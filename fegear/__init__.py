@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fegear.workbench.questions import (
         dynamic_factor,
         load_sharing,
+        mesh_stiffness_revolution,
         relief,
         root_stress,
         stiffness_table,
@@ -31,7 +32,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "load_sharing",
-    "rating", "relief",
+    "mesh_stiffness_revolution", "rating", "relief",
     "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
@@ -44,6 +45,7 @@ _HOMES = {
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
     "load_sharing": "workbench.questions",
+    "mesh_stiffness_revolution": "workbench.questions",
     "rating": "workbench.rating",
     "relief": "workbench.questions",
     "root_stress": "workbench.questions",

@@ -53,9 +53,10 @@ class Effect:
         What is assumed where it is off.
     needs : str
         What it needs.
-    kind : {"teeth", "flanks", "roots", "motion"}
+    kind : {"teeth", "flanks", "roots", "revolution", "motion"}
         How teeth give way and touch, without modifications and errors; what keeps flanks apart; what acts on root
-        stress only, under loads that stay as they are (`fegear.contact.plane.root_stress`); what acts in time.
+        stress only, under loads that stay as they are (`fegear.contact.plane.root_stress`); what
+        differs from tooth to tooth, over a revolution; what acts in time.
     plane, wide : bool
         Whether plane teeth have it, and teeth with a width.
     kernels : mapping of str to str
@@ -81,7 +82,7 @@ class Effect:
     about: str
     without: str
     needs: str
-    kind: Literal["teeth", "flanks", "roots", "motion"]
+    kind: Literal["teeth", "flanks", "roots", "revolution", "motion"]
     kernels: Mapping[str, str]
     called: Callable[[Described], bool]
     scene: tuple[str, ...]
@@ -157,6 +158,13 @@ SPACING_ERRORS = Effect(
     {"spacing errors": "pitch deviations of the teeth in one base pitch"},
     lambda pair: pair.has("spacing_errors"), (*_LIN, _SPACING, _RELIEF),
 )  # fmt: skip
+ODD_TEETH = Effect(
+    "odd_teeth", "Include teeth with cracks (`odd_tooth`) in results over a revolution.", "identical teeth",
+    '`odd_tooth` on a spur gear of a plane (2D) pair with compliance source "fe"', "revolution",
+    {"odd sectors": "gear with odd teeth solved by FE"},
+    lambda pair: pair.has("odd_tooth"),
+    ("cracked_tooth", 'results=["mesh-stiffness-revolution"]', "accuracy.tolerance=2e-2"), wide=False,
+)  # fmt: skip
 CONTACT_LOSS = Effect(
     "contact_loss", "Loss of contact, backlash and impacts in the time domain.", "teeth always in contact",
     "results in time", "motion",
@@ -220,6 +228,13 @@ class MotionEffects:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RevolutionEffects:
+    """Which effects a loaded pair has only over a revolution."""
+
+    odd_teeth: bool = _counts(ODD_TEETH)
+
+
+@dataclass(frozen=True, kw_only=True)
 class FaceEffects:
     """Which effects a loaded pair has only with its width."""
 
@@ -227,7 +242,7 @@ class FaceEffects:
 
 
 #: Classes whose fields are the effects, in the order in which a case and the pages list them.
-GROUPS = (ToothEffects, RootEffects, MotionEffects, FaceEffects)
+GROUPS = (ToothEffects, RootEffects, RevolutionEffects, MotionEffects, FaceEffects)
 #: All effects by name.
 EFFECTS: Mapping[str, Effect] = {one.name: one.metadata["effect"] for group in GROUPS for one in fields(group)}
 
@@ -245,6 +260,8 @@ AT_REST = _names("teeth")
 GAPS = _names("flanks")
 #: Effects on root stress only, which results of a pair's root stress have besides.
 ROOT_EFFECTS = _names("roots")
+#: What counts in a case where one pair has it, not only where every pair can.
+OF_SOME = _names("flanks", "revolution")
 #: All that change a loaded pair, those of pairs with a width, of plane teeth, and those that change a motion.
 PAIR_EFFECTS = _names("teeth", "flanks")
 WIDE_EFFECTS = _names("teeth", "flanks", wide=True)

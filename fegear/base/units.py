@@ -282,6 +282,7 @@ PER_SI: dict[str, float] = {
     "kg": 1.0,
     "kg.m^2": 1.0,
     "MPa^(1/2)": 1e-3,
+    "MPa.m^(1/2)": 1e-6,
     "degC": 1.0,  # inside, too
     "K": 1.0,
     "mPa.s": 1e3,

@@ -10,11 +10,12 @@ from pydantic import Field, create_model
 
 from fegear.base.effects import (
     EFFECTS,
-    GAPS,
     GROUPS,
+    OF_SOME,
     Described,
     FaceEffects,
     MotionEffects,
+    RevolutionEffects,
     RootEffects,
     ToothEffects,
 )
@@ -50,7 +51,7 @@ class _Switches(Part):
 
 if TYPE_CHECKING:
 
-    class EffectsPart(_Switches, ToothEffects, RootEffects, MotionEffects, FaceEffects):  # type: ignore[misc]  # frozen by pydantic
+    class EffectsPart(_Switches, ToothEffects, RootEffects, RevolutionEffects, MotionEffects, FaceEffects):  # type: ignore[misc]  # frozen by pydantic
         """Physical effects by name."""
 
 else:  # the same fields, all off
@@ -66,14 +67,14 @@ else:  # the same fields, all off
 def started(effects: EffectsPart, pairs: Sequence[Described]) -> EffectsPart:
     """Effects of a case with those that its pairs call for, where they start as described; named ones stay as they are.
 
-    What flanks have counts where one pair has it; how teeth give way and touch, where every pair can.
+    What flanks or single teeth have counts where one pair has it; how teeth give way and touch, where every pair can.
     """
     if effects.start == "none" or not pairs:
         return effects
     on = {
         name: effect.on for name, effect in EFFECTS.items()
         if name not in effects.model_fields_set
-        and (any if name in GAPS else all)(effect.called(pair) for pair in pairs)
+        and (any if name in OF_SOME else all)(effect.called(pair) for pair in pairs)
     }  # fmt: skip
     # Not `model_copy`, which would take them for named ones.
     return EffectsPart.model_construct(effects.model_fields_set, **{**dict(effects), **on})

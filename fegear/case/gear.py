@@ -16,6 +16,7 @@ from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_teeth import TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.nearest import nearest
+from fegear.case.odd_tooth import OddToothPart
 from fegear.case.part import (
     LengthOrZero,
     Part,
@@ -25,7 +26,15 @@ from fegear.case.part import (
     refuse,
     spelt_also,
 )
-from fegear.case.relief import BiasPart, LeadPart, MeasuredPart, ReliefPart, SpacingErrorsPart, TopographyPart
+from fegear.case.relief import (
+    BiasPart,
+    LeadPart,
+    MeasuredPart,
+    ReliefPart,
+    SpacingErrorsPart,
+    TopographyPart,
+    several,
+)
 from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.geometry.external_tooth import Tooth
@@ -217,6 +226,11 @@ class GearPart(TeethPart):
         description="Cumulative pitch deviation of each tooth in meshing order, positive for missing material; "
         "active with effects.spacing_errors.",
     )
+    odd_tooth: Annotated[list[Table[OddToothPart]], several(OddToothPart)] = Field(
+        default_factory=list,
+        description="Teeth with a crack, a table for each ([[gear.NAME.odd_tooth]]); spur gears in plane (2D) pairs; "
+        "active with effects.odd_teeth.",
+    )
     roughness: Table[RoughnessPart] | None = Field(
         default=None,
         description="Roughness of flanks and root fillets, for scuffing, micropitting, friction and rating.",
@@ -278,6 +292,7 @@ class GearPart(TeethPart):
             )  # fmt: skip
         self._check_web()
         self._check_internal()
+        self._check_odd_teeth()
         if self.is_helical:
             self._check_helical()
             return self
@@ -304,6 +319,30 @@ class GearPart(TeethPart):
             raise refuse(
                 "contradicts outer_radius", "specify either rim_thickness or outer_radius", key="rim_thickness"
             )
+
+    def _check_odd_teeth(self) -> None:
+        """Refuse odd teeth of gears that are not solved with them, that are no teeth of theirs, and twice given."""
+        if not self.odd_tooth:
+            return
+        if self.internal or self.has_helix:
+            kind = "internal" if self.internal else "helical"
+            raise refuse(
+                f"is not available for {kind} gears yet (external spur gears only)", "remove it", key="odd_tooth"
+            )
+        if self.tooth_mesh is not None:
+            raise refuse("requires the generated mesh", "remove tooth_mesh", key="odd_tooth")
+        numbers = [one.tooth for one in self.odd_tooth]
+        for n, number in enumerate(numbers):
+            if number >= self.teeth:
+                raise refuse(
+                    f"must be less than {self.teeth}, the number of teeth (the first tooth is 0)",
+                    f"specify at most {self.teeth - 1}", key=f"odd_tooth[{n}].tooth", value=number,
+                )  # fmt: skip
+            if number in numbers[:n]:
+                raise refuse(
+                    "is specified twice", "merge both tables, or change one number", key=f"odd_tooth[{n}].tooth",
+                    value=number,
+                )  # fmt: skip
 
     def _check_web(self) -> None:
         """Refuse webs of no rim, wider than any, and twice given."""

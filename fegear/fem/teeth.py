@@ -7,7 +7,7 @@ driven one; they go on through any number of turns.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,3 +41,12 @@ def together(keys: Iterable[Hashable]) -> list[NDArray[np.intp]]:
     for number, key in enumerate(keys):
         found.setdefault(key, []).append(number)
     return [np.array(numbers) for numbers in found.values()]
+
+
+def meshing_order(tooth: int, teeth: int, member: Literal["driver", "driven"]) -> int:
+    """Number in the order of meshing of a tooth by its own number, 0 to z - 1, and the other way round.
+
+    Tooth 0 is on pair 0 in base pitch 0, whichever way one counts; the tooth that comes into mesh after it is tooth -1
+    of a driving gear, tooth 1 of a driven one.
+    """
+    return (-tooth if member == "driver" else tooth) % teeth

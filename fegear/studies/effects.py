@@ -43,6 +43,7 @@ CURVES = (
     ("tooth_contact_", "phi1", "te"),
     ("transmission_error_", "x", "te"),
     ("tooth_force_", "x", "force"),
+    ("mesh_stiffness_revolution_", "driver_angle", "te"),
     ("load_sharing_", "x", "load"),
     ("root_stress_history_", "x", "stress"),
     ("relief_", "x", "relief"),
@@ -237,7 +238,12 @@ _TITLES = {
 }
 
 
-_ABSCISSAE = {"x": "position on the line of action", "speed": "speed", "phi1": "pinion angle"}
+_ABSCISSAE = {
+    "x": "position on the line of action",
+    "speed": "speed",
+    "phi1": "pinion angle",
+    "driver_angle": "rotation of the driver",
+}
 
 
 _SMALLEST_CHANGE = 1e-9

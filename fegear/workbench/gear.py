@@ -108,6 +108,30 @@ class Gear(Described):
         name = keys.pop("name", self.name)
         return Gear.of(name, {key: value for key, value in {**self.keys, **keys}.items() if value is not None})
 
+    def with_crack(self, tooth: int = 0, **crack: Any) -> Gear:
+        """A gear with one more cracked tooth.
+
+        Parameters
+        ----------
+        tooth : int
+            Its number in meshing order; one that is cracked already gets the new crack instead.
+        **crack
+            Keys of ``[[gear.NAME.odd_tooth]] crack`` of a case file: ``depth`` or ``depth_ratio``, ``angle``,
+            ``tangent_angle`` or another start, ``fillet``.
+
+        Raises
+        ------
+        InputError
+            If the gear can have no such crack: key, value, rule, remedy.
+
+        Examples
+        --------
+        >>> cracked = pinion.with_crack(tooth=0, depth="0.5 mm", angle="70 deg")
+        """
+        given = self.keys.get("odd_tooth", [])
+        others = [one for one in ([given] if isinstance(given, dict) else given) if one.get("tooth", 0) != tooth]
+        return self.changed(odd_tooth=[*others, {"tooth": tooth, "crack": crack}])
+
     def document(self) -> dict[str, Any]:
         """It as the tables of a case file."""
         return {"gear": {self.name: self.keys}}

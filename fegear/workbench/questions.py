@@ -25,6 +25,7 @@ _TITLES = {
     "stiffness": "Stiffness",
     "crosscheck": "Root stress and compliance",
     "load-sharing": "Load sharing",
+    "mesh-stiffness-revolution": "Mesh stiffness over a revolution",
     "root-stress-history": "Root stress over the mesh cycle",
     "transmission-error": "Transmission error",
     "relief": "Relief",
@@ -268,6 +269,38 @@ def load_sharing(
     return ask_of_pair(
         "load-sharing", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache, neglected=neglected
     )
+
+
+def mesh_stiffness_revolution(
+    pair: Pair,
+    *,
+    torque: Torque | Iterable[Torque] | None = None,
+    load: Force | Iterable[Force] | None = None,
+    effects: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Mesh stiffness, transmission error and load sharing until the same teeth mesh again, with cracked teeth.
+
+    Parameters
+    ----------
+    pair : Pair
+        Of spur gears; a crack is given by `Gear.with_crack`.
+    torque, load, effects, tolerance, progress, cache
+        As in `transmission_error`.
+
+    Returns
+    -------
+    Results
+        Tables ``mesh_stiffness_revolution_<pair>``, ``tooth_loads_revolution_<pair>``,
+        ``root_stress_teeth_<pair>_<gear>``, ``mesh_stiffness_orders_<pair>``. Values ``<pair>.mesh_stiffness_min``,
+        ``<pair>.te_residual_max``, ...
+    """
+    return ask_of_pair(
+        "mesh-stiffness-revolution", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache,
+        neglected=False,
+    )  # fmt: skip
 
 
 def relief(

@@ -37,7 +37,7 @@ def study(effect: str) -> Switched:
     return found
 
 
-@pytest.mark.dear("misalignment", "friction", "contact_loss", "parametric")
+@pytest.mark.dear("misalignment", "friction", "contact_loss", "parametric", "odd_teeth")
 @pytest.mark.parametrize("effect", SCENES)
 def test_what_is_off_runs_none_of_its_kernels(effect):
     found = study(effect)
@@ -46,7 +46,7 @@ def test_what_is_off_runs_none_of_its_kernels(effect):
         assert found.without.kernels.get(kernel, 0) == 0, kernel
 
 
-@pytest.mark.dear("misalignment", "friction", "contact_loss", "parametric")
+@pytest.mark.dear("misalignment", "friction", "contact_loss", "parametric", "odd_teeth")
 @pytest.mark.parametrize("effect", SCENES)
 def test_switching_an_effect_off_calls_no_other_effect_s_kernels(effect):
     """Kernels that belong to other effects run with them, on or off alike: none appears that was not there."""

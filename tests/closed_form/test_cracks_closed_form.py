@@ -5,98 +5,23 @@ import math
 
 import numpy as np
 import pytest
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import spsolve
 
 from fegear.base.errors import InputError
-from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.influence import SIDES, solve_influence
-from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_tangent, straight_crack
-from fegear.fem.plane.odd.cracked_sector import CrackedSector, _line, _quartered, cracked_sector, opened
+from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import OddTooth, solve_odd_influence
-from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
+from fegear.fem.plane.odd.stress_intensity import RINGS
 from fegear.fem.plane.settings import settings_at
-from fegear.fem.plane.tooth_meshing import Slit, fill, mesh_sector
-from fegear.fem.plane.trace import lagrange
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
+from fegear.verify.cracked_strip import KAYA_ERDOGAN, intensity, pulled, strip
 
 NU = 0.3
-#: Edge crack of a share of a strip's width: K_I over stress times sqrt(pi a), in tension and in bending (A. C. Kaya and
-#: F. Erdogan, Q. Appl. Math. 45 (1987), 105-122, table 2).
-KAYA_ERDOGAN = {0.1: (1.1892, 1.0472), 0.3: (1.6599, 1.1241), 0.5: (2.8246, 1.4972), 0.7: (6.3549, 2.7252)}
 SETTINGS = settings_at(-3)
 TOOTH, BORE = Tooth(28, BasicRack(1.0, 1.25, 0.25)), 6.375
 PATCH = SETTINGS.patch_half_width
-
-
-def strip(share, tip_edge, *, quarter=True, edge=0.12, angle=90.0, rays=8):
-    """A strip of width one, its left side cracked at y = 0; its boundary counterclockwise from the upper left."""
-    y = np.linspace(3.0, -3.0, 2 * round(3.0 / edge) + 1)
-    x = np.linspace(0.0, 1.0, round(1.0 / edge) + 1)
-    left, bottom = np.stack([0.0 * y, y]), np.stack([x[1:], -3.0 + 0.0 * x[1:]])
-    right, top = np.stack([1.0 + 0.0 * y[1:], y[-2::-1]]), np.stack([x[-2:0:-1], 3.0 + 0.0 * x[1:-1]])
-    polygon, mouth = np.hstack([left, bottom, right, top]), y.size // 2
-    way = np.array([math.sin(math.radians(angle)), -math.cos(math.radians(angle))])
-    path = np.stack([np.zeros(2), share * way], axis=1)
-    line = _line(path, 0.5 * edge, tip_edge, edge)
-    turn = math.atan2(-way[1], -way[0]) + 2.0 * math.pi * np.arange(1, rays) / rays
-    around = path[:, 1:] + tip_edge * np.stack([np.cos(turn), np.sin(turn)])
-    vertices, triangles, numbers = fill(polygon, 0.4, Slit(mouth, line, around))
-    vertices, triangles, left_face = opened(vertices, triangles, numbers)
-    n = polygon.shape[1]
-    runs = {"before": np.append(np.arange(mouth), left_face[0]), "after": np.append(np.arange(mouth, n), 0)}
-    runs |= {"crack_left": left_face, "crack_right": numbers}
-    middles = {name: 0.5 * (vertices[:, run[1:]] + vertices[:, run[:-1]]) for name, run in runs.items()}
-    points, six, edges = with_middle_nodes(vertices, triangles, runs, middles)
-    tip = int(numbers[-1])
-    mesh = SectorMesh(_quartered(points, six, tip) if quarter else points, six, edges, 1, tip=tip if quarter else -1)
-    return CrackedSector(mesh, path[:, 1], way, min(path[0, 1], 1.0 - path[0, 1]), 0.0, False)
-
-
-def pulled(sector, order, stress):
-    """Displacement of a strip whose ends carry a stress over x."""
-    elasticity = assemble(sector.mesh, NU, "strain", order)
-    dofs, width = elasticity.element_dofs, elasticity.element_dofs.shape[1]
-    rows, columns = np.repeat(dofs, width, axis=1).ravel(), np.tile(dofs, (1, width)).ravel()
-    whole = csc_matrix((elasticity.stiffness.ravel(), (rows, columns)), shape=(elasticity.size,) * 2)
-    at, weight = np.polynomial.legendre.leggauss(6)
-    shape, loads = lagrange(order, 0.5 + 0.5 * at), np.zeros(elasticity.size)
-    for name in ("before", "after"):
-        for (first, second, _), unknowns in zip(
-            sector.mesh.edges[name].T, elasticity.edge_dofs[name].transpose(2, 0, 1), strict=True
-        ):
-            (x, y), (other, end) = sector.mesh.points[:, first], sector.mesh.points[:, second]
-            if abs(abs(y) - 3.0) < 1e-9 and abs(end - y) < 1e-9:
-                place = x + (other - x) * (0.5 + 0.5 * at)
-                loads[unknowns[1]] += np.sign(y) * shape @ (stress(place) * 0.5 * weight * abs(other - x))
-    corner = sector.mesh.points[:, : sector.mesh.vertex_count]
-    low, high = (int(np.hypot(corner[0] - 1.0, corner[1] - y).argmin()) for y in (-3.0, 3.0))
-    free = np.setdiff1d(np.arange(elasticity.size), [2 * low, 2 * low + 1, 2 * high])
-    moved = np.zeros(elasticity.size)
-    moved[free] = spsolve(whole[free][:, free], loads[free])
-    return moved, loads
-
-
-def intensity(sector, order, stress=np.ones_like, ring=RINGS[0]):
-    """K_I and K_II over sqrt(pi a)."""
-    length = float(np.hypot(*sector.tip))
-    return (
-        interaction(sector, NU, "strain", order, ring).T
-        @ pulled(sector, order, stress)[0]
-        / math.sqrt(math.pi * length)
-    )
-
-
-@pytest.mark.dear
-@pytest.mark.parametrize("share", KAYA_ERDOGAN)
-@pytest.mark.parametrize("kind", ["tension", "bending"])
-def test_edge_crack_in_a_strip_has_the_published_stress_intensity(share, kind):
-    stress = np.ones_like if kind == "tension" else lambda x: 1.0 - 2.0 * x
-    found = intensity(strip(share, 0.1 * min(share, 1.0 - share)), 4, stress)
-    assert found[0] == pytest.approx(KAYA_ERDOGAN[share][kind == "bending"], rel=1e-3)
-    assert abs(found[1]) < 1e-3 * found[0]
 
 
 @pytest.mark.dear

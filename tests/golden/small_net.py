@@ -38,6 +38,7 @@ RUNS = {
     "body_modes": ("thin_rim", {"results": ["body-modes"], "accuracy.tolerance": 0.2}),
     "contact_lines": ("litvin_combined", {"results": ["contact-lines"], "tooth_contact.positions": 40}),
     "cornell_test_gear": ("cornell_test_gear", COARSE),
+    "cracked_tooth": ("cracked_tooth", COARSE),
     "crowned_helical": ("small/crowned_helical", {}),
     "design_chart": (
         "lin_design_chart",

@@ -46,6 +46,7 @@ STRICT = {
     "viscosity": {"Pa*s": 1.0},
     "kinematic viscosity": {"mm^2/s": 1e-6, "m^2/s": 1.0},
     "temperature": {"degC": 1.0},
+    "time": {"h": 3600.0, "min": 60.0, "s": 1.0},
 }
 _QUANTITY = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?) *(.*?) *")
 _ROCKWELL = re.compile(r"\d+(?:\.\d+)? HRC")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
@@ -83,6 +84,29 @@ def _check_profiles(spec: PairSpec) -> None:
         flank.profile(spec.pair, member, 0.0)  # what is given in Welbourn's Delta is looked at when that is known
 
 
+def check_odd_teeth(scene: Scene, name: str) -> None:
+    """Refuse the effect odd_teeth where no gear of the case has odd teeth, and compliances that have none.
+
+    Raises
+    ------
+    InputError
+    """
+    part, effects = scene.case.pair[name], scene.case.effects
+    if not effects.odd_teeth:
+        return
+    key, source = f"effects.{ODD_TEETH.name}", part.compliance.source
+    if not any(gear.odd_tooth for gear in scene.case.gear.values()):
+        raise InputError(
+            key, "true", "has no effect: no gear of this case has odd_tooth",
+            f"describe [[gear.{part.driver}.odd_tooth]], or switch the effect off",
+        )  # fmt: skip
+    if source != "fe" and (scene.case.gear[part.driver].odd_tooth or scene.case.gear[part.driven].odd_tooth):
+        raise InputError(
+            key, "true", f'is not available with pair.{name}.compliance.source = "{source}"',
+            f'set pair.{name}.compliance.source = "fe", or switch the effect off',
+        )  # fmt: skip
+
+
 def check_relief(scene: Scene, name: str) -> None:
     """Refuse the effect relief where no gear of the case has any: other pairs may do without."""
     part = scene.case.pair[name]
@@ -127,6 +151,12 @@ def check_wide_pair(scene: Scene, name: str) -> None:
     refuse_unloaded(_bare(scene, name))
     if effects.misalignment:
         _check_misalignment(scene, name)
+    odd = [gear for gear in (part.driver, part.driven) if scene.case.gear[gear].odd_tooth]
+    if effects.odd_teeth and odd:
+        raise InputError(
+            f"gear.{odd[0]}.odd_tooth", "(given)", f"is not available for 3D pairs yet (pair {name})",
+            f'set pair.{name}.width = "plane", or switch effects.odd_teeth off',
+        )  # fmt: skip
     spec = pair_spec(scene, name, over_face=True)
     gears = scene.case.gear.values()
     if effects.relief and not (spec.face.cutter or any(gear.relieved or gear.over_face for gear in gears)):

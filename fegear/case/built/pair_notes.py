@@ -41,6 +41,15 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
             )
         if part.spacing_errors is not None and not effects.spacing_errors:
             notes.append(neglecting(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch)."))
+        if part.odd_tooth:
+            notes.append(
+                neglecting(
+                    f"Gear {gear}: odd_tooth counts in results over a revolution and of the gear only "
+                    "(mesh-stiffness-revolution, stress-intensity, odd-tooth-stiffness); here all teeth are identical."
+                    if effects.odd_teeth
+                    else f"Gear {gear}: odd_tooth ignored because effects.odd_teeth is off (identical teeth)."
+                )
+            )
         if part.over_face:
             notes.append(
                 neglecting(

@@ -83,7 +83,11 @@ class OverRevolution:
 
 
 def over_revolution(
-    engagement: Engagement, load: float, positions: int = 200, shifted: Sequence[Engagement] = ()
+    engagement: Engagement,
+    load: float,
+    positions: int = 200,
+    shifted: Sequence[Engagement] = (),
+    base_pitches: int = 1,
 ) -> OverRevolution:
     """Follow a pair over all base pitches until the same teeth meet again.
 
@@ -96,6 +100,8 @@ def over_revolution(
         Even steps over a base pitch; more stand on either side of every jump.
     shifted : sequence of Engagement
         The same with one compliance each off by its estimated error.
+    base_pitches : int
+        How many there are where all teeth are alike.
 
     Raises
     ------
@@ -105,10 +111,11 @@ def over_revolution(
     _refuse_too_many(engagement)
     x = roll_positions(engagement, positions)
     number = engagement.grid(x).contacts.number
-    (error, stiffness, loads), solved = _each_pitch(engagement, x, load, _curves)
+    count = engagement.cycles if engagement.cycles > 1 else base_pitches
+    (error, stiffness, loads), solved = _each_pitch(engagement, x, load, _curves, count)
     te_off, off = np.full((2, *error.shape), np.nan)
     if shifted:
-        others = [_each_pitch(one, x, load, _curves)[0] for one in shifted]
+        others = [_each_pitch(one, x, load, _curves, count)[0] for one in shifted]
         te_off, off = (
             np.sum([np.abs(other[at] - value) for other in others], axis=0)
             for at, value in enumerate((error, stiffness))
@@ -130,10 +137,10 @@ def _curves(loaded: Loaded) -> tuple[Array, ...]:
 
 
 def _each_pitch(
-    engagement: Engagement, x: Array, load: float, of: Callable[[Loaded], tuple[Array, ...]]
+    engagement: Engagement, x: Array, load: float, of: Callable[[Loaded], tuple[Array, ...]], count: int
 ) -> tuple[list[Array], int]:
     """What is asked of every base pitch, shape (C, ...) each, and how many of them differ from each other."""
-    grid, count = engagement.grid(x), engagement.cycles
+    grid = engagement.grid(x)
     alike = together(_teeth_and_spacing(engagement, grid.contacts.number, cycle) for cycle in range(count))
     found: list[Array] = []
     for pitches in alike:

@@ -1,4 +1,7 @@
-"""Stage ``loaded-pair``: compliances, modifications and errors of a pair, for the stages that load it."""
+"""Stage ``loaded-pair``: compliances, modifications and errors of a pair, for the stages that load it.
+
+Stage ``odd-pair``: the same with the odd teeth of its gears.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +11,15 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import AT_REST
 from fegear.case.built.neglected_effects import whole_ratio_remarks
-from fegear.case.built.pair_checks import check_plane_pair
+from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
 from fegear.case.built.pair_notes import pair_notes
 from fegear.case.built.pair_spec import pair_spec
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
+from fegear.results.gear.odd_gear import needs_odd_solution
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 from fegear.results.pair.loaded_teeth import AskedOfTeeth, plane_pairs
 
@@ -108,6 +113,48 @@ LOADED_PAIR = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=check_plane_pair,
+    cites=_cites,
+    forecast=_forecast,
+)
+
+
+def _odd_pairs(scene: Scene) -> tuple[str, ...]:
+    return tuple(name for name in plane_pairs(scene) if odd_gears_of(scene, name))
+
+
+def _odd_needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    part, odd = scene.case.pair[name], odd_gears_of(scene, name)
+    return (
+        *(needs_odd_solution(*odd)),
+        *needs_solution(*(gear for gear in (part.driver, part.driven) if gear not in odd)),
+    )
+
+
+def _odd_inputs(scene: Scene, name: str) -> AskedOfTeeth:
+    return replace(AskedOfTeeth.of(scene, pair_spec(scene, name), ()), neglected=False)
+
+
+def _compute_odd(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedPair:
+    from fegear.contact.plane.maker import load_plane
+
+    solved = {task.subject: one for task, one in upstream.items()}
+    gears = tuple(solved[gear] for gear in asked.spec.gears)
+    return load_plane(asked.spec, gears, cache=work.cache, estimates=asked.estimates)
+
+
+def _check_odd(scene: Scene, name: str) -> None:
+    check_odd_teeth(scene, name)
+    check_plane_pair(scene, name)
+
+
+#: A pair of which a gear has odd teeth: results over a revolution read it, all others the ordinary one.
+ODD_PAIR = Stage(
+    subjects=_odd_pairs,
+    needs=_odd_needs,
+    inputs=_odd_inputs,
+    compute=_compute_odd,
+    present=Sheet(settings=_settings).present,
+    check=_check_odd,
     cites=_cites,
     forecast=_forecast,
 )

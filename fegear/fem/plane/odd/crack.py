@@ -154,6 +154,6 @@ def way_through(tooth: InvoluteTooth, start: Array, way: Array) -> float:
     met = along[(at >= 0.0) & (at <= 1.0) & (along > 1e-3)]
     if start[0] * way[0] > -1e-6 * abs(start[0]):
         raise InputError(
-            "share", "", "needs a crack that runs to the other side of the tooth", "give its depth instead"
+            "share", "", "requires a crack that runs to the other side of the tooth", "specify its depth instead"
         )
     return float(min([*met, -2.0 * start[0] / way[0]]))

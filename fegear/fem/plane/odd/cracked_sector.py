@@ -104,6 +104,17 @@ def cracked_sector(tooth: InvoluteTooth, bore_radius: float, settings: MeshSetti
     raise FegearError(f"No valid mesh of the cracked tooth: it still {refused.rule}.") from refused
 
 
+def refuse_crack(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, crack: Crack) -> None:
+    """Refuse what `cracked_sector` refuses, without a mesh.
+
+    Raises
+    ------
+    InputError
+    """
+    chains = sector_boundary(tooth, bore_radius, settings)
+    _checked(tooth, crack, np.hstack([chain.vertices[:, :-1] for chain in chains]))
+
+
 def _checked(tooth: InvoluteTooth, crack: Crack, outline: Array) -> tuple[Array, float]:
     """The crack's corners, and how far from its tip nothing else lies."""
     if not 0.0 < crack.mouth < fillet_length(tooth):
@@ -199,7 +210,7 @@ def _mesh(
 
     split, mouth = _split(chains, tooth, name, crack.mouth, size)
     polygon = np.hstack([chain.vertices[:, :-1] for chain in split])
-    line = _line(path, at_mouth, tip_edge, settings.back_edge_length)
+    line = crack_line(path, at_mouth, tip_edge, settings.back_edge_length)
     tip, way = path[:, -1], path[:, -2] - path[:, -1]
     rays = math.atan2(way[1], way[0]) + 2.0 * math.pi * np.arange(1, _RAYS) / _RAYS
     around = tip[:, None] + tip_edge * np.stack([np.cos(rays), np.sin(rays)])
@@ -216,7 +227,7 @@ def _mesh(
     points, six, edges = with_middle_nodes(vertices, triangles, runs, middles)
     vertex = int(numbers[-1])
     mesh = SectorMesh(
-        _quartered(points, six, vertex), six, by_name(edges), tooth.teeth, GENERATED,
+        quartered(points, six, vertex), six, by_name(edges), tooth.teeth, GENERATED,
         time.perf_counter() - started, bends, vertex,
     )  # fmt: skip
     if settings.order > 2:
@@ -239,7 +250,7 @@ def _split(
     return split, sum(chain.vertices.shape[1] - 1 for chain in split[: place + 1])
 
 
-def _line(path: Array, at_mouth: float, tip_edge: float, longest: float) -> Array:
+def crack_line(path: Array, at_mouth: float, tip_edge: float, longest: float) -> Array:
     """Vertices along a crack without its mouth: short edges at both ends, the last one as long as the rays."""
     corner = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path)))])
     end = corner[-1] - tip_edge
@@ -303,7 +314,7 @@ def opened(vertices: Array, triangles: Index, line: Index) -> tuple[Array, Index
     return np.hstack([vertices, vertices[:, body]]), moved, np.append(new[body], line[-1])
 
 
-def _quartered(points: Array, triangles: Index, tip: int) -> Array:
+def quartered(points: Array, triangles: Index, tip: int) -> Array:
     """Middle nodes of the edges at the tip moved to a quarter of them."""
     found = points.copy()
     for one, other, middle in ((0, 1, 3), (1, 2, 4), (2, 0, 5)):

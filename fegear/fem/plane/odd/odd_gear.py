@@ -50,6 +50,8 @@ _TOUCHED = 2
 #: Part of the difference from elements one order lower that is taken for the error of c_ij and of root stress: no less
 #: than the true one where meshes of all levels were compared, with cracks of .1 to .7 of the way through.
 _COUPLING_SHARE, _STRESS_SHARE = 1.0, 1.5
+#: Part of the estimated error of one mode of stress intensity that the other one has at least.
+_OTHER_MODE = 0.5
 #: A difference may vanish by chance at one position: the estimate is no smaller than so many times what it usually is.
 _USUAL = 1.5
 #: Positions over the flank at which usual differences are looked for.
@@ -229,8 +231,12 @@ class OddGearInfluence:
             If the tooth has no crack.
         """
         near, other = self._near(i, j)
-        value, error = self.fine.stress_intensity(near, other, self._modules(radius), self._patch)
-        root = np.sqrt(self.gear.module)
+        r, root = self._modules(radius), np.sqrt(self.gear.module)
+        value, error = self.fine.stress_intensity(near, other, r, self._patch)
+        if self.fine.lower is not None:
+            # Loads next to a mouth act by how wide they are pressed; one mode may be right by chance.
+            error = error + np.abs(value - self.fine.by_ring(near, other, r, 0.5 * self._patch)[0])
+            error = np.maximum(error, _OTHER_MODE * error[::-1])
         return value / root, error / root
 
     def _half_width(self, half_width: ArrayLike | None) -> Array:

@@ -267,6 +267,7 @@ class OddInfluence:
 
 
 @tallied("tooth shapes")
+@tallied("odd sectors")
 def solve_odd_influence(
     tooth: InvoluteTooth,
     mesh: SectorMesh,

@@ -1,0 +1,174 @@
+"""From ``[[gear.NAME.odd_tooth]]`` to cracks of the mechanics, by the numbers that its teeth have there."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.effects import ODD_TEETH
+from fegear.base.errors import InputError
+from fegear.case.built.tooth_influence import mesh_settings
+from fegear.case.odd_tooth import STARTS
+from fegear.fem.teeth import meshing_order
+
+if TYPE_CHECKING:
+    from fegear.case.odd_tooth import CrackPart
+    from fegear.case.reading import Scene
+    from fegear.fem.plane.odd.crack import Crack
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import Member
+
+#: Where a crack starts unless the case says it: the tangent of ISO 6336-3.
+_USUAL_TANGENT = math.radians(30.0)
+_IN_MODULES = re.compile(r"(\d[\d.e+-]*)( to (\d[\d.e+-]*))? modules")
+
+
+@dataclass(frozen=True)
+class CrackedGear:
+    """The cracks of a gear.
+
+    Parameters
+    ----------
+    cracks : tuple of (int, Crack)
+        By the number of the tooth in meshing order.
+    member : {"driver", "driven"}
+        What it is in its pairs: its teeth mesh the other way round.
+    name : str
+    """
+
+    cracks: tuple[tuple[int, Crack], ...]
+    member: Member
+    name: str = field(compare=False)
+
+    def by_number(self, teeth: int) -> dict[int, Crack]:
+        """Cracks by the tooth's own number, as of `fegear.fem.teeth`."""
+        return {meshing_order(tooth, teeth, self.member): crack for tooth, crack in self.cracks}
+
+
+def odd_gears(scene: Scene) -> tuple[str, ...]:
+    """Gears with odd teeth that count."""
+    if not scene.case.effects.is_on(ODD_TEETH.name):
+        return ()
+    return tuple(name for name in scene.spur_gears if scene.case.gear[name].odd_tooth)
+
+
+def odd_gears_of(scene: Scene, pair: str) -> tuple[str, ...]:
+    """Those of a pair."""
+    part, odd = scene.case.pair[pair], odd_gears(scene)
+    return tuple(name for name in dict.fromkeys((part.driver, part.driven)) if name in odd)
+
+
+def cracked_gear(scene: Scene, name: str) -> CrackedGear:
+    """The cracks of a gear as the case describes them.
+
+    Raises
+    ------
+    InputError
+        If a crack does not fit its tooth.
+    """
+    gear, found = scene.gears[name], []
+    for n, part in enumerate(scene.case.gear[name].odd_tooth):
+        found.append((part.tooth, crack_of(gear, part.crack, f"gear.{name}.odd_tooth[{n}].crack")))
+    driven = any(name == part.driven for part in scene.case.pair.values())
+    return CrackedGear(tuple(found), "driven" if driven else "driver", name)
+
+
+def crack_of(gear: Gear, part: CrackPart, prefix: str) -> Crack:
+    """A crack of a gear's tooth, lengths in modules.
+
+    Raises
+    ------
+    InputError
+        If it does not start on the fillet, or does not run into the tooth.
+    """
+    from fegear.fem.plane.odd.crack import Crack, mouth_at_radius, mouth_at_tangent, straight_crack
+
+    tooth, m = gear.tooth, gear.module
+    start = next((key for key in STARTS if getattr(part, key) is not None), "tangent_angle")
+    given, back = getattr(part, start), part.fillet == "compression"
+    try:
+        if start == "arc":
+            mouth = given / m
+        elif start == "tangent_angle":
+            mouth = mouth_at_tangent(tooth, _USUAL_TANGENT if given is None else given)
+        else:
+            mouth = mouth_at_radius(tooth, given / m * (0.5 if start == "diameter" else 1.0))
+        if part.path is not None:
+            return Crack(mouth, tuple((x / m, y / m) for x, y in part.path), back)
+        return straight_crack(
+            tooth, mouth, part.angle, depth=(part.depth or 0.0) / m, share=part.depth_ratio or 0.0, back=back
+        )
+    except InputError as error:
+        raise _as_given(error, part, start, m).under(prefix) from None
+
+
+def check_crack(scene: Scene, gear: str, number: int) -> None:
+    """Refuse a crack that leaves its tooth or comes too near a surface, before anything is solved.
+
+    Raises
+    ------
+    InputError
+        Under its key in the case.
+    """
+    from fegear.fem.plane.odd.cracked_sector import refuse_crack
+
+    part, made = scene.case.gear[gear].odd_tooth[number].crack, scene.gears[gear]
+    prefix = f"gear.{gear}.odd_tooth[{number}].crack"
+    crack = crack_of(made, part, prefix)
+    start = next((key for key in STARTS if getattr(part, key) is not None), "tangent_angle")
+    try:
+        refuse_crack(made.tooth, made.bore_radius / made.module, mesh_settings(scene.case.accuracy), crack)
+    except InputError as error:
+        raise _as_given(error, part, start, made.module).under(prefix) from None
+
+
+def check_odd_gear(scene: Scene, name: str) -> None:
+    """Refuse cracks that no tooth has, and gears whose teeth are loaded on both flanks.
+
+    Raises
+    ------
+    InputError
+    """
+    pairs = {key: part for key, part in scene.case.pair.items() if key in scene.plane_pairs}
+    drives = next((key for key, part in pairs.items() if part.driver == name), None)
+    driven = next((key for key, part in pairs.items() if part.driven == name), None)
+    key = f"gear.{name}.odd_tooth"
+    if drives is not None and driven == drives:
+        raise InputError(
+            key, "(given)", f"is ambiguous: gear {name} is driver and driven gear of pair {drives}",
+            "describe the mating gear as a gear of its own",
+        )  # fmt: skip
+    if drives is not None and driven is not None:
+        raise InputError(
+            key, "(given)", f"is not available for idlers yet: pairs {driven} and {drives} load opposite flanks",
+            "use one case for each pair",
+        )  # fmt: skip
+    for n in range(len(scene.case.gear[name].odd_tooth)):
+        check_crack(scene, name, n)
+
+
+def _as_given(error: InputError, part: CrackPart, start: str, module: float) -> InputError:
+    """An error of the mechanics in keys and millimetres of the case."""
+    end = next(key for key in ("depth", "depth_ratio", "path") if getattr(part, key) is not None)
+    key = {"mouth": start, "radius": start, "share": end, "depth": end}.get(error.key, error.key)
+    scale = 1e3 * module * (2.0 if key == "diameter" else 1.0)
+
+    def in_mm(text: object) -> str:
+        def length(found: re.Match[str]) -> str:
+            upto = f" to {float(found[3]) * scale:.4g}" if found[3] else ""
+            return f"{float(found[1]) * scale:.4g}{upto} mm"
+
+        return _IN_MODULES.sub(length, str(text)).replace("must be a radius of", f"must be a {key} on")
+
+    if key == "depth_ratio":
+        length = f"(length {error.value}) " if error.value else ""
+        return InputError(key, f"{part.depth_ratio:.4g}", in_mm(length + error.rule), error.remedy)
+    if key == "path":
+        corners = np.array(part.path) * 1e3
+        value = "[" + ", ".join(f"[{x:.4g}, {y:.4g}]" for x, y in corners.tolist()) + "] mm"
+        return InputError(key, value, in_mm(error.rule), error.remedy)
+    return InputError(key, in_mm(error.value), in_mm(error.rule), in_mm(error.remedy))

@@ -1,0 +1,152 @@
+"""Orders of a pair over a revolution, and what indicators of gear condition make of its transmission error.
+
+The signal splits as in vibration monitoring: the regular part are the mesh harmonics, the residual all else, the
+difference the residual without the first sidebands of each mesh harmonic (Stewart 1977; Zakrajsek, Townsend and Decker
+1993, NASA TM-105950). Here it is the computed transmission error, without the path to a sensor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fegear.base.arrays import Array, Index
+from fegear.base.shown import shown
+from fegear.contact.plane.over_revolution import OverRevolution
+
+#: Even samples over a base pitch, and the highest harmonic of the mesh frequency.
+_SAMPLES, _HIGHEST = 128, 8
+
+
+@dataclass(frozen=True)
+class RevolutionOrders:
+    """Harmonics over C base pitches, by their number n = 1..N."""
+
+    n: Index = shown("", "harmonic of all base pitches until the same teeth mesh again", table="orders")
+    mesh_order: Array = shown("", "order of the tooth-mesh frequency", table="orders")
+    te: Array = shown(
+        "um", "amplitude of this order of the transmission error", label="transmission error", table="orders"
+    )
+    mesh_stiffness: Array = shown(
+        "N/um", "amplitude of this order of the mesh stiffness (secant)", label="mesh stiffness", table="orders"
+    )
+
+
+@dataclass(frozen=True)
+class ConditionIndicators:
+    """Condition indicators of the transmission error over a revolution; those of no residual are not a number."""
+
+    residual_rms: float = shown("um", "RMS of the residual (transmission error without mesh harmonics)")
+    residual_kurtosis: float = shown("", "kurtosis of the residual (3 for a normal distribution)")
+    fm0: float = shown("", "FM0: peak-to-peak of the transmission error by the sum of its mesh harmonics")
+    fm4: float = shown("", "FM4: kurtosis of the difference signal (without mesh harmonics and first sidebands)")
+    m6a: float = shown("", "M6A: sixth moment of the difference signal by the cube of its variance")
+    energy_ratio: float = shown("", "energy ratio: RMS of the difference signal by that of the regular signal")
+    sideband_level_factor: float = shown(
+        "", "sideband level factor: first sidebands of the mesh frequency by the RMS of the transmission error"
+    )
+
+
+def _even(found: OverRevolution, curve: Array) -> Array:
+    """A curve at even steps over all base pitches, straight between its rows."""
+    count, start = found.transmission_error.shape[0], float(found.x[0])
+    at = start + found.pitch * np.arange(count * _SAMPLES) / _SAMPLES
+    return np.interp(at, found.along.ravel(), curve.ravel())
+
+
+def _amplitudes(even: Array, count: int) -> Array:
+    return 2.0 * np.abs(np.fft.rfft(even)[1 : count + 1]) / even.size
+
+
+def revolution_orders(found: OverRevolution) -> RevolutionOrders:
+    """Harmonics of transmission error and mesh stiffness over all base pitches, up to eight mesh harmonics."""
+    cycles = found.transmission_error.shape[0]
+    n = np.arange(1, _HIGHEST * cycles + 1)
+    te, stiffness = (_amplitudes(_even(found, curve), n.size) for curve in (found.transmission_error, found.stiffness))
+    return RevolutionOrders(n, n / cycles, te, stiffness)
+
+
+def condition_indicators(found: OverRevolution, teeth: Sequence[int]) -> ConditionIndicators:
+    """Condition indicators of the transmission error.
+
+    Parameters
+    ----------
+    found : OverRevolution
+    teeth : sequence of int
+        Numbers of teeth of the gears whose teeth differ: their shafts' orders are the first sidebands.
+    """
+    cycles = found.transmission_error.shape[0]
+    te = _even(found, found.transmission_error)
+    spectrum = np.fft.rfft(te)
+    spectrum[0] = 0.0
+    mesh = np.arange(0, spectrum.size, cycles)
+    regular = np.zeros_like(spectrum)
+    regular[mesh] = spectrum[mesh]
+    residual = spectrum - regular
+    beside = {cycles // z for z in teeth if cycles % z == 0 and cycles > 1}
+    first = np.array([n for shaft in beside for k in mesh for n in (k - shaft, k + shaft)], dtype=int)
+    difference = residual.copy()
+    difference[first[(first > 0) & (first < spectrum.size)]] = 0.0
+    r, d, g = (np.fft.irfft(one, te.size) for one in (residual, difference, regular))
+    amplitude = 2.0 * np.abs(spectrum) / te.size
+    harmonics = float(amplitude[mesh[1 : _HIGHEST + 1]].sum())
+    sides = sum(float(amplitude[cycles + side * shaft]) for shaft in beside for side in (-1, 1))
+    whole = _rms(g + r)
+    return ConditionIndicators(
+        _rms(r), _moment(r, te, 4), float(np.ptp(te)) / harmonics if harmonics else math.nan, _moment(d, te, 4),
+        _moment(d, te, 6), _rms(d) / _rms(g) if _rms(g) else math.nan, sides / whole if whole else math.nan,
+    )  # fmt: skip
+
+
+def _rms(signal: Array) -> float:
+    return float(np.sqrt(np.mean(signal**2)))
+
+
+def _moment(signal: Array, whole: Array, power: int) -> float:
+    """N sum s^n / (sum s^2)^(n/2) with the mean taken away; not a number of what is round-off of the whole signal."""
+    size = _rms(signal)
+    if size <= 1e-9 * _rms(whole):
+        return math.nan
+    return float(np.mean(((signal - signal.mean()) / size) ** power))
+
+
+@dataclass(frozen=True)
+class AlongRevolution:
+    """Rows of a pair over all base pitches, one position after the other."""
+
+    base_pitch: Index = shown("", "number of the base pitch", table="revolution")
+    driver_angle: Array = shown(
+        "deg",
+        "rotation of the driver, zero with the first teeth in contact at the pitch point",
+        label="rotation of the driver",
+        table="revolution",
+    )
+    x: Array = shown("mm", "mesh position: on the line of action over the base pitches", table="revolution")
+    te: Array = shown("um", "transmission error", table="revolution")
+    te_residual: Array = shown("um", "transmission error minus that of an ordinary base pitch", table="revolution")
+    mesh_stiffness: Array = shown("N/um", "mesh stiffness (secant)", table="revolution")
+    pairs_in_contact: Index = shown("", "number of tooth pairs in contact", table="revolution")
+    te_error: Array | None = None
+    mesh_stiffness_error: Array | None = None
+
+
+def along_revolution(found: OverRevolution, base_radius: float) -> AlongRevolution:
+    """All base pitches one below the other.
+
+    Parameters
+    ----------
+    found : OverRevolution
+    base_radius : float
+        Of the driver [m].
+    """
+    cycles, positions = found.transmission_error.shape
+    stated = bool(np.isfinite(found.transmission_error_error).all())
+    return AlongRevolution(
+        np.repeat(np.arange(cycles), positions), found.along.ravel() / base_radius, found.along.ravel(),
+        found.transmission_error.ravel(), found.residual.ravel(), found.stiffness.ravel(),
+        (found.loads > 0.0).sum(axis=1).ravel(),
+        found.transmission_error_error.ravel() if stated else None, found.stiffness_error.ravel() if stated else None,
+    )  # fmt: skip

@@ -1,0 +1,60 @@
+"""Stage ``odd-gear-solution``: a gear with cracked teeth, solved from the same gear without cracks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from fegear.case.built.odd_teeth import CrackedGear, check_odd_gear, cracked_gear, odd_gears
+from fegear.engine.citation import Citation, citing
+from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.results.forecasts import RING
+from fegear.results.gear.solved_gear import needs_solution, solution_of
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.fem.plane.odd.odd_gear import OddGearInfluence
+
+#: The stage's name.
+ODD = "odd-gear-solution"
+#: Seconds of a ring with one odd sector with the default settings, and of each further crack.
+_RING, _CRACK = 1.0, 0.3
+#: What results on cracks rest on.
+CRACKS = (
+    *RING,
+    Citation("henshell-shaw", "quarter-point elements at the crack tip"),
+    Citation("yau-wang-corten", "stress intensity factors by the interaction integral"),
+)
+
+
+def needs_odd_solution(*gears: str) -> tuple[Task, ...]:
+    """The tasks that solve gears with odd teeth."""
+    return tuple(Task(ODD, name) for name in dict.fromkeys(gears))
+
+
+def odd_solution_of(upstream: Upstream, gear: str) -> OddGearInfluence:
+    """A gear with odd teeth that was solved."""
+    return cast("OddGearInfluence", upstream[Task(ODD, gear)])
+
+
+def _compute(asked: CrackedGear, upstream: Upstream, work: Work) -> OddGearInfluence:
+    from fegear.fem.plane.odd.odd_gear import solve_cracked_gear
+
+    ordinary = solution_of(upstream, asked.name)
+    return solve_cracked_gear(ordinary, asked.by_number(ordinary.gear.teeth), cache=work.cache)
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    return Forecast(seconds=_RING + _CRACK * len(scene.case.gear[name].odd_tooth))
+
+
+ODD_GEAR = Stage(
+    subjects=odd_gears,
+    needs=lambda _scene, name: needs_solution(name),
+    inputs=cracked_gear,
+    compute=_compute,
+    present=Sheet().present,
+    check=check_odd_gear,
+    cites=citing(*CRACKS),
+    forecast=_forecast,
+)

@@ -1,0 +1,331 @@
+"""Result ``mesh-stiffness-revolution``: a pair over all base pitches until the same teeth mesh again.
+
+Without teeth that differ it is a revolution of the driver. Mesh stiffness, transmission error, load sharing and root
+stress of every tooth; orders and condition indicators.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.arrays import Array, Index
+from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS
+from fegear.base.printed import percent
+from fegear.base.shown import shown, shows
+from fegear.case.built.odd_teeth import cracked_gear, odd_gears_of
+from fegear.case.built.pair_checks import check_odd_teeth
+from fegear.contact.plane.over_revolution import OverRevolution, StressOfTeeth, over_revolution, stress_over_revolution
+from fegear.contact.plane.revolution_orders import (
+    AlongRevolution,
+    ConditionIndicators,
+    RevolutionOrders,
+    along_revolution,
+    condition_indicators,
+    revolution_orders,
+)
+from fegear.engine.citation import Citation
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Every, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.fem.teeth import meshing_order
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.results.forecasts import HERTZ
+from fegear.results.gear.odd_gear import CRACKS
+from fegear.results.pair.loaded_teeth import check_teeth, plane_pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.case.reading import Scene
+    from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.engine.sheet.seen import Seen
+
+#: Stages that load a pair without and with odd teeth.
+EVEN, ODD = "loaded-pair", "odd-pair"
+#: Even steps over a base pitch.
+POSITIONS = 100
+#: Seconds of a base pitch.
+_PITCH = 0.4
+
+
+@dataclass(frozen=True)
+class RevolutionInputs:
+    """What this stage reads of the case.
+
+    Parameters
+    ----------
+    odd : tuple of (member, tuple of int)
+        Odd teeth of driver and driven gear, in meshing order.
+    gears : tuple of str
+        Names of driver and driven gear.
+    """
+
+    odd: tuple[tuple[Member, tuple[int, ...]], ...]
+    gears: tuple[str, str] = field(compare=False)
+    name: str = field(compare=False)
+
+
+@dataclass(frozen=True)
+class LoadsOnTeeth:
+    """Loaded tooth pairs, position after position."""
+
+    base_pitch: Index = shown("", "number of the base pitch", table="loads")
+    driver_angle: Array = shown("deg", "rotation of the driver", table="loads")
+    driver_tooth: Index = shown("", "number of the driver tooth in meshing order", table="loads")
+    driven_tooth: Index = shown("", "number of the driven tooth in meshing order", table="loads")
+    load: Array = shown("N", "load on the tooth pair", table="loads")
+    share: Array = shown("", "share of the total load", table="loads")
+
+
+@dataclass(frozen=True)
+class StressByTooth:
+    """Largest root stress of every tooth of a gear on its way through the mesh, in meshing order."""
+
+    gear: str
+    tooth: Index = shown("", "number of the tooth in meshing order", table="teeth")
+    root_tension: Array = shown("MPa", "maximum root stress, tension side", table="teeth")
+    root_tension_change: Array = shown("%", "change from the median of all teeth", table="teeth")
+
+
+@dataclass(frozen=True)
+class RevolutionData:
+    """A loaded pair over all base pitches."""
+
+    pair: GearPair
+    found: OverRevolution
+    orders: RevolutionOrders
+    indicators: ConditionIndicators
+    stress: tuple[StressByTooth, ...]
+
+    @cached_property
+    def along(self) -> AlongRevolution:
+        """Row by row."""
+        return along_revolution(self.found, self.pair.driver.base_radius)
+
+    @cached_property
+    def loads(self) -> LoadsOnTeeth:
+        """Every loaded pair of teeth at every position."""
+        of = self.found
+        cycle, position, row = np.nonzero(of.loads.transpose(0, 2, 1) > 0.0)
+        load = of.loads[cycle, row, position]
+        first, second = (np.mod(cycle - of.number[row], z) for z in (self.pair.driver.teeth, self.pair.driven.teeth))
+        angle = of.along[cycle, position] / self.pair.driver.base_radius
+        return LoadsOnTeeth(cycle, angle, first, second, load, load / of.load)
+
+    @property
+    def base_pitches(self) -> int:
+        """Until the same teeth mesh again."""
+        return int(self.found.transmission_error.shape[0])
+
+    @property
+    @shows("N/um", "minimum mesh stiffness (secant)")
+    def mesh_stiffness_min(self) -> float:
+        """[N/m]."""
+        return self.found.lowest_stiffness
+
+    @property
+    def mesh_stiffness_min_error(self) -> float:
+        """[N/m]."""
+        return float(self.found.stiffness_error.flat[int(np.argmin(self.found.stiffness))])
+
+    @property
+    @shows("N/um", "minimum mesh stiffness of an ordinary base pitch")
+    def mesh_stiffness_min_ordinary(self) -> float:
+        """[N/m]."""
+        return self.found.ordinary_lowest_stiffness
+
+    @property
+    @shows("%", "reduction of the minimum mesh stiffness compared with an ordinary base pitch")
+    def mesh_stiffness_loss(self) -> float:
+        """Of one."""
+        return 1.0 - self.mesh_stiffness_min / self.mesh_stiffness_min_ordinary
+
+    @property
+    @shows("um", "maximum transmission error")
+    def te_max(self) -> float:
+        """[m]."""
+        return float(self.found.transmission_error.max())
+
+    @property
+    def te_max_error(self) -> float:
+        """[m]."""
+        return float(self.found.transmission_error_error.flat[int(np.argmax(self.found.transmission_error))])
+
+    @property
+    @shows("um", "maximum residual: transmission error minus that of an ordinary base pitch")
+    def te_residual_max(self) -> float:
+        """[m]."""
+        return float(np.abs(self.found.residual).max())
+
+
+def source_of(scene: Scene, name: str) -> Task:
+    """The task that loads a pair with what odd teeth it has."""
+    return Task(ODD if odd_gears_of(scene, name) else EVEN, name)
+
+
+def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
+    """Odd teeth and names of a pair's gears."""
+    part, odd = scene.case.pair[name], odd_gears_of(scene, name)
+    gears = part.driver, part.driven
+    teeth = tuple(
+        (member, tuple(sorted(tooth for tooth, _ in cracked_gear(scene, gear).cracks)))
+        for member, gear in zip(MEMBERS, gears, strict=True) if gear in odd
+    )  # fmt: skip
+    return RevolutionInputs(teeth, gears, name)
+
+
+def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> RevolutionData:
+    (found,) = upstream.values()
+    loaded = cast("LoadedPair", found)
+    pair = loaded.pair
+    over = over_revolution(loaded.engagement, loaded.nominal, POSITIONS, loaded.shifted, pair.driver.teeth)
+    work.progress(0.6)
+    stress = tuple(
+        _by_tooth(stress_over_revolution(loaded.engagement, loaded.nominal, member, positions=POSITIONS), gear)
+        for member, gear in zip(MEMBERS, asked.gears, strict=True)
+        if loaded.spec.compliance == "fe" and loaded.spec.table is None
+    )
+    odd = [pair.gear(member).teeth for member, _ in asked.odd] or [pair.driver.teeth]
+    return RevolutionData(pair, over, revolution_orders(over), condition_indicators(over, odd), stress)
+
+
+def _by_tooth(found: StressOfTeeth, gear: str) -> StressByTooth:
+    """In meshing order; of gears whose teeth are all alike the teeth of one base pitch stand for all."""
+    order = np.array([meshing_order(tooth, found.teeth, found.member) for tooth in range(found.teeth)])
+    seen = np.isfinite(found.largest)
+    order, largest = order[seen], found.largest[seen]
+    at = np.argsort(order)
+    return StressByTooth(gear, order[at], largest[at], largest[at] / np.median(largest) - 1.0)
+
+
+def _answer(seen: Seen) -> Iterator[str]:
+    data: RevolutionData = seen.data
+    if not seen.asked.odd:
+        return
+    which = " and ".join(
+        f"{'tooth' if len(teeth) == 1 else 'teeth'} {', '.join(map(str, teeth))} of the {member}"
+        for member, teeth in seen.asked.odd
+    )
+    yield (
+        f"Pair {seen.name}, {which} cracked: minimum mesh stiffness {data.mesh_stiffness_min * 1e-6:.4g} N/µm, "
+        f"{percent(data.mesh_stiffness_loss)} below that of ordinary teeth "
+        f"({data.mesh_stiffness_min_ordinary * 1e-6:.4g} N/µm)."
+    )
+    yield f"Pair {seen.name}: the transmission error rises by up to {data.te_residual_max * 1e6:.3g} µm."
+
+
+_ANGLE = "Numbers of teeth in meshing order, tooth 0 on pair 0 of base pitch 0."
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "mesh_stiffness_revolution_{name}",
+            "Mesh stiffness and transmission error of {name} over {d.base_pitches} base pitches",
+            (
+                Every("revolution"), Off("te", "along.te_error", of="along"),
+                Off("mesh_stiffness", "along.mesh_stiffness_error", of="along"),
+            ),
+            of="along", matlab=True,
+        ),
+        Rows(
+            "tooth_loads_revolution_{name}", "Load sharing of {name} over {d.base_pitches} base pitches",
+            (Every("loads"),), of="loads",
+        ),
+        Rows(
+            "root_stress_teeth_{name}_{one.gear}", "Maximum root stress of every tooth of gear {one.gear} in {name}",
+            (Every("teeth"),), each="stress",
+        ),
+        Rows(
+            "mesh_stiffness_orders_{name}", "Orders of transmission error and mesh stiffness of {name}",
+            (Every("orders"),), of="orders",
+        ),
+    ),
+    values=(
+        Number("mesh_stiffness_min", "mesh_stiffness_min_error"),
+        "mesh_stiffness_min_ordinary",
+        "mesh_stiffness_loss",
+        Number("te_max", "te_max_error"),
+        "te_residual_max",
+        *(
+            Number(key, of="indicators")
+            for key in (
+                "residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor",
+            )
+        ),
+    ),
+    figures=(
+        Chart(
+            "mesh_stiffness_revolution_{name}", "Mesh stiffness of pair {name} over the rotation",
+            "Pair {name}: mesh stiffness, transmission error and its residual (minus an ordinary base pitch) over "
+            "{d.base_pitches} base pitches. " + _ANGLE,
+            (
+                Over("driver_angle", ("mesh_stiffness",)),
+                Over("driver_angle", (Line("te", "transmission error"), Line("te_residual", "residual", "red"))),
+            ),
+            of="along",
+        ),
+        Chart(
+            "mesh_stiffness_orders_{name}", "Orders of the transmission error of pair {name}",
+            "Pair {name}: amplitudes over the order of the tooth-mesh frequency; integers are mesh harmonics, the "
+            "others are due to teeth that differ.",
+            tuple(Over("mesh_order", (Line(key, kind="stems"),)) for key in ("te", "mesh_stiffness")),
+            of="orders",
+        ),
+        Chart(
+            "root_stress_teeth_{name}_{one.gear}", "Root stress of every tooth of gear {one.gear} in pair {name}",
+            "Gear {one.gear}: maximum root stress (tension side) of every tooth on its way through the mesh.",
+            (Over("tooth", (Line("root_tension", kind="points"),)),),
+            each="stress",
+        ),
+    ),
+    answer=Answer(
+        _answer, figure="mesh_stiffness_revolution_{name}", rank="mesh_stiffness_min",
+        among="the least stiff of {count} pairs",
+    ),
+    remarks=(
+        Remark(
+            "Pair {name}: all teeth are identical and all base pitches equal; describe [[gear.NAME.odd_tooth]] and set "
+            "odd_teeth = true under [effects] for teeth that differ.",
+            when=lambda seen: seen.data.found.solved == 1,
+        ),
+    ),
+    settings={"positions": lambda _seen: POSITIONS, "base_pitches_solved": "found.solved"},
+)  # fmt: skip
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    pair = scene.pairs[name]
+    odd = len(odd_gears_of(scene, name))
+    pitches = int(np.ceil(pair.contact_ratio)) + 5 if odd else 1
+    return Forecast({"positions": POSITIONS}, _PITCH * pitches ** max(odd, 1))
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_teeth(scene, name)
+    check_odd_teeth(scene, name)
+
+
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    if odd_gears_of(scene, name):
+        yield from CRACKS
+    yield HERTZ
+    yield Citation("zakrajsek-townsend-decker", "condition indicators FM0, FM4, energy ratio")
+
+
+MESH_STIFFNESS_REVOLUTION = Stage(
+    subjects=plane_pairs,
+    needs=lambda scene, name: (source_of(scene, name),),
+    inputs=inputs_of,
+    compute=_compute,
+    present=_SHEET.present,
+    check=_check,
+    effects_of=lambda _scene, _name: (*PLANE_EFFECTS, ODD_TEETH.name),
+    cites=_cites,
+    forecast=_forecast,
+)

@@ -1,0 +1,193 @@
+"""A case with cracked teeth: what a revolution shows, which tooth is which, what is refused, and the same in Python."""
+
+import functools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from solved_once import CACHE
+
+import fegear
+from fegear.base.errors import InputError
+from fegear.case.built.odd_teeth import cracked_gear
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.results.catalogue import STAGES
+
+CASE = Path(__file__).parents[2] / "cases" / "cracked_tooth.toml"
+COARSE = ("accuracy.tolerance=2e-2", "neglected=false")
+REVOLUTION = 'results=["mesh-stiffness-revolution"]'
+
+
+@functools.cache
+def run(*overrides):
+    scene = read_scene(CASE, (*COARSE, *overrides))
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+
+
+def number(found, name):
+    return next(value.si for value in found.values if value.name == name)
+
+
+def column(found, table, name):
+    whole = next(one for one in found.tables if one.name == table)
+    return next(one.si for one in whole.columns if one.name == name)
+
+
+def pitches(found, name="te"):
+    """A curve by base pitch, shape (C, P)."""
+    cycle = column(found, "mesh_stiffness_revolution_I", "base_pitch")
+    return column(found, "mesh_stiffness_revolution_I", name).reshape(int(cycle[-1]) + 1, -1)
+
+
+@pytest.mark.dear
+def test_half_a_tooth_cracked():
+    """Numbers of a prototype that was held to whole gears of another mesh, code and contact."""
+    found = run()
+    assert number(found, "I.mesh_stiffness_loss") == pytest.approx(0.314, abs=3e-3)
+    assert number(found, "I.te_residual_max") == pytest.approx(4.378e-6, rel=1e-2)
+    assert number(found, "pinion.stiffness_loss_tooth_0") == pytest.approx(0.542, abs=5e-3)
+    assert number(found, "I.K_I_max_pinion_0") == pytest.approx(8.07e6, rel=5e-3)
+    assert pitches(found).shape[0] == 25
+    k, load = (column(found, "stress_intensity_I_pinion_0", name) for name in ("K_I", "load"))
+    assert (k[load > 200.0] > 0.0).all()  # the crack is open while its tooth carries
+    assert load.max() == pytest.approx(2554.2, rel=1e-3)
+    share = column(found, "tooth_loads_revolution_I", "share")
+    angle = column(found, "tooth_loads_revolution_I", "driver_angle")
+    for at in np.unique(angle)[::400]:
+        assert share[angle == at].sum() == pytest.approx(1.0)
+    stress = column(found, "root_stress_teeth_I_pinion", "root_tension")
+    assert np.argmin(stress) == 0
+    assert stress[10] == pytest.approx(np.median(stress))
+    said = " ".join(sentence for sentence in found.answer.sentences)
+    assert "31 % below that of ordinary teeth" in said
+    assert "K_I up to 8.0" in said
+    assert "54 % (load at radius" in said
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize(("member", "teeth"), [("pinion", 25), ("wheel", 30)])
+def test_teeth_count_in_meshing_order_on_both_gears(member, teeth):
+    """Tooth 4 comes four base pitches after tooth 0, whichever way its gear turns."""
+    crack = f"gear.{member}.odd_tooth=[{{ tooth = 4, crack = {{ depth_ratio = 0.5 }} }}]"
+    others = ("gear.pinion.odd_tooth=[]",) if member == "wheel" else ()
+    found = run(REVOLUTION, *others, crack)
+    residual = np.abs(pitches(found, "te_residual")).max(axis=1)
+    assert residual.size == teeth
+    assert np.argmax(residual) == 4  # as pair 0
+    assert set(np.argsort(residual)[-3:]) == {3, 4, 5}
+    assert np.argmin(column(found, f"root_stress_teeth_I_{member}", "root_tension")) == 4
+    load, tooth = (column(found, "tooth_loads_revolution_I", name) for name in ("load", "driver_tooth"))
+    assert load[tooth == 12].max() == pytest.approx(load.max())
+
+
+@pytest.mark.dear
+def test_off_all_teeth_are_alike():
+    found = run(REVOLUTION, "effects.odd_teeth=false")
+    te = pitches(found)
+    assert te.shape[0] == 25
+    assert np.ptp(te, axis=0).max() == 0.0
+    assert number(found, "I.mesh_stiffness_loss") == 0.0
+    assert any("odd_tooth ignored because effects.odd_teeth is off" in said for said in found.remarks)
+    on = run()
+    assert number(on, "I.mesh_stiffness_min_ordinary") == pytest.approx(number(found, "I.mesh_stiffness_min"), rel=1e-9)
+
+
+@pytest.mark.dear
+def test_other_results_say_that_they_have_ordinary_teeth():
+    found = run('results=["load-sharing"]')
+    assert any("here all teeth are identical" in said for said in found.remarks)
+
+
+TWICE = "gear.pinion.odd_tooth=[{ crack = { arc = '0 mm', depth = '1 mm' } }, { crack = { depth = '1 mm' } }]"
+
+
+def planned(*changes):
+    return make_plan(read_scene(CASE, changes), STAGES)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("tooth = 25, crack = { depth = '1 mm' }", r"odd_tooth\[0\].tooth = 25: must be less than 25"),
+        ("tooth = -1, crack = { depth = '1 mm' }", r"odd_tooth\[0\].tooth = -1"),
+        ("tooth = 0", r"odd_tooth\[0\].crack = \(not given\): is required"),
+        ("tooth = 0, crack = { }", "depth = .*: is required, or depth_ratio or path"),
+        ("tooth = 0, crack = { depth = '1 mm', depth_ratio = 0.2 }", "depth_ratio = 0.2: contradicts depth"),
+        ("tooth = 0, crack = { depth = '1 mm', arc = '1 mm', radius = '23 mm' }", "radius = .*: contradicts arc"),
+        ("tooth = 0, crack = { depth_ratio = 1.2 }", "depth_ratio = 1.2"),
+        ("tooth = 0, crack = { depth = '1 mm', angle = '200 deg' }", "angle = 200 deg: must be between 0 and 135"),
+        ("tooth = 0, crack = { depth = '9 mm' }", "depth = 9 mm: leads the crack out of its tooth"),
+        ("tooth = 0, crack = { depth = '1 um' }", "depth = 0.001 mm: of every straight piece must be at least 0.01 mm"),
+        ("tooth = 0, crack = { depth_ratio = 0.99, angle = '90 deg' }", r"depth_ratio = 0.99: \(length .* mm\) leads"),
+        ("tooth = 0, crack = { depth = '1 mm', radius = '30 mm' }", "radius = 30 mm: must be a radius on the fillet"),
+        ("tooth = 0, crack = { depth = '1 mm', diameter = '60 mm' }", "diameter = 60 mm: must be a diameter on the"),
+        ("tooth = 0, crack = { depth = '1 mm', arc = '60 mm' }", "arc = 60 mm: must lie on the fillet, 0 to .* mm"),
+        ("tooth = 0, crack = { depth = '1 mm', tangent_angle = '95 deg' }", "tangent_angle = 95 deg: must be an angle"),
+        ("tooth = 0, crack = { path = [['0 mm', '40 mm']] }", r"path = \[\[0, 40\]\] mm: leads the crack out"),
+        ("tooth = 0, crack = { path = [['0 mm']] }", "path"),
+        (
+            "tooth = 0, crack = { depth_ratio = 0.4, angle = '0 deg' }",
+            "depth_ratio = 0.4: .*requires a crack that runs",
+        ),
+        ("tooth = 0, crack = { depht = '1 mm' }", 'is an unknown key; did you mean "depth"'),
+    ],
+)
+def test_what_is_no_crack_is_refused_in_a_sentence(change, said):
+    with pytest.raises(InputError, match=said) as refused:
+        planned(REVOLUTION, "gear.pinion.odd_tooth=[{ " + change + " }]")
+    assert "\n" not in str(refused.value)
+    assert "modules" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ((TWICE,), "specified twice"),
+        (("gear.pinion.tooth_mesh=own.msh",), "requires the generated mesh"),
+        (('pair.I.width="solid"', 'results=["load-sharing"]'), "is not available for 3D pairs yet"),
+        (('pair.I.compliance={ source = "weber-banaschek" }', "effects.neighbour_coupling=false"), "is not available"),
+        (("gear.pinion.odd_tooth=[]",), "has no effect: no gear of this case has odd_tooth"),
+        (('pair.I.driven="pinion"',), "is driver and driven gear of pair I"),
+    ],
+)
+def test_where_there_are_no_odd_teeth_yet_is_said(changes, said):
+    with pytest.raises(InputError, match=said):
+        planned(REVOLUTION, *changes)
+
+
+def test_places_that_are_the_same_are_the_same():
+    def first(text):
+        scene = read_scene(CASE, (f"gear.pinion.odd_tooth=[{{ crack = {{ {text} }} }}]",))
+        return cracked_gear(scene, "pinion").cracks[0][1]
+
+    one = first("radius = '22.7 mm', depth = '1 mm'")
+    other = first("diameter = '45.4 mm', depth = '1 mm'")
+    by_arc = first(f"arc = '{one.mouth * 2.0!r} mm', depth = '1 mm'")
+    x, y = np.array(one.corners[0]) * 2.0
+    by_path = first(
+        f"radius = '22.7 mm', path = [['{x!r} mm', '{y!r} mm']]".replace("np.float64(", "").replace(")", "")
+    )
+    for same in (other, by_arc, by_path):
+        assert same.mouth == pytest.approx(one.mouth)
+        assert same.corners[0] == pytest.approx(one.corners[0])
+    back = first("fillet = 'compression', radius = '22.7 mm', depth = '1 mm'")
+    assert back.back
+    assert back.corners[0] == pytest.approx((-one.corners[0][0], one.corners[0][1]))
+
+
+@pytest.mark.dear
+def test_a_gear_gets_a_crack_in_python():
+    plain = fegear.Gear(25, "2 mm", face_width="20 mm", name="a")
+    gear = plain.with_crack(tooth=0, depth="0.5 mm", angle="70 deg").with_crack(tooth=4, depth_ratio=0.3)
+    assert gear.keys["odd_tooth"][0] == {"tooth": 0, "crack": {"depth": "0.5 mm", "angle": "70 deg"}}
+    assert [one["tooth"] for one in gear.with_crack(tooth=0, depth="1 mm").keys["odd_tooth"]] == [4, 0]
+    assert "odd_tooth" not in plain.keys
+    with pytest.raises(InputError, match="must be less than 25"):
+        plain.with_crack(tooth=25, depth="0.5 mm")
+    wheel = fegear.Gear(30, "2 mm", face_width="20 mm", name="b")
+    found = fegear.mesh_stiffness_revolution(
+        fegear.Pair(plain.with_crack(depth_ratio=0.5), wheel), torque="60 N*m", tolerance=2e-2, cache=CACHE
+    )
+    assert found.values["I.mesh_stiffness_loss"].si == pytest.approx(0.314, abs=5e-3)
