@@ -10,7 +10,7 @@ import pytest
 import fegear
 from fegear.base.errors import InputError, RangeError
 from fegear.dynamics.motion.kernel.polynomials import largest_force
-from fegear.dynamics.motion.motion import propagate, simulate, static_state
+from fegear.dynamics.motion.motion import propagate, simulate, starting_state, static_state
 from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
 from fegear.dynamics.train.charts import FourInertia, speed_chart
@@ -381,3 +381,23 @@ def test_forces_where_a_piece_of_a_stiffness_ends_are_those_before_or_behind_it(
     knots, short = found.passage.times * found.packed.time_unit, 1e-7 / NATURAL
     forces, before, behind = (found.mesh_forces(knots[1:-1] + d)[:, 0] for d in (0.0, -short, short))
     assert np.minimum(np.abs(forces - before), np.abs(forces - behind)).max() < 1e-4 * 500.0
+
+
+@pytest.mark.parametrize("tangents", [False, True])
+def test_long_steps_over_a_vibration_that_has_died_lead_where_short_ones_do(tangents):
+    """Nearly rigid shafts that damp well: steps that their vibration would not allow, to the same state and forces."""
+    springs = MeshExcitation.from_mesh(Periodic.constant(jumping().mean), cosine(5e-8))
+    train = four_inertia(1e12, shaft_ratio=0.9).train(jumping().mean)
+    packed = pack(MotionModel(train, (springs,), 150.0))
+    start = starting_state(packed, "rest")
+    long, short = (
+        propagate(packed, *start, packed.period, tolerance=1e-9, tangents=tangents, longest=longest)
+        for longest in (math.inf, 1e9)
+    )
+    assert long.steps < 0.2 * short.steps
+    np.testing.assert_allclose(long.x, short.x, atol=1e-9)
+    np.testing.assert_allclose(long.v, short.v, atol=1e-9)
+    for name in ("largest", "smallest", "tooth_force"):
+        np.testing.assert_allclose(getattr(long, name), getattr(short, name), rtol=1e-6)
+    if tangents:
+        np.testing.assert_allclose(long.tangent, short.tangent, atol=1e-7)
