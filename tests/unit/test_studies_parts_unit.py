@@ -11,7 +11,7 @@ from fegear.contact.fourier import FourierSeries
 from fegear.engine.named import Named
 from fegear.engine.table import Column, Table
 from fegear.studies import effects
-from fegear.studies.cost import knobs, measure
+from fegear.studies.cost import knobs, measure, study
 from fegear.studies.cost.answers import Quantity
 from fegear.studies.cost.ladder import ALONE, FlankConfiguration
 from fegear.studies.cost.quantities import miss
@@ -346,3 +346,73 @@ def test_bodies_of_a_pair_are_made_of_its_gears_in_modules_and_slices_know_no_we
         for (given, keys), reach in zip(asked, (2, 3), strict=True):
             assert given == (tooth, pytest.approx(0.02), pytest.approx(7.5), 0.29, pytest.approx(2.5), "settings")
             assert keys == {"reach": reach, **more}
+
+
+# ---- what a cost study does, in order --------------------------------------------------------------------------------
+def rung(label, formula=""):
+    return SimpleNamespace(label=label, formula=formula)
+
+
+@pytest.mark.parametrize(("pair", "width"), [("", None), ("I", None), ("I", 3)])
+def test_a_study_of_plane_gears_goes_from_the_reference_to_formulas_meshes_tolerances_and_knobs(
+    pair, width, monkeypatch
+):
+    done = []
+    for name in ("measure_alone", "measure_meshes"):
+        monkeypatch.setattr(study, name, lambda found, one, name=name: done.append((name, one)))
+    monkeypatch.setattr(study, "refer", lambda found, ladder: "source")
+    monkeypatch.setattr(study, "_warm_up", lambda asked, ladder: done.append(("warm", None)))
+    monkeypatch.setattr(study, "ladder_knobs", lambda found, ladder, source: [("edges", source)])
+    monkeypatch.setattr(study, "pair_knobs", lambda asked, source: [("pair", source)])
+    monkeypatch.setattr(study, "solid_knobs", lambda asked, quick: [("solid", quick)])
+    scene = SimpleNamespace(case=SimpleNamespace(stiffness=SimpleNamespace(face_positions=width)))
+    asked = SimpleNamespace(pair=pair, scene=scene, gear="a", tabled=False)
+    found = SimpleNamespace(asked=asked, knobs=[])
+    one, two = rung("coarse"), rung("finer")
+    ladder = SimpleNamespace(
+        reference=rung("best"), others=[rung("tolerance"), rung("cornell", "cornell")], meshes=[(one, two), (two,)]
+    )
+    steps = study._steps(found, ladder, quick=True)
+    titles = ["Warm-up", "Reference: best", "cornell", "coarse and 1 more", "finer", "tolerance",
+              "Settings of the finite elements"]  # fmt: skip
+    titles += ["Settings of load sharing and dynamics"] if pair else []
+    titles += ["Settings of 3D gears"] if width else []
+    assert [title for title, _ in steps] == titles
+    for _, work in steps:
+        work()
+    assert done == [("warm", None), ("measure_alone", ladder.others[1]), ("measure_meshes", (one, two)),
+                    ("measure_meshes", (two,)), ("measure_alone", ladder.others[0])]  # fmt: skip
+    knobs_found = [("edges", "source")] + ([("pair", "source")] if pair else []) + ([("solid", True)] if width else [])
+    assert found.knobs == knobs_found
+    assert study._of_pair(SimpleNamespace(tabled=True), {"reference": "source"}).__class__.__name__ == "CaseTable"
+
+
+def test_a_study_over_the_face_refers_once_and_measures_group_by_group(monkeypatch):
+    done = []
+    monkeypatch.setattr(study, "refer_flanks", lambda found, ladder: done.append("refer"))
+    monkeypatch.setattr(study, "measure_flanks", lambda found, group: done.append(group))
+    one, two, three = rung("slices"), rung("solid"), rung("solid alone")
+    steps = study._flank_steps("found", SimpleNamespace(reference=rung("best"), meshes=[(one,), (one, two, three)]))
+    assert [title for title, _ in steps] == ["Reference: best", "slices", "slices and 2 more"]
+    for _, work in steps:
+        work()
+    assert done == ["refer", (one,), (one, two, three)]
+
+
+@pytest.mark.parametrize(
+    ("family", "source"),
+    [("table", "CaseTable"), ("stress-formula", "StressFormula"), ("compliance-formula", "ComplianceFormula")],
+)
+def test_a_configuration_on_its_own_is_what_its_family_says(family, source, monkeypatch):
+    recorded = []
+    monkeypatch.setattr(measure, "_record", lambda found, one, known, seconds: recorded.append((known, one, seconds)))
+    monkeypatch.setattr(measure, "_tolerance", lambda found, one: recorded.append(one))
+    one = SimpleNamespace(family=family, formula="iso6336" if family == "stress-formula" else "cornell")
+    measure.measure_alone("found", one)
+    ((known, given, seconds),) = recorded
+    assert (type(known).__name__, given, seconds) == (source, one, {})
+    if family != "table":
+        assert one.formula in vars(known).values()
+    tolerance = SimpleNamespace(family="tolerance")
+    measure.measure_alone("found", tolerance)
+    assert recorded[1] is tolerance
