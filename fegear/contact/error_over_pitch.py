@@ -11,7 +11,7 @@ from fegear.base.brief import Brief
 from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from fegear.base.arrays import Array
     from fegear.contact.fourier import FourierSeries
@@ -176,6 +176,31 @@ class ErrorOverPitch(Brief):
         """Under each load, shape (L,) [N m]."""
         return self.total_load * self.pair.driver.base_radius
 
+    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+        """Mesh stiffness at rotations of the driver under the nominal load, for equations of motion.
+
+        Parameters
+        ----------
+        driver_angle : array_like
+            Counted from the first row of the curve [rad]; any number of turns.
+        secant : bool
+            Load over transmission error in place of the slope dF/dTE.
+
+        Returns
+        -------
+        ndarray
+            Periodic over a tooth of the driver, straight between the rows of the curve [N/m].
+        """
+        return self._over_rotation(self.mesh_stiffness if secant else self.local_stiffness, driver_angle)
+
+    def error(self, driver_angle: ArrayLike) -> Array:
+        """Transmission error at rotations of the driver under the nominal load [m], as `stiffness`."""
+        return self._over_rotation(self.te, driver_angle)
+
+    def _over_rotation(self, values: Array, driver_angle: ArrayLike) -> Array:
+        x = np.asarray(driver_angle, dtype=float) * self.pair.driver.base_radius
+        return over_pitch(self.x, values[:, self.at], self.pair.base_pitch, x / self.pair.base_pitch % 1.0)
+
     @property
     def harmonics(self) -> Harmonics:
         """Lines of its series under every load."""
@@ -211,3 +236,10 @@ class ErrorOverPitch(Brief):
     def te_first_harmonic(self) -> Array:
         """Amplitude of the first harmonic under each load, shape (L,) [m]; zero where none is known."""
         return np.array([one.amplitude[0] if one.amplitude.size else 0.0 for one in self.series])
+
+
+def over_pitch(x: Array, values: Array, pitch: float, part: Array) -> Array:
+    """A curve straight between its rows and periodic, at parts of the base pitch counted from its first row."""
+    inside = x < x[0] + pitch
+    at, found = np.append(x[inside], x[0] + pitch), np.append(values[inside], values[0])
+    return np.asarray(np.interp(x[0] + part * pitch, at, found))

@@ -12,6 +12,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, NamedTuple
 
 from fegear.base.printed import rounded, unit_said
+from fegear.base.spoken_names import spoken
 from fegear.engine.answered import MOST, Answered
 
 if TYPE_CHECKING:
@@ -95,11 +96,19 @@ def plain_sentences(values: Iterable[Value]) -> tuple[str, ...]:
     """The first values as sentences, estimated ones before exact ones."""
     known = [value for value in values if math.isfinite(value.value)]
     known.sort(key=lambda value: not value.error)
-    return tuple(
-        f"{value.name} {rounded(value.value, value.error)} {unit_said(value.unit)}".rstrip()
-        + (f": {value.meaning.partition(';')[0]}." if value.meaning else ".")
-        for value in known[:_FIRST]
-    )
+    return tuple(map(_plain_sentence, known[:_FIRST]))
+
+
+def _plain_sentence(value: Value) -> str:
+    """What a value is, in words of its identifier; a symbol with its meaning."""
+    number = f"{rounded(value.value, value.error)} {unit_said(value.unit)}".rstrip()
+    subject, dot, name = value.name.rpartition(".")
+    if said := spoken(value.name):
+        start = f"{value.name.partition('.')[0]}: " if dot else ""
+        return f"{start}{said} {number}."
+    meaning = value.meaning.partition(";")[0]
+    start = f"{': '.join(subject.split('.'))}: " if dot else ""
+    return f"{start}{name} {number}" + (f" ({meaning})." if meaning else ".")
 
 
 def _counted(count: int) -> str:

@@ -104,7 +104,9 @@ def test_a_result_without_an_answer_says_its_first_values_estimated_before_exact
         Value("I.nothing", math.nan, "um"),
         Value("I.more", 1.0),
     ]
-    assert plain_sentences(values) == ("I.te 7.62 µm: mean.", "I.ratio 1.64: contact ratio.")
+    assert plain_sentences(values) == ("I: transmission error 7.62 µm.", "I: ratio 1.64.")
+    symbol = Value("I.driver.A_FF", 0.378, "", 0.001, "maximum material exposure; of all depths")
+    assert plain_sentences([symbol]) == ("I: driver: A_FF 0.378 (maximum material exposure).",)
 
 
 def run_of(*results):
@@ -132,7 +134,7 @@ def test_a_run_says_one_sentence_of_every_wanted_result_and_five_in_all():
 
 def test_a_result_without_an_answer_and_one_by_its_former_name_are_said_too():
     plan, outcomes = run_of(("plain", "plain", True, None), ("renamed", "now", True, ("now.",)))
-    assert answer_of_run(plan, outcomes, ("before", "plain")).sentences == ("plain.size 1: size.", "now.")
+    assert answer_of_run(plan, outcomes, ("before", "plain")).sentences == ("plain: size 1.", "now.")
 
 
 def test_what_has_no_outcome_yet_is_not_said():

@@ -7,8 +7,8 @@ import pytest
 from scipy.io import loadmat
 
 import fegear
+from fegear.contact.error_over_pitch import over_pitch
 from fegear.output.tables import write_table
-from fegear.results.pair.mesh_table import over_pitch
 
 CASE = {
     "title": "A mesh for another program",
@@ -51,6 +51,19 @@ def test_its_means_are_those_of_the_curves(results):
     assert slope.mean() == pytest.approx(values["I.local_stiffness_mean"], abs=2.0 * np.ptp(slope) / 500)
     assert np.ptp(te) == pytest.approx(values["I.te_peak_to_peak"], rel=5e-3)
     assert any("mesh_table_I has 500 equal steps" in remark for remark in results.remarks)
+
+
+def test_stiffness_and_error_are_functions_of_the_drivers_rotation(results):
+    (found,) = (one.data.found for task, one in results.outcomes.items() if task.stage == "transmission-error")
+    table = results.tables["mesh_table_I"]
+    angle, tooth = table.column("driver_angle").si, 2.0 * math.pi / 23
+    for turned in (angle, angle + 5 * tooth, angle - 40 * tooth):
+        np.testing.assert_allclose(found.stiffness(turned)[1:], table.column("local_stiffness").si[1:], rtol=1e-6)
+        np.testing.assert_allclose(
+            found.stiffness(turned, secant=True)[1:], table.column("mesh_stiffness").si[1:], rtol=1e-6
+        )
+        np.testing.assert_allclose(found.error(turned)[1:], table.column("te").si[1:], rtol=1e-6)
+    assert found.stiffness(0.1).shape == ()
 
 
 def test_a_curve_with_a_jump_is_followed_and_closes():

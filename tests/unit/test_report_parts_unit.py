@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from fegear.base.notes import failing
+from fegear.base.spoken_names import spoken
 from fegear.case.reading import read_scene
 from fegear.engine.citation import bibliography
 from fegear.engine.figure.axis import Axis
@@ -51,7 +52,6 @@ from fegear.output.report.blocks import (  # fmt: skip
     Values,
 )
 from fegear.output.report.page import Page, Section, page_text, render, write_page
-from fegear.output.spoken_names import spoken
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.loaded_pair import LOADED_PAIR
 
@@ -246,6 +246,8 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
         Value("I.te", 7.6187e-6, "um", 0.0034e-6),
     )
     rows = Values(values, 1e-4).rows
+    several = Values((Value("cornell.median_ratio", 0.98), Value("heywood.median_ratio", 0.93)), 1e-4).rows
+    assert [row.what for row in several] == ["cornell: median ratio", "heywood: median ratio"]
     assert [(row.what, row.more) for row in rows] == [
         ("driver: safety factor; tooth breakage", ""), ("driven: safety factor", ""),
         ("ratio", "contact ratio"), ("transmission error", ""),

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.printed import rounded
+from fegear.base.spoken_names import spoken
 from fegear.engine.inexact import is_inexact
 from fegear.output.numbers import plain_number, pretty_unit, with_error
-from fegear.output.spoken_names import spoken
 from fegear.output.tables import cell, table_file
 
 if TYPE_CHECKING:
@@ -150,12 +150,15 @@ class Values(Block):
     @property
     def rows(self) -> list[ValueRow]:
         """Each value as it stands in the table."""
-        return [self._row(value) for value in self.values]
+        several = len({value.name.partition(".")[0] for value in self.values if "." in value.name}) > 1
+        return [self._row(value, several=several) for value in self.values]
 
-    def _row(self, value: Value) -> ValueRow:
+    def _row(self, value: Value, *, several: bool) -> ValueRow:
         what, more = spoken(value.name), value.meaning
         if not what and more:
             what, more = ": ".join((*value.name.split(".")[1:-1], more)), ""
+        if several and "." in value.name:
+            what = f"{value.name.partition('.')[0]}: {what}".removesuffix(": ")
         shown, error = value_cells(value)
         row = ValueRow(value.name, what, more, _short_value(value), shown, "", error, "", value.unit)
         if error in ("exact", "not estimated"):

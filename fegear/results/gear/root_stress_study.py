@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.printed import figures
 from fegear.base.shown import shown, shows
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import citing
@@ -17,6 +18,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure, View
 from fegear.engine.figure.items import HeatMap, Mark
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -28,7 +30,7 @@ from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.root_stress_spread import WORDS, sentences, spread_figure
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -310,6 +312,15 @@ def _spread(seen: Seen) -> tuple[Figure, ...]:
     return (spread_figure(seen.data.rows.read()),) if seen.data.drawn else ()
 
 
+def _closest(seen: Seen) -> Iterator[str]:
+    """How far each formula is off the finite elements, the closest first."""
+    known = [(name, one) for name, one in seen.data.formulas.items() if one.median_ratio]
+    known.sort(key=lambda item: abs(math.log(item[1].median_ratio)))
+    for name, one in known:
+        low, high = figures(one.lowest_ratio), figures(one.highest_ratio)
+        yield f"{name}: root stress {figures(one.median_ratio)} of FE (median), from {low} to {high}."
+
+
 def _remarks(seen: Seen) -> tuple[str, ...]:
     from fegear.formulas.sources import ROOT_STRESS_SOURCES
 
@@ -402,6 +413,7 @@ _SHEET = Sheet(
         ),
         _spread,
     ),
+    answer=Answer(_closest),
     remarks=(_remarks,),
     settings=lambda seen: {**asdict(seen.asked.settings), "gears": seen.data.gears},
 )  # fmt: skip

@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.contact.error_over_pitch import ErrorOverPitch
+from fegear.contact.error_over_pitch import ErrorOverPitch, over_pitch
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark
@@ -57,13 +57,6 @@ def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
     }
     error = None if e.te_error is None else over_pitch(e.x, e.te_error, pitch, part)
     return EvenMesh(te, secant, local, error, lost, part * pitch / e.pair.driver.base_radius)
-
-
-def over_pitch(x: Array, values: Array, pitch: float, part: Array) -> Array:
-    """A curve straight between its rows and periodic, at parts of the base pitch counted from its first row."""
-    inside = x < x[0] + pitch
-    at, found = np.append(x[inside], x[0] + pitch), np.append(values[inside], values[0])
-    return np.asarray(np.interp(x[0] + part * pitch, at, found))
 
 
 def _what_even_steps_lose(seen: Seen) -> str:

@@ -14,7 +14,7 @@ _PHRASES = {
     "root compression": "root stress, compression side",
 }
 #: Identifiers that are symbols: S_H, c_self, K_Hbeta.
-_SYMBOL = re.compile(r"(?:[A-Za-z]|eps|mu|kappa)_\w+|[A-Z]\w?")
+_SYMBOL = re.compile(r"(?:[A-Za-z]|sigma|eps|mu|kappa)_\w+|[A-Z]\w?")
 
 
 def spoken(name: str) -> str:
