@@ -182,10 +182,11 @@ def test_no_width_makes_the_page_scroll_sideways(page, width):
 
 
 @pytest.mark.parametrize("words", ["span W", "over balls or pins M"])
-def test_results_are_seen_first_and_span_and_dimension_over_balls_one_click_away(page, words):
+def test_the_answer_is_seen_first_and_span_and_dimension_over_balls_one_click_away(page, words):
     page.run("scrollTo(0, 0)")
-    assert page.run("document.querySelector('main section h2').textContent") == "Results"
-    assert page.run("document.querySelector('.values tbody tr').getBoundingClientRect().bottom") < 450
+    assert page.run("document.querySelector('main section h2').textContent") == "Answer"
+    assert page.run("document.querySelector('ul.answer').getBoundingClientRect().bottom") < 560
+    assert page.run("document.querySelectorAll('ul.notes > li').length") <= 3
     link = "[...document.querySelectorAll('nav a')].find(a => a.textContent.startsWith('Gear data'))"
     assert page.run(f"{link}.getBoundingClientRect().bottom") < 900
     page.run("document.documentElement.style.scrollBehavior = 'auto'")
