@@ -467,7 +467,8 @@ class GearPart(TeethPart):
         if error.key != "profile_shift" or measure is None:
             return error
         given = f"{getattr(self, measure) * 1e3:.6g} mm"
-        return InputError(measure, given, f"gives x = {self.x:.4g}, but {error.rule}", "check the dimension")
+        link = ": " if error.rule.startswith("the ") else ", which "
+        return InputError(measure, given, f"gives x = {self.x:.4g}{link}{error.rule}", "check the dimension")
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
         """Report lengths that the tooth takes in modules as the case gave them."""

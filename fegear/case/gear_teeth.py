@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
+from fegear.base.errors import shown
 from fegear.case.part import (
     QUANTITY,
     Angle,
@@ -64,7 +65,7 @@ def _allowance(value: Any, info: ValidationInfo) -> Any:
         if text[:1].isalpha():
             raise refuse(
                 "is neither a length nor a designation of DIN 3967 (a to h with 21 to 30)",
-                'for example "45 um", "cd25" or "derived"', value=value,
+                'for example "45 um", "cd25" or "derived"', value=shown(value),
             )  # fmt: skip
     return quantity("length", not_negative=True).func(value, info)  # type: ignore[call-arg]
 

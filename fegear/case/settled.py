@@ -6,6 +6,7 @@ What is made of another dimension is said in a sentence for each, for the notes 
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, TypeVar
 
 from fegear.base.errors import GeometryError, InputError
@@ -26,6 +27,8 @@ T = TypeVar("T")
 _SAME = 1e-9
 #: Steps in which `no-undercut` is rounded up: four digits, as profile shifts are printed.
 _STEPS = 1e4
+#: Lengths in the messages of the geometry.
+_MODULES = re.compile(r"(\d[\d.e+-]*) modules")
 #: Sizes that are other names of the module.
 _SIZES = ("circular_pitch", "normal_circular_pitch", "transverse_module")
 
@@ -126,7 +129,11 @@ def _measured(part: GearPart, name: str) -> tuple[GearPart, str]:
     if key is None:
         return part, ""
     numbers, m = numbers_of(part), part.module_length
-    generating = _under(name, lambda: _generating_shift(part, numbers, m))
+    try:
+        generating = _generating_shift(part, numbers, m)
+    except GeometryError as error:  # in modules
+        rule = _MODULES.sub(lambda found: _mm(float(found[1]) * m), error.rule)
+        raise InputError(f"gear.{name}.{error.key}", _mm(getattr(part, error.key)), rule, error.remedy) from None
     if part.thickness_allowance != DERIVED:
         shift = generating + _thinner(part)
         note = f"profile shift coefficient x = {shift:.6g} derived from {_reading(part, key)}"
@@ -151,7 +158,7 @@ def _generating_shift(part: GearPart, numbers: ToothNumbers, m: float) -> float:
     if part.over_balls is not None:
         return numbers.shift_over_balls(part.over_balls / m, ball)
     if part.over_pins is not None:
-        return numbers.shift_over_balls(part.over_pins / m, ball, opposite=part.has_helix)
+        return numbers.shift_over_balls(part.over_pins / m, ball, opposite=part.has_helix, key="over_pins")
     chord = (part.chordal_thickness or math.nan) / m
     if part.chordal_height is None:
         return numbers.shift_of_chord(chord)

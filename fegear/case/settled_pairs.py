@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Backlash that is none [m].
 _NONE = 1e-9
+#: Profile shift coefficients beyond this are those of no gear.
+_LARGEST = 3.0
 #: Keys by which a case says how thick the teeth of a gear are.
 _SHIFTED = ("profile_shift", "tooth_thickness", "span", "over_balls", "over_pins", "chordal_thickness")
 
@@ -101,6 +103,12 @@ def _share(name: str, part: PairPart, gears: dict[str, GearPart], shifted: dict[
         first = 0.5 * total
     else:
         first = _searched(name, part, gears, total)
+    if max(abs(first), abs(total - first)) > _LARGEST:
+        _refuse(
+            name, "centre_distance", _mm(distance),
+            f"requires profile shift coefficients of {first:.4g} and {total - first:.4g}, above {_LARGEST:g}",
+            f"check it: {_mm(mesh.distance(0.0) * m)} without profile shift",
+        )  # fmt: skip
     for gear, shift in zip(names, (first, total - first), strict=True):
         gears[gear] = gears[gear].model_copy(update={"profile_shift": shift})
         shifted[gear] = shifted[gear] or f"profile_shift (derived in pair.{name})"
@@ -196,6 +204,11 @@ def _thin(name: str, part: PairPart, gears: dict[str, GearPart], thinned: dict[s
         )  # fmt: skip
     rest = whole - sum(gears[gear].allowance for gear in names if thinned[gear])
     each = rest / sum(gear in free for gear in names)
+    if each > 0.5 * m:
+        _refuse(
+            name, key, _mm(given), f"requires a thickness allowance of {_mm(each)}, more than half a module",
+            "check the unit, or reduce it",
+        )  # fmt: skip
     if each < -_NONE:
         _refuse(
             name, key, _mm(given), "is less than centre distance and gears give without any allowance",

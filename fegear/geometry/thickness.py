@@ -72,7 +72,9 @@ class ToothNumbers:
         pitches = math.pi * math.cos(self.normal_pressure_angle) * (spanned - 1)
         return self.shift_of_base_angle((span - pitches) / self.base_helix_cosine / (2.0 * self.base_radius))
 
-    def shift_over_balls(self, dimension: float, ball: float, *, opposite: bool = False) -> float:
+    def shift_over_balls(
+        self, dimension: float, ball: float, *, opposite: bool = False, key: str = "over_balls"
+    ) -> float:
         """x_E of a dimension over balls, of an internal gear between them [modules].
 
         Parameters
@@ -83,6 +85,8 @@ class ToothNumbers:
         opposite : bool
             Whether the balls stand opposite each other for odd numbers of teeth as well: pins in the spaces of a
             helical gear do, each where it reaches highest (M_dR).
+        key : str
+            Name of the dimension in messages.
 
         Raises
         ------
@@ -93,10 +97,11 @@ class ToothNumbers:
         if self.teeth % 2 and not opposite:
             centre /= math.cos(0.5 * math.pi / self.teeth)
         if not centre > self.base_radius:
-            least = self.base_radius * (math.cos(0.5 * math.pi / self.teeth) if self.teeth % 2 else 1.0)
+            between = math.cos(0.5 * math.pi / self.teeth) if self.teeth % 2 and not opposite else 1.0
+            least = 2.0 * self.base_radius * between + self.side * ball
             raise GeometryError(
-                "over_balls", f"{dimension:.6g}",
-                f"puts the balls within the base circle: must exceed {2.0 * least + self.side * ball:.6g} modules",
+                key, f"{dimension:.6g}",
+                f"puts the balls within the base circle: must exceed {least:.6g} modules",
                 "check the dimension and the ball_diameter",
             )  # fmt: skip
         angle = math.acos(self.base_radius / centre)
