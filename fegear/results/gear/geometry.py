@@ -336,7 +336,8 @@ _SHEET = Sheet(
             "geometry", "Gears",
             (
                 Cell("name", of=_all),
-                "teeth", "module", Cell("profile_shift", of=_all), "tip_radius", "involute_tip_radius", "pitch_radius", "base_radius", "form_radius",
+                "teeth", "module", Cell("profile_shift", of=_all),
+                "tip_radius", "involute_tip_radius", "pitch_radius", "base_radius", "form_radius",
                 "root_radius", "bore_radius", "face_width", *_SPAN_AND_BALLS, _THICKNESS, _TIP,
             ),
             of=lambda seen: tuple(seen.data.gears.values()), printed=True,
