@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, Number, Part, PositiveLength, refuse, spelt_also
+from fegear.case.derived import keys_of
+from fegear.case.part import Number, Part, PositiveLength, refuse, spelt_also
 from fegear.geometry.internal_tooth import PinionCutter
 from fegear.geometry.named_racks import named_rack
 from fegear.geometry.rack import BasicRack
@@ -16,38 +17,43 @@ from fegear.geometry.rack import BasicRack
 _WRITTEN = r"^((ISO ?)?(53 ?)?[A-Da-d]|DIN 867|JIS B 1701(-1)?|DIN 3972 (I|II)|[0-9.]+ ?/ ?[0-9.]+ ?/ ?[0-9.]+)$"
 
 
-class RackPart(Part):
+class _ProfilePart(Part):
+    profile: str | None = Field(
+        default=None,
+        description="Profile for keys not specified: ISO 53 A to D, DIN 867, JIS B 1701, DIN 3972 I or II, or "
+        "dedendum/tip radius/addendum as `1.25/0.38/1.0`. Default: C.",
+    )
+
+
+if TYPE_CHECKING:
+
+    class _RackKeys(_ProfilePart):
+        addendum: float | None = None
+        dedendum: float | None = None
+        protuberance: float = 0.0
+        grinding_allowance: float = 0.0
+        protuberance_angle: float = 0.0
+
+else:
+    _RackKeys = keys_of(
+        BasicRack,
+        base=_ProfilePart,
+        otherwise={"addendum": "that of the profile, 1.0", "dedendum": "that of the profile, 1.25 for C"},
+    )
+
+
+class RackPart(_RackKeys):
     """``rack = { addendum, dedendum, tip_radius, protuberance, ... }`` in modules, or the name of a profile."""
 
     model_config = spelt_also(
         lambda _table: {"type": "string", "pattern": _WRITTEN, "examples": ["ISO 53 A", "DIN 867", "1.25/0.38/1.0"]}
     )
 
-    profile: str | None = Field(
-        default=None,
-        description="Profile for keys not specified: ISO 53 A to D, DIN 867, JIS B 1701, DIN 3972 I or II, or "
-        "dedendum/tip radius/addendum as `1.25/0.38/1.0`. Default: C.",
-    )
-    addendum: Number | None = Field(
-        default=None,
-        description="Basic rack addendum h_aP* [modules]. Default: that of the profile, 1.0.",
-    )
-    dedendum: Number | None = Field(
-        default=None,
-        description="Basic rack dedendum h_fP* [modules]. Default: that of the profile, 1.25 for C.",
-    )
     tip_radius: Number | Literal["full"] | None = Field(
         default=None,
         description="Tip radius of the basic rack rho_fP* [modules], or `full` for a full fillet radius. Default: "
         "that of the profile, 0.25 for C.",
     )
-    protuberance: Number = Field(
-        default=0.0,
-        description="Protuberance pr [modules]; with grinding stock q (`grinding_allowance`) the undercut of the "
-        "root is pr - q.",
-    )
-    grinding_allowance: Number = Field(default=0.0, description="Grinding stock (machining allowance) q [modules].")
-    protuberance_angle: Angle = Field(default=math.radians(10.0), description="Angle of the protuberance flank.")
 
     @model_validator(mode="before")
     @classmethod

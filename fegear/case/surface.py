@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.case.derived import keys_of
 from fegear.case.part import (
     Number,
     Part,
-    PositiveDensity,
-    PositiveKinematicViscosity,
     PositiveLength,
     PositiveViscosity,
     Temperature,
     refuse,
 )
+from fegear.formulas.lubricant import Oil, OilKind
 
 #: R_z is about this many R_a where only one of them is given (ISO 6336-2 and ISO/TS 6336-22 use the same ratio).
 RZ_PER_RA = 6.0
@@ -30,14 +30,6 @@ _DENSITIES = (600.0, 2200.0)
 _THIN = 7e-6
 
 #: Base oils that ISO/TS 6336-20, -21 and -22 tell apart.
-OilKind = Literal[
-    "mineral",
-    "polyalphaolefin",
-    "polyglycol",
-    "water-soluble-polyglycol",
-    "traction-fluid",
-    "phosphate-ester",
-]
 Supply = Literal["dip", "spray", "spray-with-dip", "submerged"]
 #: What was done to the flanks, as the welding (structural) factor X_W of ISO/TS 6336-20 tells it apart.
 FlankTreatment = Literal[
@@ -105,19 +97,22 @@ class RoughnessPart(Part):
         return self.root_rz or (None if self.root is None else self.root * RZ_PER_RA)
 
 
-class LubricantPart(Part):
+if TYPE_CHECKING:
+
+    class _OilKeys(Part):
+        viscosity_40: float
+        viscosity_100: float | None
+        density_15: float
+        kind: OilKind
+
+else:
+    _OilKeys = keys_of(Oil, otherwise={"viscosity_100": "mineral oil of viscosity index 95"})
+
+
+class LubricantPart(_OilKeys):
     """``lubricant = { viscosity_40, viscosity_100, density_15, temperature, kind, ... }``: the oil of a pair."""
 
-    viscosity_40: PositiveKinematicViscosity = Field(
-        description="Kinematic viscosity at 40 degC (ISO viscosity grade)."
-    )
-    viscosity_100: PositiveKinematicViscosity | None = Field(
-        default=None,
-        description="Kinematic viscosity at 100 degC. Default: mineral oil of viscosity index 95.",
-    )
-    density_15: PositiveDensity = Field(default=895.0, description="Density at 15 degC.")
     temperature: Temperature = Field(description="Oil temperature in the sump or at the spray nozzle.")
-    kind: OilKind = Field(default="mineral", description="Base oil.")
     supply: Supply = Field(default="dip", description="Lubrication method (dip, spray ...): factor X_S.")
     scuffing_load_stage: Annotated[int, Field(ge=1, le=14)] | None = Field(
         default=None,

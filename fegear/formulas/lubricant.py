@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.base.given import given
 
 OilKind = Literal[
     "mineral", "polyalphaolefin", "polyglycol", "water-soluble-polyglycol", "traction-fluid", "phosphate-ester"
@@ -51,14 +52,7 @@ HOTTEST = 350.0
 class Oil:
     """An oil.
 
-    Parameters
-    ----------
-    viscosity_40, viscosity_100 : float
-        Kinematic viscosity at 40 and 100 degC [m^2/s]; NaN at 100 degC for that of a mineral oil of viscosity index 95.
-    density_15 : float
-        [kg/m^3].
-    kind : str
-        Base oil.
+    Without a viscosity at 100 degC (NaN) it has that of a mineral oil of viscosity index 95.
 
     Raises
     ------
@@ -66,10 +60,12 @@ class Oil:
         If a viscosity is below 2 mm^2/s, or the oil does not thin as it warms.
     """
 
-    viscosity_40: float
-    viscosity_100: float = math.nan
-    density_15: float = 895.0
-    kind: OilKind = "mineral"
+    viscosity_40: float = given(
+        "kinematic_viscosity", "Kinematic viscosity at 40 degC (ISO viscosity grade).", above=0.0
+    )
+    viscosity_100: float = given("kinematic_viscosity", "Kinematic viscosity at 100 degC.", default=math.nan, above=0.0)
+    density_15: float = given("density", "Density at 15 degC.", default=895.0, above=0.0)
+    kind: OilKind = given(meaning="Base oil.", default="mineral")
 
     def __post_init__(self) -> None:
         """Fill in the viscosity of the hot oil and refuse what is no oil."""

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from fegear.base.errors import GeometryError
+from fegear.base.given import given
 
 #: ISO 53:1998, Table 1: addendum, dedendum, root fillet radius (in modules) of the profiles A to D.
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.30), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.40, 0.39)}
@@ -40,13 +41,17 @@ class BasicRack:
         If a value lies outside its range or the tool's tip rounding is wider than the tool's tip.
     """
 
-    addendum: float = 1.0
-    dedendum: float = 1.25
+    addendum: float = given(meaning="Basic rack addendum h_aP* [modules].", default=1.0)
+    dedendum: float = given(meaning="Basic rack dedendum h_fP* [modules].", default=1.25)
     tip_radius: float = 0.25
     pressure_angle: float = math.radians(20.0)
-    protuberance: float = 0.0
-    grinding_allowance: float = 0.0
-    protuberance_angle: float = math.radians(10.0)
+    protuberance: float = given(
+        meaning="Protuberance pr [modules]; with grinding stock q (`grinding_allowance`) the undercut of the root is "
+        "pr - q.",
+        default=0.0,
+    )
+    grinding_allowance: float = given(meaning="Grinding stock (machining allowance) q [modules].", default=0.0)
+    protuberance_angle: float = given("angle", "Angle of the protuberance flank.", default=math.radians(10.0))
 
     def __post_init__(self) -> None:
         """Refuse profiles that no tool can have."""
