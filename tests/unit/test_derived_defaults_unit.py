@@ -253,6 +253,8 @@ NOT_WRITTEN = {
         "order", "root_edge_length", "root_fraction", "flank_edge_length", "tip_edge_length", "junction_edge_length",
         "back_edge_length", "growth", "tip_growth", "side_growth", "body_fraction", "rim_fraction",
         "patch_half_width")),
+    *(f"CataloguePart.{key}" for key in (
+        "kind", "bore", "outside_diameter", "width", "contact_angle", "dynamic_rating")),
     "BiasPart.end_radius", "BiasPart.start_radius", "ChartPart.amounts_over_delta", "ChartPart.lengths",
     "CostPart.gear", "CostPart.pair", "CutterPart.teeth", "DesignChartPart.mesh", "DesignPart.peak",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",
