@@ -6,13 +6,24 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from fegear.base.errors import InputError
-from fegear.verify import calculix, cracked_strip, gearboxes, handed_on, measured, own, printed, programs
+from fegear.verify import (
+    calculix,
+    cracked_strip,
+    gearboxes,
+    handed_on,
+    measured,
+    own,
+    own_motion,
+    own_shafts,
+    printed,
+    programs,
+)
 from fegear.verify.row import AGAINST, Outcome, Row
 
 #: In the order of the page: printed numbers first.
 ALL: tuple[Row, ...] = tuple(
     row
-    for one in (printed, cracked_strip, calculix, programs, handed_on, own, gearboxes, measured)
+    for one in (printed, cracked_strip, calculix, programs, handed_on, own, own_motion, own_shafts, gearboxes, measured)
     for row in one.ROWS.all
 )
 
