@@ -270,8 +270,8 @@ _SHEET = Sheet(
             when=lambda seen: not seen.asked.given,
         ),
         Remark(
-            "Pair {name}: tip corners carry up to {d.on_corners:.4g} off the path of contact; they slide as if the "
-            "line of action went on there.",
+            "Pair {name}: tip corners carry up to {d.on_corners:.4g} off the path of contact; their sliding "
+            "velocity is extrapolated along the line of action.",
             when="on_corners",
         ),
         Remark(

@@ -164,7 +164,7 @@ _SHEET = Sheet(
             Number("transverse", lambda seen: seen.one.off("transverse"), "fine", owner="{name}.{key}"),
         ),
     ),
-    remarks=(Remark("Pair {name}: no K_Hbeta of ISO 6336-1, for {d.why_not}", when="why_not"),),
+    remarks=(Remark("Pair {name}: K_Hbeta of ISO 6336-1 not available: {d.why_not}", when="why_not"),),
 )  # fmt: skip
 
 

@@ -292,8 +292,8 @@ _SHEET = Sheet(
     remarks=(
         Remark(_bent),
         Remark(
-            "Set {name}: root stresses are those of an equal share; but for Hertzian contact they grow with a planet's "
-            "load."
+            "Set {name}: root stresses are for equal load sharing; apart from Hertzian contact they are proportional "
+            "to a planet's load."
         ),
     ),
 )  # fmt: skip

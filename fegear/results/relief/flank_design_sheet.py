@@ -241,8 +241,8 @@ FLANK_DESIGN_SHEET = Sheet(
             when="data.on_shafts",
         ),
         Remark(
-            "Pair {name}: {d.unproven}: too many combinations come so near the least that not all of them "
-            "were computed exactly; the optimum is likely but not proven. A coarser grid can be proven.",
+            "Pair {name}: {d.unproven}: too many combinations are too close to the minimum to compute all of "
+            "them exactly; the optimum is likely but not proven. Choose a coarser grid for a proof.",
             when="unproven",
         ),
     ),
