@@ -256,7 +256,8 @@ NOT_WRITTEN = {
     *(f"CataloguePart.{key}" for key in (
         "kind", "bore", "outside_diameter", "width", "contact_angle", "dynamic_rating")),
     "BiasPart.end_radius", "BiasPart.start_radius", "ChartPart.amounts_over_delta", "ChartPart.lengths",
-    "CostPart.gear", "CostPart.pair", "CutterPart.teeth", "DesignChartPart.mesh", "DesignPart.peak",
+    "CostPart.gear", "CostPart.pair", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
+    "DesignPart.peak",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",
     "FlankDesignPart.load", "FlankDesignPart.loads", "FlankDesignPart.pair", "FlankMapPart.over_face",
     "GearBodyPart.hub_width", "GearPlacePart.seat", "IsoPart.micropitting_material_factor",
