@@ -62,9 +62,9 @@ def test_below_the_root_it_leads_to_abreast_of_the_other_fillet(angle):
 
 def test_a_share_of_a_way_that_leads_to_no_other_side_is_refused_and_a_crack_of_no_length_is_none():
     start = fillet_point(TOOTH, MOUTH)
-    with pytest.raises(InputError, match="needs a crack that runs to the other side of the tooth"):
+    with pytest.raises(InputError, match="a crack that runs to the other side of the tooth"):
         way_through(TOOTH, start, np.array([0.0, -1.0]))
-    with pytest.raises(InputError, match="give its depth instead"):
+    with pytest.raises(InputError, match="its depth instead"):
         straight_crack(TOOTH, MOUTH, 0.0, share=0.5)
     assert np.isfinite(straight_crack(TOOTH, MOUTH, 0.0, depth=0.5).corners[0]).all()
     np.testing.assert_allclose(straight_crack(TOOTH, MOUTH, math.radians(60.0)).corners[0], start)  # of no length
