@@ -112,6 +112,8 @@ def ordered(notes: Iterable[str]) -> tuple[Note, ...]:
         found = _SUBJECT.fullmatch(note)
         noun, name, rest = found.groups() if found else ("", "", str(note))
         key = (class_of(note), noun, _NUMBER.sub("#", rest) if found else rest)
+        if any(one.name == name for one in groups.get(key, ())):  # two numbers of one subject are two notes
+            key = (*key[:2], rest)
         groups.setdefault(key, []).append(_Subject(name, str(note), rest))
     merged = [Note(_merged(noun, members), kind) for (kind, noun, _), members in groups.items()]
     return tuple(sorted(merged, key=lambda note: note.kind))

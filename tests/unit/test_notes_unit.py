@@ -62,6 +62,11 @@ def test_what_is_said_of_several_is_said_once(notes, merged):
     assert list(ordered(notes)) == merged
 
 
+def test_two_numbers_of_one_subject_are_two_notes():
+    notes = ["Pair I: 3 % off.", "Pair I: 5 % off.", "Pair II: 3 % off."]
+    assert list(ordered(notes)) == ["Pairs I, II: 3 % off.", "Pair I: 5 % off."]
+
+
 def test_notes_of_different_classes_are_not_merged():
     assert len(ordered([failing("Gear a: thin."), assuming("Gear b: thin.")])) == 2
 

@@ -205,7 +205,7 @@ def _assumed_of_gear(scene: Scene, gear: str, said: list[str]) -> None:
         found.append((f"quality {strength.quality}", "strength.quality"))
     if found:
         what, keys = (", ".join(one) for one in zip(*found, strict=True))
-        said.append(f"Gear {gear}: {what} assumed ({keys}).")
+        said.append(assuming(f"Gear {gear}: {what} assumed ({keys})."))
     said += bore_remarks(scene, gear)
 
 
