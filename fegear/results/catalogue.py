@@ -234,6 +234,9 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("misalignment", "shafts.misalignment.MISALIGNMENT", "Mesh misalignment", ("misalignment",),
               "mesh misalignment from shafts, bearings and housing, by cause; gap over the face width",
               internal=True),
+        Entry("lead-correction", "shafts.lead_correction.LEAD_CORRECTION", "Lead correction", ("lead-correction",),
+              "helix slope and crowning of each mesh over the torque range, K_Hbeta before and after",
+              effects=WIDE_EFFECTS, internal=True),
     ),
     "Drive train dynamics": (
         Entry("gear-train", "train.gear_train.GEAR_TRAIN", "Gear train", ("gear-train",),

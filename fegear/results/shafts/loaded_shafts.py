@@ -83,14 +83,16 @@ def _scales(scene: Scene, pair: str) -> set[float]:
     return loads
 
 
-def _inputs(scene: Scene, _name: str) -> LoadedShaftsInputs:
+def inputs_of_shafts(scene: Scene, _name: str) -> LoadedShaftsInputs:
+    """As `Stage.inputs`."""
     box = gearbox_of(scene)
     flanks = tuple(pair_spec(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
     scales = {1.0}.union(*(_scales(scene, mesh.pair) for mesh in box.meshes))
     return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), (*said_of_bodies(scene), *said_of_bearings(scene)))
 
 
-def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> LoadedShafts:
+def mesh_forces(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> list[MeshForces]:
+    """Every mesh with its flanks, ready to be loaded with the shafts; those that do not move them evenly."""
     meshes: list[MeshForces] = []
     for number, (mesh, asked) in enumerate(zip(inputs.gearbox.meshes, inputs.flanks, strict=True)):
         if asked is None:
@@ -100,7 +102,11 @@ def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> Load
         flanks, gaps, found = load_flanks(asked.on(RIGID), bodies, work.cache)
         meshes.append(FlankForces(flanks, gaps, found.known, mesh.heights))
         work.progress((number + 1) / (len(inputs.flanks) + 1))
-    states = load_gearbox(inputs.gearbox, meshes, inputs.scales)
+    return meshes
+
+
+def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> LoadedShafts:
+    states = load_gearbox(inputs.gearbox, mesh_forces(inputs, upstream, work), inputs.scales)
     return LoadedShafts(inputs.gearbox, states, tuple(one is not None for one in inputs.flanks))
 
 
@@ -145,33 +151,35 @@ _SHEET = Sheet(
 )
 
 
-def _fed(scene: Scene) -> list[str]:
+def fed_pairs(scene: Scene) -> list[str]:
+    """Pairs whose load distribution moves the forces on the shafts."""
     return [mesh.pair for mesh in mesh_places(scene) if _feeding(scene, mesh.pair)]
 
 
-def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
-    gears = [gear_name(scene, pair, member) for pair in _fed(scene) for member in MEMBERS]
+def needs_gears_of_meshes(scene: Scene, _name: str) -> tuple[Task, ...]:
+    """Solved gears of the pairs that move the forces on the shafts."""
+    gears = [gear_name(scene, pair, member) for pair in fed_pairs(scene) for member in MEMBERS]
     return needs_solid_solution(*dict.fromkeys(gears)) if gears else ()
 
 
 def _check(scene: Scene, _name: str) -> None:
     gearbox_of(scene)
-    for pair in _fed(scene):
+    for pair in fed_pairs(scene):
         check_wide_pair(scene, pair)
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
-    return Forecast({}, _SHAFTS + _FLANKS * len(_fed(scene)))
+    return Forecast({}, _SHAFTS + _FLANKS * len(fed_pairs(scene)))
 
 
 LOADED_SHAFTS = Stage(
     subjects=shafts_of,
-    inputs=_inputs,
+    inputs=inputs_of_shafts,
     compute=_compute,
     present=_SHEET.present,
-    needs=_needs,
+    needs=needs_gears_of_meshes,
     check=_check,
-    effects_of=lambda scene, _name: WIDE_EFFECTS if _fed(scene) else (MISALIGNMENT.name,),
+    effects_of=lambda scene, _name: WIDE_EFFECTS if fed_pairs(scene) else (MISALIGNMENT.name,),
     forecast=_forecast,
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
 )

@@ -1,0 +1,86 @@
+"""Lead correction: what is stated comes true in a fresh case, and the table for grinding has it."""
+
+import copy
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def coarse(**leads):
+    """Two stages that their shafts misalign, without lead modifications but those given [um]; slices, coarse."""
+    case = tomllib.loads((CASES / "gearbox_misaligned.toml").read_text(encoding="utf-8"))
+    case |= {"accuracy": {"tolerance": 0.3}, "load_distribution": {"positions": 4, "panels": 4}}
+    case["bearing"]["ball"]["elements"]["clearance"] = "60 um"
+    case["effects"]["relief"] = bool(leads)
+    for gear in case["gear"].values():
+        gear.pop("lead", None)
+    for gear, (slope, crowning) in leads.items():
+        case["gear"][gear]["lead"] = {"slope": f"{slope:.6g} um", "crowning": f"{crowning:.6g} um"}
+    return case
+
+
+def run(case, result):
+    scene = build_scene({**copy.deepcopy(case), "results": [result]}, "box", Path())
+    return run_plan(scene, make_plan(scene, STAGES)).outcomes
+
+
+@pytest.fixture(scope="module")
+def corrected():
+    return run(coarse(), "lead-correction")[Task("lead-correction", "all")]
+
+
+def leads_of(outcome):
+    """Amounts by driver [um]."""
+    found = dict(zip(("a", "c"), outcome.data.found, strict=True))
+    return {gear: (one.slope * 1e6, one.crowning * 1e6) for gear, one in found.items()}
+
+
+def factors(case):
+    """K_Hbeta over the loads of both pairs."""
+    found = run(case, "load-distribution")
+    return [found[Task("loaded-flanks", pair)].data.stated.face_load_factor for pair in ("I", "II")]
+
+
+@pytest.mark.dear
+def test_a_fresh_case_with_the_corrections_has_the_stated_factors(corrected):
+    for one in corrected.data.found:
+        assert one.after @ one.loads < one.before @ one.loads
+        assert one.left.max() < 0.02
+    fresh = factors(coarse(**leads_of(corrected)))
+    for one, found in zip(corrected.data.found, fresh, strict=True):
+        at = np.isin(np.round(one.loads, 3), np.round(one.loads[-found.size :], 3))
+        np.testing.assert_allclose(found, one.after[at], rtol=1e-6)
+    second = corrected.data.found[1]
+    assert second.before[-1] > 1.25 > 1.15 > second.after[-1]
+
+
+@pytest.mark.dear
+def test_the_table_for_grinding_has_gear_amounts_and_factors(corrected):
+    (table,) = corrected.tables
+    assert set(table["gear"]) == {"a", "c"}
+    amounts = leads_of(corrected)
+    for gear in ("a", "c"):
+        rows = np.array(table["gear"]) == gear
+        assert np.unique(np.array(table["slope [um]"])[rows]) == pytest.approx(amounts[gear][0])
+    assert all(2.0 * one.slope * 1e6 == pytest.approx(round(2.0 * one.slope * 1e6)) for one in corrected.data.found)
+    assert "grind a helix slope" in corrected.answer.sentences[0]
+    assert "gear.c.lead" in " ".join(corrected.remarks)
+
+
+def test_without_misaligned_flanks_there_is_nothing_to_correct():
+    case = coarse()
+    case["effects"]["misalignment"] = False
+    scene = build_scene({**case, "results": ["lead-correction"]}, "box", Path())
+    with pytest.raises(InputError, match="misalignment"):
+        make_plan(scene, STAGES)
