@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fegear.base.effects import MISALIGNMENT
 from fegear.base.errors import InputError
 from fegear.base.printed import figures
 from fegear.base.shown import shown
@@ -187,7 +188,7 @@ LEAD_CORRECTION = Stage(
     present=_SHEET.present,
     needs=_needs,
     check=_check,
-    requires=(Need("misalignment", "the lead is corrected for the misalignment by the shafts"),),
+    requires=(Need(MISALIGNMENT.name, "the lead is corrected for the misalignment by the shafts"),),
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     forecast=lambda scene, _name: forecasts.constant(_SEARCH * max(1, len(fed_pairs(scene)))),
 )
