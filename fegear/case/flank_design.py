@@ -92,7 +92,7 @@ class FlankDesignPart(Part):
     loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
         default=None,
         description="Loads for choosing the grindable reliefs: the maximum transmission error relative to its load "
-        "is minimised. Default: the design load.",
+        "is minimised. Default: `torques` of the pair, by weight, otherwise the design load.",
     )
     length: ZoneLength = None
     contact_ratio: ZoneRatio = None

@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -19,3 +25,12 @@ class LoadRange:
 
     loads: tuple[float, ...]
     weights: tuple[float, ...] | None = None
+
+
+def proportions(loads: Floats, weights: Floats | None = None) -> Floats:
+    """By what the excitation at each load is multiplied before the worst is taken, shape (L,).
+
+    In proportion to the load, at the largest; and to its weight, over the largest weight.
+    """
+    part = loads.max() / loads
+    return np.asarray(part if weights is None else part * (weights / weights.max()))

@@ -1,5 +1,6 @@
 """A designed relief written into a case: what is written, what stays as it was, and what is refused."""
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -11,8 +12,15 @@ from fegear.base.errors import InputError
 from fegear.case.changed_text import with_values
 from fegear.case.reading import build_scene
 from fegear.cli import app
+from fegear.design.flanks.forms import GroundRelief
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.engine.table import Column, Table
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.results.relief.applied_design import applied_design, designs_of, keys_of_design
+from fegear.results.relief.ground_flank_keys import ground_rows, keys_of
 
 CASE = """# A drive of mine.
 results = [ "transmission-error" ]   # wanted
@@ -33,7 +41,6 @@ driven = "w"
 torque = "300 N*m"
 compliance = {{ source = "weber-banaschek" }}
 {more}"""
-PARABOLIC = {"p": ("parabolic", 12e-6), "w": ("parabolic", 0.0)}
 
 
 def case(p="", w="", more=""):
@@ -134,6 +141,35 @@ def test_a_lead_in_the_grinding_table_is_written_too():
         "slope": "-5 um", "crowning": "3 um", "end_relief": {"amount": "8 um", "length": "2 mm"}
     }  # fmt: skip
     assert found["p"]["bias"] == "2 um"
+
+
+@pytest.mark.parametrize("offset", [0.0, 3e-3])  # the driver bears lead and twist, or the driven gear does
+def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
+    gears = [
+        Gear(Tooth(z, BasicRack(), helix_angle=math.radians(15.0)), 3e-3, 15e-3, face, hand=hand)
+        for z, hand, face in ((20, "right", 20e-3 + 2.0 * offset), (31, "left", 20e-3))
+    ]
+    pair, names = GearPair(*gears), {"driver": "p", "driven": "w"}
+    relief = GroundRelief(18e-6, 3e-3, 12e-6, 2e-3, 3e-6, 6e-6, 2.5e-3, -4e-6, 8e-6)
+    rows = ground_rows(relief, pair, names, "profile", (TipTolerance(4e-6, None, 0.0),) * 2)
+    units = {"amount": "um", "start_diameter": "mm", "end_diameter": "mm", "face_length": "mm"}
+    columns = [
+        Column(name, np.array([getattr(row, name) for row in rows]), units.get(name, ""))
+        for name in ("gear", "design", "modification", "shape", *units)
+    ]
+    found = keys_of_design({"grinding_I": Table("grinding_I", tuple(columns))}, "I", ("p", "w"))
+    wanted = tomllib.loads("\n".join(keys_of(relief, pair, names)))["gear"]
+    assert numbers(found) == pytest.approx(numbers(wanted), rel=1e-6)
+    assert rows[0].length == pytest.approx(3e-3)
+    assert rows[1].length_tolerance == pytest.approx(0.2e-3)
+
+
+def numbers(keys, head=""):
+    """Numbers of tables in tables by their paths."""
+    found = {}
+    for key, one in keys.items():
+        found |= numbers(one, f"{head}.{key}") if isinstance(one, dict) else {f"{head}.{key}": float(one.split()[0])}
+    return found
 
 
 @pytest.mark.parametrize(

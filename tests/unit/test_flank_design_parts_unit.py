@@ -1,5 +1,6 @@
 """How a design of loaded flanks goes on from step to step: every step by itself is tested elsewhere."""
 
+import itertools
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
@@ -16,6 +17,9 @@ from fegear.design.flanks.scatter import NOMINAL, Scatter
 PITCH, START = 8e-3, -3e-3
 
 
+TRIED = itertools.count(1)
+
+
 @dataclass(frozen=True)
 class Trials:
     """In place of trials: what they were made of."""
@@ -25,9 +29,14 @@ class Trials:
     apart: object
     loads: object
     scatter: Scatter = NOMINAL
+    weights: object = None
 
     def of_gap(self, gap):
-        return SimpleNamespace(te=np.full((1, 3, 1), float(np.sum(gap))), gap=gap, of=self)
+        """What is tried later leaves less."""
+        te = np.full((1, 3, np.size(self.loads)), float(np.sum(gap)))
+        return SimpleNamespace(
+            te=te, peak_to_peak=np.full((1, np.size(self.loads)), 1.0 / next(TRIED)), gap=gap, of=self
+        )
 
 
 @dataclass(frozen=True)
@@ -102,7 +111,9 @@ def steps(monkeypatch):
         judged.append(gap(lines("judged")))
         return SimpleNamespace(peak_to_peak=SimpleNamespace(value=10.0 - len(judged)))
 
-    plain = Trials(pair, SimpleNamespace(lines=lines("plain")), "apart", np.array([1.0]))
+    plain = Trials(
+        pair, SimpleNamespace(lines=lines("plain", START + PITCH * np.arange(3) / 3.0)), "apart", np.array([1.0])
+    )
     put("flank_judge", lambda *given: calls.update(judge=given) or SimpleNamespace(judge=judge, plain=plain))
     apart = SimpleNamespace(
         under=lambda load: SimpleNamespace(at=lambda pair, lines, loads=None: ("aligned", load, lines.name)),
@@ -168,6 +179,7 @@ def test_states_are_judged_in_order_and_the_best_is_the_one_that_leaves_least(st
     assert state.mapped.of.scatter.over_face.tolist() == [-1e-6, 0.0, 1e-6]
     assert state.mapped.of.scatter.weights.tolist() == pytest.approx([1.0 / 3.0] * 3)
     assert state.mapped.of.loads.tolist() == [600.0, 1200.0]
+    assert state.over_peak_to_peak.shape == state.over_first.shape == (2,)
 
 
 def test_scatter_has_a_relief_of_its_own_and_leads_the_freest_family_on(steps):

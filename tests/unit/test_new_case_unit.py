@@ -17,6 +17,7 @@ import pytest
 import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case import examples
+from fegear.case.built.design_range import design_range
 from fegear.case.drafts.answers import Answers, questions
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
@@ -209,6 +210,19 @@ def test_a_drafted_case_runs(say, tmp_path):
 
 
 @pytest.mark.long
+def test_a_relief_design_takes_a_helix_and_a_range_of_torques():
+    given = {"teeth": "20 31", "helix_angle": "15 deg", "face_width": "12 mm", "torque": "60 N m"}
+    text = draft(Answers("relief", given), "x")
+    assert 'hand = "left"' in text
+    text = text.replace('torque = "60 N m"', "").replace("# torques", "torques")
+    scene = build_scene(tomllib.loads(text), "x", Path())
+    assert list(scene.wide_pairs) == ["I"]
+    assert design_range(scene, "I").loads[-1] == pytest.approx(60.0 / scene.pairs["I"].driver.base_radius)
+    plan = make_plan(scene, STAGES)
+    assert "flank-design" in {step.task.stage for step in plan.steps}
+    assert "helix" not in draft(Answers("relief", {}), "x")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_drafted_case_runs(say, tmp_path, kind):
     assert say("new", "case", "--kind", kind, "-q")[0] == 0

@@ -104,6 +104,11 @@ class Answers:
         """Whether the drawing has it: a question of this kind, and not answered by "none"."""
         return name in {q.name for q in questions(self.kind, self.given)} and self[name] != _NONE
 
+    @property
+    def helical(self) -> bool:
+        """Whether the gears are helical: always, or where an angle is given."""
+        return self.kind == "helical" or (self.kind == "relief" and self.has("helix_angle"))
+
     def numbers(self, name: str) -> list[str]:
         """The numbers of an answer, one for each gear: the last stands for those that are not given."""
         found = _split(self[name])
@@ -157,6 +162,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             )
         else:
             prompt, default, dimension = _ALL[name]
+            default = _NONE if name == "helix_angle" and kind != "helical" else default
             plural = "s of pinion and wheel" if several and dimension == "numbers" else ""
             found.append(Question(name, prompt + plural, default, dimension))
     return found

@@ -35,7 +35,8 @@ _RELIEVED = (*_LOADED, "tip_relief", "relief_length")
 KINDS: Mapping[str, Kind] = MappingProxyType({
     "gear": Kind("gear: tooth stiffness and root stress, formulas of the standards", ("gear",), _TOOTH),
     "pair": Kind("gear pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _RELIEVED),
-    "relief": Kind("gear pair: design of profile modification", ("pinion", "wheel"), _LOADED),
+    "relief": Kind("gear pair: design of profile modification", ("pinion", "wheel"),
+                   ("helix_angle", *_LOADED)),
     "helical": Kind("helical pair: load distribution over the face width, transmission error, misalignment",
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
     "train": Kind("drive train dynamics: motor, gear pair, driven machine; resonances, dynamic factor",

@@ -74,7 +74,7 @@ driven = {second}
 torque = {torque}{torque_note}
 speed = {speed}{speed_note}
 # centre_distance = "{centre_distance}"     # default: zero backlash
-# loads = ["2 kN", "4 kN"]     # further loads along the line of action
+{range}
 """
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
 _RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
@@ -156,9 +156,13 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         **(_planetary(answers) if answers.kind == "planetary" else {}),
         **(_study(answers) if answers.kind == "study" else {}),
     }
-    template = files("fegear.case.drafts").joinpath("templates", f"{answers.kind}.toml").read_text("utf-8")
+    template = files("fegear.case.drafts").joinpath("templates", _template(answers)).read_text("utf-8")
     hint = f"#:schema ./{schema}\n" if schema else ""
     return hint + "\n".join(map(_aligned, Template(template).substitute(values).splitlines())) + "\n"
+
+
+def _template(answers: Answers) -> str:
+    return "relief_helical.toml" if answers.kind == "relief" and answers.helical else f"{answers.kind}.toml"
 
 
 def _aligned(line: str) -> str:
@@ -182,7 +186,7 @@ def _gear(answers: Answers, number: int) -> str:
     if answers.kind == "ring":
         return _ring(answers, texts, shift)
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
-    if answers.kind == "helical":
+    if answers.helical:
         return _HELICAL.format(**texts, hand=("right", "left")[number])
     module, teeth = answers.si("module"), int(texts["teeth"])
     texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
@@ -203,9 +207,20 @@ def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
 def _pair(answers: Answers) -> str:
     first, second = map(json.dumps, KINDS[answers.kind].gears)
     teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
-    turn = math.cos(answers.si("helix_angle")) if answers.kind == "helical" else 1.0
+    turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
     distance = _length(answers.si("module") * (0.5 * teeth / turn + shifts))
-    return _PAIR.format(first=first, second=second, centre_distance=distance, **_texts(answers, ("torque", "speed")))
+    return _PAIR.format(
+        first=first, second=second, centre_distance=distance, range=_range(answers),
+        **_texts(answers, ("torque", "speed")),
+    )  # fmt: skip
+
+
+def _range(answers: Answers) -> str:
+    """Further loads, or of a relief design the range of torques that it may be for."""
+    if answers.kind != "relief":
+        return '# loads = ["2 kN", "4 kN"]     # further loads along the line of action'
+    start, stop = (toml_string(f"{share * answers.si('torque'):.3g} N*m") for share in (0.5, 1.0))
+    return f"# torques = {{ start = {start}, stop = {stop}, count = 3 }}     # relief for a range, instead of torque"
 
 
 def _length(value: float) -> str:

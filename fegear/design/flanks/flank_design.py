@@ -30,6 +30,7 @@ from fegear.design.flanks.topography import (
     topography,
 )
 from fegear.design.flanks.trials import FlankTrials, Tried
+from fegear.design.load_range import proportions
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.flank_modification import Topography
 from fegear.geometry.pair import Member
@@ -61,6 +62,8 @@ class FlankDesignTask:
         Roll positions over a base pitch.
     map_over_face, map_loads : tuple of float
         Misalignments [m] and loads [N] of the maps.
+    weights : tuple of float, optional
+        What each of the loads counts; all the same by default.
     """
 
     loading: FlankLoading
@@ -74,6 +77,7 @@ class FlankDesignTask:
     positions: int
     map_over_face: tuple[float, ...]
     map_loads: tuple[float, ...]
+    weights: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,8 @@ class FlankState(ReadOnlyArrays):
         What it leaves, with errors.
     mapped : Tried
         Over the misalignments and loads of the maps.
+    over_peak_to_peak, over_first : ndarray, shape (L,)
+        Peak-to-peak value and amplitude of the first harmonic at each of the task's loads, aligned as given [m].
     """
 
     label: str
@@ -98,6 +104,8 @@ class FlankState(ReadOnlyArrays):
     te: Array
     judged: Judged
     mapped: Tried
+    over_peak_to_peak: Array
+    over_first: Array
 
 
 @dataclass(frozen=True)
@@ -148,9 +156,16 @@ class FlankDesign(ReadOnlyArrays):
 
     @property
     def best(self) -> FlankState:
-        """What can be ground and leaves the least at the design load, aligned as given."""
-        return min((s for s in self.states if s.label in self.found and s.label != ROBUST),
-                   key=lambda s: s.judged.peak_to_peak.value)  # fmt: skip
+        """What can be ground and leaves the least, aligned as given: at the design load, or by the worst of several."""
+        return min((s for s in self.states if s.label in self.found and s.label != ROBUST), key=self.left_by)
+
+    def left_by(self, state: FlankState) -> float:
+        """Peak-to-peak value that a way leaves: at the design load, or by the worst of several in proportion [m]."""
+        task = self.task
+        if task.loads == (task.load,):
+            return state.judged.peak_to_peak.value
+        weights = None if task.weights is None else np.array(task.weights)
+        return float((state.over_peak_to_peak * proportions(np.array(task.loads), weights)).max())
 
 
 def design_flanks(
@@ -202,12 +217,12 @@ def design_flanks(
     # What is ground leaves most where contact lines begin and end, where the positions of the other results stand, and
     # may leave as much between few of them: it is chosen by both, and led on at more of them.
     loads = np.array(task.loads)
-    scan = FlankTrials(pair, known, apart.at(pair, known.lines, loads), loads)
+    scan = FlankTrials(pair, known, apart.at(pair, known.lines, loads), loads, weights=task.weights)
     force = design_force(known.lines, task.loading, task.load)
 
     def trials_at(roll: Array) -> FlankTrials:
         lines = lines_at(pair, np.unique(np.mod(roll - pair.x_start, pair.base_pitch) + pair.x_start), panel)
-        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines, loads), loads)
+        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines, loads), loads, weights=task.weights)
 
     trials = trials_at(np.concatenate([known.lines.roll, lines.roll]))
     even = pair.x_start + pair.base_pitch * (np.arange(SEARCHED) + 0.5) / SEARCHED
@@ -232,16 +247,19 @@ def design_flanks(
         EXACT: table,
         **{label: one.relief for label, one in found.items()},
     }
-    here = replace(scan, loads=np.array([task.load]), apart=aligned.at(pair, known.lines))
+    here = replace(scan, loads=np.array([task.load]), apart=aligned.at(pair, known.lines), weights=None)
     judge = flank_judge(flanks, coarse, aligned, task.load, task.deviation)
-    states = tuple(_state(label, relief, here, judge, task)
+    plain = judge.plain.known
+    over = FlankTrials(pair, plain, apart.at(pair, plain.lines, loads), loads)
+    states = tuple(_state(label, relief, here, judge, over, task)
                    for label, relief in reliefs.items())  # fmt: skip
     return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
 
 
 def _state(
-    label: str, relief: GroundRelief | Topography, here: FlankTrials, judge: FlankJudge, task: FlankDesignTask
-) -> FlankState:
+    label: str, relief: GroundRelief | Topography, here: FlankTrials, judge: FlankJudge, over_loads: FlankTrials,
+    task: FlankDesignTask,
+) -> FlankState:  # fmt: skip
     """Judge a relief, and map what it leaves."""
 
     def gap(lines: ContactLines) -> Array:
@@ -255,7 +273,10 @@ def _state(
     count = len(task.map_over_face)
     over = Scatter(np.array(task.map_over_face), np.full(count, 1.0 / count))
     mapped = replace(judge.plain, scatter=over, loads=np.array(task.map_loads))
+    at_loads = over_loads.of_gap(gap(over_loads.known.lines))
+    te, phase = at_loads.te[0], 2j * np.pi * over_loads.known.lines.roll / here.pair.base_pitch
+    first = 2.0 * np.abs(np.exp(-phase) @ (te - te.mean(axis=0))) / phase.size
     return FlankState(
         label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
-        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)),
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), at_loads.peak_to_peak[0], first,
     )  # fmt: skip

@@ -19,6 +19,7 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.design.flanks.forms import FormsAt
 from fegear.design.flanks.scatter import NOMINAL, Scatter
+from fegear.design.load_range import proportions
 from fegear.geometry.pair import GearPair
 
 
@@ -100,6 +101,8 @@ class FlankTrials:
     loads : ndarray, shape (L,)
         [N].
     scatter : Scatter
+    weights : tuple of float, optional
+        What each load counts; all the same by default.
     """
 
     pair: GearPair
@@ -107,6 +110,7 @@ class FlankTrials:
     apart: Array
     loads: Array
     scatter: Scatter = NOMINAL
+    weights: tuple[float, ...] | None = None
 
     @cached_property
     def forms(self) -> FormsAt:
@@ -160,8 +164,9 @@ class FlankTrials:
 
     @property
     def proportion(self) -> Array:
-        """Largest load over each, shape (L,): excitations count in proportion to their load."""
-        return np.asarray(self.loads.max() / self.loads)
+        """Largest load over each, times its weight over the largest, shape (L,): excitations count in proportion."""
+        weights = None if self.weights is None else np.array(self.weights)
+        return np.asarray(proportions(self.loads, weights), dtype=float)
 
     def value(self, peak_to_peak: Array) -> float:
         """What is to be least, of values of shape (S, L): means over the misalignments, of the worst load [m]."""

@@ -14,9 +14,8 @@ from fegear.contact.fourier import effective_error
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import Metric
-from fegear.design.load_range import LoadRange
+from fegear.design.load_range import LoadRange, proportions
 from fegear.design.tip_relief.search import SHARE, search
-from fegear.design.tip_relief.trials import proportions
 from fegear.geometry.gear import Gear
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Floats, Index, Mask
 from fegear.contact.plane.load_sharing import SharedLoad
+from fegear.design.load_range import proportions
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
 from fegear.design.relief_bench import Bench
 from fegear.design.tip_relief.between_positions import Bends
@@ -18,15 +19,6 @@ from fegear.design.tip_relief.kinks import KinkQuadrature, Positions
 from fegear.geometry.relief import roll_of_radius
 
 _HARMONICS = 12
-
-
-def proportions(loads: Floats, weights: Floats | None = None) -> Floats:
-    """By what the excitation at each load is multiplied before the worst is taken, shape (L,).
-
-    In proportion to the load, at the largest; and to its weight, over the largest weight.
-    """
-    part = loads.max() / loads
-    return part if weights is None else np.asarray(part * (weights / weights.max()))
 
 
 @dataclass(frozen=True, slots=True)

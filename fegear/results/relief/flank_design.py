@@ -6,8 +6,10 @@ import math
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
+from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.flank_design import FlankDesignPart
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.design.flanks.flank_design import FlankDesignTask
     from fegear.design.flanks.grid import ReliefGrid
+    from fegear.design.load_range import LoadRange
 
 
 #: Misalignments of a map: over the standard deviation of the scatter, or [m] without one.
@@ -53,11 +56,14 @@ def _check(scene: Scene, name: str) -> None:
             f"pair.{name}.width", '"plane"', "is not available for flank design (3D)",
             f'set pair.{name}.width = "solid", or request relief',
         )  # fmt: skip
+    design_range(scene, name)
     _task(_part(scene), scene.pairs[name], 1.0)
 
 
 def _inputs(scene: Scene, name: str) -> FlankDesignInputs:
-    return FlankDesignInputs(_part(scene), name, {member: gear_name(scene, name, member) for member in MEMBERS})
+    gears = {member: gear_name(scene, name, member) for member in MEMBERS}
+    over = None if _part(scene).loads else design_range(scene, name)
+    return FlankDesignInputs(_part(scene), name, gears, over, tip_tolerances(scene, name))
 
 
 def _grid(part: FlankDesignPart) -> ReliefGrid | None:
@@ -70,7 +76,9 @@ def _grid(part: FlankDesignPart) -> ReliefGrid | None:
     return ReliefGrid(*(tuple(values) for values in lists))
 
 
-def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignTask:
+def _task(
+    part: FlankDesignPart, pair: GearPair, nominal: float, over: LoadRange | None = None
+) -> FlankDesignTask:  # fmt: skip
     from fegear.design.flanks.flank_design import FlankDesignTask
     from fegear.design.flanks.scatter import NOMINAL, normal_scatter
     from fegear.design.flanks.topography import FlankLoading
@@ -95,7 +103,7 @@ def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignT
             "choose a shorter design length, or remove centre",
         )  # fmt: skip
     load = part.load or nominal
-    loads = tuple(sorted(part.loads)) if part.loads else (load,)
+    loads = over.loads if over is not None else tuple(sorted(part.loads)) if part.loads else (load,)
     scatter = normal_scatter(part.scatter.over_face, part.scatter.levels) if part.scatter else NOMINAL
     over_face = part.map.over_face
     if over_face is None:
@@ -103,7 +111,7 @@ def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignT
     return FlankDesignTask(
         loading, load, loads, tuple(part.families), _grid(part), part.largest_face_load_factor or math.inf, scatter,
         part.scatter.over_face if part.scatter else 0.0, part.positions, tuple(sorted(set(over_face))),
-        tuple(sorted({load * f for f in part.map.load_factors})),
+        tuple(sorted({load * f for f in part.map.load_factors})), None if over is None else over.weights,
     )  # fmt: skip
 
 
@@ -112,7 +120,7 @@ def _compute(inputs: FlankDesignInputs, upstream: Upstream, work: Work) -> Flank
 
     found = loaded_flanks(upstream, inputs.name)
     flanks, apart = found.flanks, found.unrelieved
-    task = _task(inputs.part, flanks.pair, found.nominal)
+    task = _task(inputs.part, flanks.pair, found.nominal, inputs.over)
     solved = {member: solid_solution_of(upstream, inputs.gears[member]) for member in MEMBERS}
     coarse = {member: one.coarse or one.fine for member, one in solved.items()}
     design = design_flanks(flanks, coarse, found.known, apart, task, work.progress)
@@ -132,10 +140,12 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     grid = _grid(part) or usual_grid(1.0, pair.path_length, pair.face_width, pair.base_pitch)
     counts = [len(grid.combinations(family)) for family in part.families]
     levels = part.scatter.levels if part.scatter else 0
-    combinations = (sum(counts) + levels * max(counts)) * len(part.loads or (1.0,))
+    over = None if part.loads else design_range(scene, name)
+    loads = len(part.loads or ()) or (1 if over is None else len(over.loads))
+    combinations = (sum(counts) + levels * max(counts)) * loads
     stations = asked.panel_count * (1.0 + pair.contact_ratio)
     lines = part.positions * (1.0 + pair.total_contact_ratio)
-    exact = _FAMILY * (len(counts) + levels) * (stations / 34.0) ** 1.5 * len(part.loads or (1.0,))
+    exact = _FAMILY * (len(counts) + levels) * (stations / 34.0) ** 1.5 * loads
     seconds = _LINE * lines + _COMBINATION * combinations * part.positions / 24.0 + exact
     return Forecast({"combinations": combinations, "positions": part.positions}, seconds)
 

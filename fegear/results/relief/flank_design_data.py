@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,12 +13,17 @@ from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.case.flank_design import FlankDesignPart
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.results.relief.grinding import Grinding
+from fegear.results.relief.ground_flank_keys import ground_rows
+from fegear.results.relief.relief_over_range import LeftOverRange
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.design.flanks.families import FamilyBest
     from fegear.design.flanks.flank_design import FlankDesign, FlankState
+    from fegear.design.load_range import LoadRange
+    from fegear.design.tip_relief.tip_tolerance import TipTolerance
 
 #: Sections of the charts: heights over half the face, and parts of the path of contact.
 _HEIGHTS, _DEPTHS = (-0.9, 0.0, 0.9), (0.1, 0.5, 0.9)
@@ -45,11 +50,17 @@ class FlankDesignInputs:
         Of the pair.
     gears : mapping of str to str
         Names of driver and driven.
+    over : LoadRange, optional
+        Loads that what can be ground is chosen for together.
+    tolerances : tuple of TipTolerance
+        Of the tip reliefs of driver and driven gear, for the grinding table.
     """
 
     part: FlankDesignPart
     name: str
     gears: Mapping[Member, str]
+    over: LoadRange | None
+    tolerances: tuple[TipTolerance, TipTolerance] = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -265,6 +276,33 @@ class FlanksShown:
         """Of the gears that get one."""
         shares = _SHARES[self.asked.part.gear]
         return [topography_points(self.data, m, self.asked.gears[m], share) for m, share in shares.items()]
+
+    @cached_property
+    def over_range(self) -> dict[str, LeftOverRange]:
+        """What each way leaves at each torque of a range."""
+        task, pair = self.design.task, self.data.pair
+        load = np.array(task.loads)
+        weights = np.ones(load.size) if task.weights is None else np.array(task.weights)
+        return {
+            state.label: LeftOverRange(
+                load * pair.driver.base_radius, load, weights / weights.max(), state.over_peak_to_peak,
+                state.over_first,
+            )
+            for state in self.design.states
+        }  # fmt: skip
+
+    @cached_property
+    def grinding(self) -> tuple[Grinding, ...]:
+        """What can be ground, the best first."""
+        design, found = self.design, self.design.found
+        ordered = sorted((state for state in design.states if state.label in found), key=design.left_by)
+        return tuple(
+            row
+            for state in ordered
+            for row in ground_rows(
+                found[state.label].relief, self.data.pair, self.asked.gears, state.label, self.asked.tolerances
+            )
+        )  # fmt: skip
 
     @cached_property
     def ways(self) -> list[WayToRelieve]:

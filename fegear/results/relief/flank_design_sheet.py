@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from fegear.base.printed import figures
 from fegear.contact.wide.lines import ContactLines
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
@@ -14,7 +15,9 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.results.relief.flank_design_data import FlanksShown
+from fegear.results.relief.grinding import grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART
 
 if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen
@@ -127,11 +130,28 @@ def _keys(seen: Seen) -> str:
     return f"Pair {asked.name}, {seen.one.label}: keys of the gears: {keys or 'none'}."
 
 
+def _for_range(seen: Seen) -> Iterator[str]:
+    """What the best modification to grind leaves from the largest to the smallest torque of a range."""
+    design, over = seen.data.design, seen.data.over_range
+    none, best = over[design.unrelieved.label], over[design.best.label]
+    if none.torque.size < 2:
+        return
+    words = [row.words for row in seen.data.grinding if row.design == design.best.label and row.words]
+    left = ", ".join(
+        f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} µm at "
+        f"{figures(none.torque[i], 4)} N m"
+        for i in (-1, 0)
+    )
+    yield f"Pair {seen.name}: grind {', '.join(words) or 'nothing'}: transmission error {left}, peak to peak."
+
+
 _UNDER = "{d.load:.5g} N"
 
 FLANK_DESIGN_SHEET = Sheet(
     of=FlanksShown,
     tables=(
+        grinding_table("grinding_{name}", "Modifications to grind on {name}", "grinding"),
+        OVER_RANGE,
         TOPOGRAPHY,
         Rows(
             "flank_designs_{name}", "Flank modifications of pair {name} and remaining transmission error",
@@ -158,6 +178,7 @@ FLANK_DESIGN_SHEET = Sheet(
     ),
     values=("topography_depth", Each("ways", *map(_judged_value, _JUDGED))),
     figures=(
+        RANGE_CHART,
         Chart(
             "flank_topography_{name}", "Flank modification of pair {name}",
             "Pair {name}: total modification of both gears over roll angle of {d.driver} (driver, tip at right) "
@@ -229,9 +250,12 @@ FLANK_DESIGN_SHEET = Sheet(
         ),
     ),
     answer=Answer(
+        _for_range,
         "Pair {name}: the exact topography leaves {v[exact_topography.te_peak_to_peak]} peak to peak.",
         Remark(_keys, each=lambda seen: (seen.data.design.best, *seen.data.design.robust)),
-        figure="flank_topography_{name}",
+        figure=lambda seen: seen.said(
+            "relief_over_torque_{name}" if len(seen.data.design.task.loads) > 1 else "flank_topography_{name}"
+        ),
     ),
     remarks=(
         Remark(_keys, each=lambda seen: (seen.data.design.best, *seen.data.design.robust)),

@@ -1,6 +1,7 @@
 """The grinding table: every modification of a flank that is to be ground, as a row, whatever result designs it.
 
-A row has the numbers of its kind; the others are nan, an empty cell of the file. A result that designs further kinds
+A row has the numbers of its kind; the others are nan, an empty cell of the file, and no column where no row has any.
+A result that designs further kinds
 (a lead, a crowning) makes `Grinding` rows of them, and a table of them by `grinding_table`.
 """
 
@@ -10,18 +11,26 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.base.printed import figures
 from fegear.base.shown import shown
-from fegear.engine.sheet.rows import Off, Rows
+from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import Member
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
     from fegear.design.tip_relief.tip_tolerance import TipTolerance
-    from fegear.engine.sheet.seen import Text, Where
+    from fegear.engine.sheet.seen import Seen, Text, Where
     from fegear.results.relief.ground_tips import GroundTip
 
 #: Kinds of modifications.
 TIP, SLOPE, CROWNING, END, BIAS = "tip relief", "helix slope", "crowning", "end relief", "flank twist"
+#: Columns behind those of the amount and the start.
+_FURTHER = (
+    "end_diameter", "start_roll_angle", "length", "length_tolerance", "face_length", "amount_from", "amount_to",
+    "start_diameter_from", "start_diameter_to",
+)  # fmt: skip
 #: An amount below this is nothing [m].
 NOTHING = 5e-9
 
@@ -75,13 +84,24 @@ def grinding_table(name: Text, title: Text, of: Where) -> Rows:
     return Rows(
         name, title,
         (
-            "gear", "member", "design", "modification", "shape", "amount", Off("amount", "amount_error"),
-            "amount_tolerance", "start_diameter", Off("start_diameter", "start_diameter_error"), "end_diameter",
-            "start_roll_angle", "length", "length_tolerance", "face_length", "amount_from", "amount_to",
-            "start_diameter_from", "start_diameter_to",
+            "gear", "member", "design", "modification", "shape", "amount",
+            Off("amount", lambda seen: _given(seen, of, "amount_error")), _cell("amount_tolerance", of),
+            _cell("start_diameter", of),
+            Off("start_diameter", lambda seen: _given(seen, of, "start_diameter_error")),
+            *(_cell(quantity, of) for quantity in _FURTHER),
         ),
         of=of, when=of, printed=True,
     )  # fmt: skip
+
+
+def _cell(quantity: str, of: Where) -> Cell:
+    return Cell(quantity, lambda seen: _given(seen, of, quantity))
+
+
+def _given(seen: Seen, of: Where, quantity: str) -> Array | None:
+    """A number of every row; None where no row has it: no column."""
+    found = np.array([getattr(row, quantity) for row in seen.find(of)])
+    return None if np.isnan(found).all() else found
 
 
 def tip_row(tip: GroundTip, gear: str, tolerance: TipTolerance) -> Grinding:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.results.relief.grinding import BIAS, CROWNING, END, SLOPE, TIP, Grinding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.design.flanks.forms import GroundRelief
+    from fegear.design.tip_relief.tip_tolerance import TipTolerance
+
+#: Tolerance of the length of a tip relief without one of its own, over the length.
+_OF_LENGTH = 0.1
 
 
 def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -> list[str]:
@@ -47,6 +53,36 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -
     for gear, keys in by_gear.items():
         lines += [f"gear.{gear}.{key}" for key in keys]
     return lines
+
+
+def ground_rows(
+    relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str], design: str,
+    tolerances: tuple[TipTolerance, TipTolerance],
+) -> list[Grinding]:  # fmt: skip
+    """The relief as rows of the grinding table; lead and twist are those of the gear that `keys_of` gives them to."""
+    bearer: Member = next((m for m in MEMBERS if _is_common(pair, m)), "driver")
+
+    def tip(member: Member, amount: float, end: float, start: float) -> Grinding:
+        allowed, length = tolerances[MEMBERS.index(member)], abs(end - start)
+        top, foot = (2.0 * float(pair.radius(at, member)) for at in (end, start))
+        return Grinding(
+            gears[member], member, design, TIP, "linear", amount, amount_tolerance=allowed.amount,
+            start_diameter=foot, end_diameter=top, start_roll_angle=float(pair.roll_angle(start, member)),
+            length=length, length_tolerance=_OF_LENGTH * length if allowed.length is None else allowed.length,
+        )  # fmt: skip
+
+    def lead(kind: str, shape: str, amount: float, length: float = math.nan) -> Grinding:
+        return Grinding(gears[bearer], bearer, design, kind, shape, amount, face_length=length)
+
+    bias = relief.bias if bearer == "driver" else -relief.bias
+    rows = [
+        tip("driver", relief.driver_tip, pair.x_end, pair.x_end - relief.driver_tip_length),
+        tip("driven", relief.driven_tip, pair.x_start, pair.x_start + relief.driven_tip_length),
+        lead(CROWNING, "parabolic", relief.crowning),
+        lead(END, "linear", relief.end_relief, relief.end_relief_length),
+        lead(SLOPE, "linear", relief.slope), lead(BIAS, "linear", bias),
+    ]  # fmt: skip
+    return [row for row in rows if row.amount]
 
 
 def _is_common(pair: GearPair, member: Member) -> bool:

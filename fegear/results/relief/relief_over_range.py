@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.printed import figures
 from fegear.base.shown import shown
+from fegear.engine.colours import ROLES
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
@@ -99,7 +100,13 @@ def said_of_range(seen: Seen) -> Iterator[str]:
 
 
 def _key(seen: Seen) -> str:
-    return seen.key.replace(" ", "_")
+    return seen.key.replace(" ", "_").replace("-", "_")
+
+
+def _role(seen: Seen) -> str:
+    """The look of a relief, or of its place among several that have none."""
+    places = list(seen.data.over_range)
+    return seen.key if seen.key in ROLES else f"series:{places.index(seen.key)}"
 
 
 def _first(seen: Seen) -> LeftOverRange:
@@ -130,7 +137,7 @@ RANGE_CHART = Chart(
             "torque",
             (
                 Bundle(
-                    Family("over_range", role="{key}"),
+                    Family("over_range", role=_role),
                     (
                         Line("peak_to_peak", "{key}", look={"markers": True}),
                         Line("most", look={"width": 0.8, "markers": False}),
