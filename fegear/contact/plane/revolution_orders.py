@@ -19,6 +19,8 @@ from fegear.contact.plane.over_revolution import OverRevolution
 
 #: Even samples over a base pitch, and the highest harmonic of the mesh frequency.
 _SAMPLES, _HIGHEST = 128, 8
+#: Share of the transmission error below which a part of it is round-off.
+_ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
@@ -91,13 +93,15 @@ def condition_indicators(found: OverRevolution, teeth: Sequence[int]) -> Conditi
     difference = residual.copy()
     difference[first[(first > 0) & (first < spectrum.size)]] = 0.0
     r, d, g = (np.fft.irfft(one, te.size) for one in (residual, difference, regular))
+    whole = _rms(g + r)
+    r, d = (np.where(_rms(one) > _ROUND_OFF * whole, one, 0.0) for one in (r, d))
     amplitude = 2.0 * np.abs(spectrum) / te.size
     harmonics = float(amplitude[mesh[1 : _HIGHEST + 1]].sum())
     sides = sum(float(amplitude[cycles + side * shaft]) for shaft in beside for side in (-1, 1))
-    whole = _rms(g + r)
+    sides = sides if sides > _ROUND_OFF * whole else 0.0
     return ConditionIndicators(
-        _rms(r), _moment(r, te, 4), float(np.ptp(te)) / harmonics if harmonics else math.nan, _moment(d, te, 4),
-        _moment(d, te, 6), _rms(d) / _rms(g) if _rms(g) else math.nan, sides / whole if whole else math.nan,
+        _rms(r), _moment(r, 4), float(np.ptp(te)) / harmonics if harmonics else math.nan, _moment(d, 4),
+        _moment(d, 6), _rms(d) / _rms(g) if _rms(g) else math.nan, sides / whole if whole else math.nan,
     )  # fmt: skip
 
 
@@ -105,12 +109,10 @@ def _rms(signal: Array) -> float:
     return float(np.sqrt(np.mean(signal**2)))
 
 
-def _moment(signal: Array, whole: Array, power: int) -> float:
-    """N sum s^n / (sum s^2)^(n/2) with the mean taken away; not a number of what is round-off of the whole signal."""
+def _moment(signal: Array, power: int) -> float:
+    """N sum s^n / (sum s^2)^(n/2) with the mean taken away; not a number where there is no signal."""
     size = _rms(signal)
-    if size <= 1e-9 * _rms(whole):
-        return math.nan
-    return float(np.mean(((signal - signal.mean()) / size) ** power))
+    return float(np.mean(((signal - signal.mean()) / size) ** power)) if size > 0.0 else math.nan
 
 
 @dataclass(frozen=True)

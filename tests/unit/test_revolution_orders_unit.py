@@ -1,0 +1,86 @@
+"""Orders and condition indicators of transmission errors that are made up: what is put in comes out."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.contact.plane.over_revolution import OverRevolution
+from fegear.contact.plane.revolution_orders import along_revolution, condition_indicators, revolution_orders
+
+CYCLES, POSITIONS, PITCH, START = 12, 400, 6e-3, -2e-3
+
+
+def made(te):
+    """A pair over twelve base pitches whose transmission error is a function of the turn, 0 to 1, in um."""
+    x = np.linspace(START, START + PITCH, POSITIONS + 1)
+    turn = (x - START + PITCH * np.arange(CYCLES)[:, None]) / (CYCLES * PITCH)
+    error = 1e-6 * (te(turn) + 0.0 * turn)
+    loads = np.stack([np.full(error.shape, 100.0), np.where(turn < 0.5, 50.0, 0.0)], axis=1)
+    nan = np.full(error.shape, math.nan)
+    return OverRevolution(x, PITCH, 100.0, np.array([0, 1]), error, 1e8 + 1e12 * error, loads, 3, nan, nan)
+
+
+def mesh(turn):
+    return 5.0 + 2.0 * np.cos(2.0 * math.pi * CYCLES * turn) + 0.5 * np.sin(2.0 * math.pi * 2 * CYCLES * turn)
+
+
+def side(turn, a=0.3):
+    """First sidebands of the mesh frequency: its amplitude rises and falls once a turn."""
+    return a * np.cos(2.0 * math.pi * turn) * np.cos(2.0 * math.pi * CYCLES * turn)
+
+
+def test_amplitudes_stand_at_their_orders():
+    found = revolution_orders(made(lambda turn: mesh(turn) + side(turn)))
+    at = dict(zip(found.n.tolist(), found.te * 1e6, strict=True))
+    assert at[CYCLES] == pytest.approx(2.0, rel=2e-3)
+    assert at[2 * CYCLES] == pytest.approx(0.5, rel=2e-3)
+    assert (at[CYCLES - 1], at[CYCLES + 1]) == pytest.approx((0.15, 0.15), rel=2e-3)
+    assert max(at[n] for n in (1, 5, CYCLES - 2, CYCLES + 2)) < 1e-3
+    assert found.mesh_order[CYCLES - 1] == 1.0
+    assert found.mesh_stiffness[CYCLES - 1] == pytest.approx(2e6, rel=2e-3)
+
+
+def test_equal_base_pitches_have_no_residual():
+    found = condition_indicators(made(mesh), [CYCLES])
+    assert found.residual_rms == found.energy_ratio == found.sideband_level_factor == 0.0
+    assert math.isnan(found.residual_kurtosis)
+    assert math.isnan(found.fm4)
+    assert math.isnan(found.m6a)
+    assert found.fm0 == pytest.approx(np.ptp(mesh(np.linspace(0.0, 1.0, 20_001))) / 2.5, rel=2e-3)
+
+
+def test_sidebands_are_in_the_residual_and_not_in_the_difference():
+    found = condition_indicators(made(lambda turn: mesh(turn) + side(turn)), [CYCLES])
+    assert found.residual_rms == pytest.approx(0.15e-6, rel=2e-3)  # two lines of .15
+    assert found.residual_kurtosis == pytest.approx(9 / 4, rel=1e-2)  # a product of two cosines
+    assert found.energy_ratio < 1e-3
+    rms = math.sqrt(0.5 * (2.0**2 + 0.5**2 + 2 * 0.15**2))
+    assert found.sideband_level_factor == pytest.approx(0.3 / rms, rel=2e-3)
+    other = condition_indicators(made(lambda turn: mesh(turn) + side(turn)), [CYCLES // 2])  # of another shaft
+    assert other.sideband_level_factor < 1e-3
+    assert other.energy_ratio == pytest.approx(0.15 / math.sqrt(0.5 * (2.0**2 + 0.5**2)), rel=5e-3)
+
+
+def test_a_pulse_once_a_turn_is_far_from_normal():
+    pulse = condition_indicators(made(lambda turn: mesh(turn) + np.exp(-(((turn - 0.3) / 0.01) ** 2))), [CYCLES])
+    line = condition_indicators(made(lambda turn: mesh(turn) + np.cos(2.0 * math.pi * 5 * turn)), [CYCLES])
+    assert line.fm4 == pytest.approx(1.5, rel=1e-2)  # of a cosine
+    assert line.m6a == pytest.approx(2.5, rel=1e-2)
+    assert line.residual_kurtosis == pytest.approx(1.5, rel=1e-2)
+    assert pulse.residual_kurtosis > 15.0
+    assert pulse.fm4 > 10.0
+
+
+def test_rows_follow_each_other_round_the_turn():
+    found = made(lambda turn: mesh(turn) + 3.0 * (turn > 1.0 - 1.0 / CYCLES))
+    rows = along_revolution(found, 0.03)
+    assert (np.diff(rows.x) > -1e-12).all()
+    assert rows.driver_angle == pytest.approx(rows.x / 0.03)
+    assert rows.base_pitch[POSITIONS + 1] == 1
+    assert rows.te_error is None
+    assert set(rows.pairs_in_contact[rows.base_pitch == 0]) == {2}
+    assert set(rows.pairs_in_contact[rows.base_pitch == 11]) == {1}
+    late = rows.te_residual[rows.base_pitch == 11]
+    assert late[1:] == pytest.approx(np.full(POSITIONS, 3e-6), rel=1e-6)
+    assert rows.te_residual[rows.base_pitch == 4] == pytest.approx(np.zeros(POSITIONS + 1), abs=1e-15)
