@@ -155,6 +155,10 @@ class Record:
         by_line = self.contexts(path)
         return {name for line in lines for name in by_line.get(line, ())}
 
+    def _names(self, test: str, path: str) -> bool:
+        """Whether the file of a test imports a module by name."""
+        return any(said in self.texts.get(test.partition("::")[0], "") for said in module_imports(path))
+
     def tests(self, mutant: Mutant) -> list[str]:
         """Those that execute its line, or use what it made; for what is made at import, those that run what uses it."""
         path, tree = mutant.path, ast.parse((ROOT / mutant.path).read_bytes())
@@ -171,6 +175,7 @@ class Record:
             module = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
             users = {path}.union(*(self.importers[module, name] for name in names))
             found = set().union(*(self.executed(user, _function_lines(user)) for user in users))
+            found |= {name for name in self.seconds if self._names(name, path)}  # a table is read where nothing runs
         more = {heir for name in found for heir in self.heirs.get(name, ())}
         files = {name.split("::")[0] for name in found if "::" in name}
         remembering = [
@@ -178,8 +183,7 @@ class Record:
         ]
         more |= {name for one in remembering for name in self.of_file[one]}
         more |= {name for one in found if one.endswith("::*") for name in self.of_file[one[:-3]]}
-        near = module_imports(path)
-        far = {name: not any(said in self.texts.get(name.split("::")[0], "") for said in near) for name in self.seconds}
+        far = {name: not self._names(name, path) for name in self.seconds}
         first = sorted(found & set(self.seconds), key=lambda name: (far[name], self.seconds[name]))
         return first + sorted((more - found) & set(self.seconds), key=self.seconds.__getitem__)
 
