@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.base.errors import RangeError
+from fegear.dynamics.planetary import cycle_extremes
 from fegear.dynamics.planetary.set_response import forced_response, linear_set
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
@@ -141,3 +143,25 @@ def test_the_note_on_a_rough_force_names_the_key_that_helps():
     (note,) = (one for one in shown.remarks if "20 %" in one)
     assert note.startswith("P.dynamic_force (")
     assert note.endswith("estimated error above 20 % of the value; reduce accuracy.tolerance.")
+
+
+def test_a_mode_is_silent_by_its_share_of_the_largest_force_of_the_teeth_s_own_error(monkeypatch):
+    """What modes ring with is counted by their force over their frequency; silence by stiffness times the error."""
+    asked = []
+
+    class EnoughError(Exception):
+        """Nothing more is looked at."""
+
+    def parts(modes, natural, loud, silent):
+        asked.append((loud.tolist(), silent))
+        raise EnoughError
+
+    monkeypatch.setattr(cycle_extremes, "_parts", parts)
+    error = SimpleNamespace(rows=np.array([[[1e-6, -3e-6], [2e-6, 0.0]], [[-5e-6, 1e-6], [0.0, 0.0]]]))
+    forces = SimpleNamespace(error=error, stiffness=np.array([2e8, 1e8]), rows=np.array([[0.5, -2.0], [1.5, 3.0]]))
+    modes = SimpleNamespace(rate=np.array([-1.0 + 10.0j, -2.0 + 40.0j]))
+    with pytest.raises(EnoughError):
+        cycle_extremes.cycle_extremes(modes, np.array([10.0, 40.0]), forces)
+    ((loud, silent),) = asked
+    assert loud == pytest.approx([1.5e8 / 10.0, 4e8 / 40.0])
+    assert silent == pytest.approx(cycle_extremes._SILENT * 2e8 * 4e-6)
