@@ -1,6 +1,7 @@
 """Springs of gears with a width: the flanks they come from, roles exchanged, spur gears and a helix that vanishes."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import life_of_contact
 from fegear.contact.wide.loaded import FlankPair
-from fegear.dynamics.train.flank_excitation import flank_excitation
+from fegear.dynamics.train.flank_excitation import _Life, flank_excitation
 from fegear.dynamics.train.mesh_excitation import mesh_excitation, tooth_pair_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.settings import SolidSettings
@@ -161,3 +162,13 @@ def test_a_helix_that_goes_to_zero_is_a_spur_pair():
     far = np.abs(helical / spur - 1.0) < 1e-3
     assert far.mean() > 0.9  # but where a pair comes or goes within the width of the looking
     np.testing.assert_allclose(found[1].mean_compliance(), found[0].mean_compliance(), rtol=5e-3)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_phases_belong_to_roll_positions_of_the_base_pitch_that_the_points_begin(direction):
+    points = SimpleNamespace(period=2.0, breaks=np.array([1.0, 1.4, 2.2]))
+    life = _Life(points, 0, np.empty((0, 0)), np.empty((0, 0)), np.empty(0), direction)
+    s = np.array([0.0, 0.1, 0.49, 0.5, 0.74, 1.3, -0.7])
+    x, number = life.places(s)
+    assert ((x >= 1.0) & (x < 3.0)).all()
+    np.testing.assert_allclose(x + 2.0 * number, 2.0 * direction * s, atol=1e-12)
