@@ -101,7 +101,9 @@ def cracked_sector(tooth: InvoluteTooth, bore_radius: float, settings: MeshSetti
             continue
         way = path[:, -1] - path[:, -2]
         return CrackedSector(mesh, path[:, -1], way / np.hypot(*way), room, crack.mouth, crack.back)
-    raise FegearError(f"No valid mesh of the cracked tooth: it still {refused.rule}.") from refused
+    raise FegearError(
+        f"No valid mesh of the cracked tooth: it still {refused.rule}; change depth or angle of the crack a little."
+    ) from refused
 
 
 def refuse_crack(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, crack: Crack) -> None:
