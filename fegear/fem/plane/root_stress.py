@@ -320,8 +320,8 @@ def _without_contact(values: Array, arc: Array, ends: Array, clearance: float) -
     return np.asarray(values + faded * (last - values))
 
 
-def curves_apart(values: Array, others: Array) -> Array:
-    """How far two curves are apart where the first counts: above half its largest value, shape (...).
+def curves_apart(values: Array, others: Array, part: float = 0.5) -> Array:
+    """How far two curves are apart where the first counts, shape (...).
 
     The largest values of two solutions may agree by chance; their curves do not.
 
@@ -329,8 +329,10 @@ def curves_apart(values: Array, others: Array) -> Array:
     ----------
     values, others : ndarray, shape (..., places)
         Stress, positive where it is largest.
+    part : float
+        Of its largest value, above which the first counts.
     """
-    counts = values >= 0.5 * values.max(axis=-1, keepdims=True)
+    counts = values >= part * values.max(axis=-1, keepdims=True)
     return np.asarray(np.where(counts, np.abs(others - values), 0.0).max(axis=-1))
 
 

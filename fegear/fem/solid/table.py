@@ -36,6 +36,9 @@ _ESTIMATE = {
     "c_self": "contact", "c_prev": "neighbour", "c_next": "neighbour", "root_tension": "root_tension",
     "root_compression": "root_compression",
 }  # fmt: skip
+#: Of the largest root stress, above which the curve along the face is compared: what two solutions differ by where
+#: stress is lower does not reach the largest.
+_BESIDE_LARGEST = 0.9
 #: Places along the face per module at which root stress is looked at, and how many at least.
 _PLACES_PER_MODULE, _FEWEST_PLACES = 5.0, 33
 
@@ -68,7 +71,7 @@ class SolidTable(ReadOnlyArrays):
 
     `radius`, `roll_angle` and both half-widths have shape (R,), places along the face shape (Z,). Errors are absolute,
     of c_self, c_neighbour, root_tension, root_compression: by what a coarser solution differs (stress: along the face,
-    where it is large), the worst along the face and over the radii beside each; NaN without one. `influence` is what
+    beside the largest), the worst along the face and over the radii beside each; NaN without one. `influence` is what
     the table was made from.
     """
 
@@ -209,12 +212,13 @@ class BandNumbers:
     def apart(self, other: BandNumbers) -> dict[str, Array]:
         """How far another solution's numbers lie from these, over these, shape (R, Z) each.
 
-        Of root stress the curves along the face are compared where they are large: largest values may agree by chance.
+        Of root stress the curves along the face are compared beside the largest: largest values may agree by chance.
         """
         found = {key: np.abs(other.compliance[key] / value - 1.0) for key, value in self.compliance.items()}
         for side, root in self.root.items():
             sign = 1.0 if side == "tension" else -1.0
-            found[f"root_{side}"] = curves_apart(sign * root.along, sign * other.root[side].along) / np.abs(root.value)
+            apart = curves_apart(sign * root.along, sign * other.root[side].along, _BESIDE_LARGEST)
+            found[f"root_{side}"] = apart / np.abs(root.value)
         return found
 
 
