@@ -314,11 +314,11 @@ def _spread(seen: Seen) -> tuple[Figure, ...]:
 
 def _closest(seen: Seen) -> Iterator[str]:
     """How far each formula is off the finite elements, the closest first."""
-    known = [(name, one) for name, one in seen.data.formulas.items() if one.median_ratio]
-    known.sort(key=lambda item: abs(math.log(item[1].median_ratio)))
-    for name, one in known:
-        low, high = figures(one.lowest_ratio), figures(one.highest_ratio)
-        yield f"{name}: root stress {figures(one.median_ratio)} of FE (median), from {low} to {high}."
+    known = [(name, one.ratio[np.isfinite(one.ratio)]) for name, one in seen.data.formulas.items()]
+    known = [(name, ratio) for name, ratio in known if ratio.size]
+    for name, ratio in sorted(known, key=lambda item: abs(math.log(np.median(item[1])))):
+        middle, low, high = (figures(float(one)) for one in (np.median(ratio), ratio.min(), ratio.max()))
+        yield f"{name}: root stress {middle} of FE (median), from {low} to {high}."
 
 
 def _remarks(seen: Seen) -> tuple[str, ...]:
