@@ -25,12 +25,14 @@ from fegear.case.part import (
     refuse,
 )
 from fegear.geometry.plausible import refuse_shaft
-from fegear.shafts.beam import Section, Shaft
-from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.life import LifeRating
+from fegear.shafts.printed_bearing import PrintedBearing
+from fegear.shafts.section import Section
 
 if TYPE_CHECKING:
+    from fegear.shafts.beam import Shaft
     from fegear.shafts.bearing import Bearing
+    from fegear.shafts.catalogue_bearing import CatalogueBearing
 
 Torque = Annotated[float, quantity("torque")]
 
@@ -43,13 +45,13 @@ if TYPE_CHECKING:
     class _LifeKeys(Part, LifeRating):  # type: ignore[misc]  # frozen by pydantic
         """Keys of the spec."""
 
-    class _CatalogueKeys(Part, CatalogueBearing):  # type: ignore[misc]  # frozen by pydantic
+    class _CatalogueKeys(Part, PrintedBearing):  # type: ignore[misc]  # frozen by pydantic
         """Keys of the spec."""
 
 else:
     _SectionKeys, _LifeKeys = keys_of(Section), keys_of(LifeRating)
     _CatalogueKeys = keys_of(
-        CatalogueBearing,
+        PrintedBearing,
         otherwise={
             **dict.fromkeys(("kind", "bore", "outside_diameter", "width"), "that of the designation"),
             "dynamic_rating": "that of `life`, if specified",
@@ -152,6 +154,8 @@ class ShaftInSpacePart(Part):
 
     def build(self, *, rigid: bool = False) -> Shaft:
         """Make the shaft."""
+        from fegear.shafts.beam import Shaft
+
         made = tuple(Section(one.length, one.outer, one.inner, one.outer_end, one.inner_end) for one in self.sections)
         modulus = math.inf if rigid or self.rigid else self.material.young_modulus
         return Shaft(made, modulus, self.material.poisson_ratio)
@@ -263,6 +267,7 @@ class BearingPart(Part):
     @property
     def printed(self) -> CatalogueBearing | None:
         """What a catalogue prints of it: the keys given, the rest from the designation."""
+        from fegear.shafts.catalogue_bearing import CatalogueBearing
         from fegear.shafts.designations import envelope_of
 
         if self.designation is None and self.catalogue is None:

@@ -25,10 +25,9 @@ from functools import cached_property
 from typing import Literal
 
 from fegear.base.errors import RangeError
-from fegear.base.given import given
 from fegear.base.printed import percent
-from fegear.shafts.designations import Kind
 from fegear.shafts.load_ratings import RATING_FACTOR, dynamic_rating, static_rating
+from fegear.shafts.printed_bearing import Kind, PrintedBearing
 from fegear.shafts.rolling_bearing import RollingBearing
 
 
@@ -78,35 +77,14 @@ _FACTORS = (0.6, 1.8)
 
 
 @dataclass(frozen=True)
-class CatalogueBearing:
-    """A bearing of one row as a catalogue prints it.
+class CatalogueBearing(PrintedBearing):
+    """A bearing of one row as a catalogue prints it, with what is estimated of its inside.
 
     Raises
     ------
     RangeError
         If the dimensions leave no bearing, or a rating does not belong to them.
     """
-
-    kind: Kind = given(meaning="Deep groove or angular contact ball, cylindrical or tapered roller bearing.")
-    bore: float = given("length", "Bore d.", above=0.0)
-    outside_diameter: float = given("length", "Outside diameter D.", above=0.0)
-    width: float = given("length", "Width B (of the inner ring).", above=0.0)
-    dynamic_rating: float | None = given("force", "Basic dynamic load rating C.", default=None, above=0.0)
-    static_rating: float | None = given("force", "Basic static load rating C_0.", default=None, above=0.0)
-    contact_angle: float | None = given(
-        "angle", "Contact angle, positive if axial load towards +z is supported.", default=None
-    )
-    clearance: float = given("length", "Diametral clearance in operation; preload if negative.", default=0.0)
-
-    def __post_init__(self) -> None:
-        """Refuse what is no envelope."""
-        if not 0.0 < self.bore < self.outside_diameter:
-            raise RangeError(
-                "outside_diameter", f"{self.outside_diameter * 1e3:.6g} mm",
-                f"must be larger than the bore of {self.bore * 1e3:.6g} mm", "correct one of them",
-            )  # fmt: skip
-        if not self.width > 0.0:
-            raise RangeError("width", f"{self.width * 1e3:.6g} mm", "must be positive")
 
     @property
     def said(self) -> str:

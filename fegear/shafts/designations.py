@@ -16,11 +16,9 @@ import math
 import re
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Literal
 
 from fegear.base.errors import InputError
-
-Kind = Literal["ball", "cylindrical", "tapered"]
+from fegear.shafts.printed_bearing import Kind
 
 #: Outside diameters D for bore numbers 00 to 20 by diameter series [mm].
 _OUTSIDE = {

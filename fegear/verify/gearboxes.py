@@ -87,11 +87,12 @@ def _helical(teeth: int, hand: Literal["left", "right"]) -> Gear:
 def _two_stages() -> Gearbox:
     """Three shafts on two bearings each, the left one of which holds along the axis, and two helical meshes."""
     from fegear.geometry.pair import GearPair
-    from fegear.shafts.beam import Section, Shaft
+    from fegear.shafts.beam import Shaft
     from fegear.shafts.bearing import stiff
     from fegear.shafts.gearbox import Gearbox
     from fegear.shafts.held import LoadedShaft, Seat
     from fegear.shafts.mesh import MeshPlace
+    from fegear.shafts.section import Section
 
     pairs = GearPair(_helical(20, "right"), _helical(31, "left")), GearPair(_helical(23, "left"), _helical(40, "right"))
     meshes = (

@@ -17,7 +17,8 @@ E, NU = 206e9, 0.3
 
 
 def _shaft(*sections: tuple[float, ...]) -> Shaft:
-    from fegear.shafts.beam import Section, Shaft
+    from fegear.shafts.beam import Shaft
+    from fegear.shafts.section import Section
 
     return Shaft(tuple(Section(*one) for one in sections), E, NU)
 
@@ -95,8 +96,9 @@ def tension_and_twist() -> Iterator[Compared]:
 @ROWS.add("bearings with clearance", "own", "springs behind a gap in closed form")
 def clearances() -> Iterator[Compared]:
     """A rigid shaft on two bearings of 30 um radial and 10 um axial clearance."""
-    from fegear.shafts.beam import Section, Shaft
+    from fegear.shafts.beam import Shaft
     from fegear.shafts.bearing import LooseBearing
+    from fegear.shafts.section import Section
 
     bearing, force = LooseBearing(2e8, 1e8, 0.0, 30e-6, 10e-6), 1000.0
     rigid = Shaft((Section(0.2, 0.05),), math.inf)

@@ -10,12 +10,13 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gear_on_shaft import GearOnShaft
 from fegear.shafts.gearbox import Gearbox
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.section import Section
 
 BORE, ROOT, E, NU = 0.02, 0.03, 206e9, 0.3
 

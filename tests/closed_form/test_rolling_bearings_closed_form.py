@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import RangeError
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.life import LifeRating
 from fegear.shafts.rolling_bearing import RollingBearing, point_contact
+from fegear.shafts.section import Section
 from fegear.shafts.solution import deflect
 
 BALL = RollingBearing("ball", 9, 12.7e-3, 65e-3, clearance=15e-6)

@@ -24,11 +24,12 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gearbox import CAUSES, Gearbox
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.section import Section
 
 E, COS, D_1, F_T = 206e9, math.cos(math.radians(20.0)), 0.1, 1e4
 BENDING, TORSION = CAUSES.index("bending") + 1, CAUSES.index("torsion") + 1

@@ -13,11 +13,12 @@ from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.gearbox import CAUSES, Gearbox
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.section import Section
 
 E_Z = np.array([0.0, 0.0, 1.0])
 OTHER = {"right": "left", "left": "right", "spur": "spur"}

@@ -8,9 +8,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.held import Around, LoadedShaft, Seat
+from fegear.shafts.section import Section
 from fegear.shafts.solution import deflect, response
 
 E, NU = 206e9, 0.3

@@ -19,8 +19,9 @@ import numpy as np
 import pytest
 
 from fegear.fem.revolved_body import RevolvedBody
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.gear_on_shaft import GearOnShaft
+from fegear.shafts.section import Section
 
 E, NU = 206e3, 0.3  # N/mm^2
 #: Lengths and diameters [mm], thickest first.

@@ -13,9 +13,10 @@ from scipy.sparse import bmat
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
 from fegear.shafts.held import LoadedShaft, Seat
+from fegear.shafts.section import Section
 from fegear.shafts.solution import deflect
 
 E, NU, STEP, DEGREE = 206e9, 0.3, 5e-3, 4

@@ -115,6 +115,9 @@ MORE = {
         "mesh_stiffness": {"start": "100 N/um", "stop": "200 N/um"}}}}}),
     "force": ("blankenship_singh_forces", {"transmissibility": {"I": {"excitation": {
         "external": [{"on": "driver", "order": 1, "y": "1 N"}]}}}}),
+    "catalogue": ("two_stage_shafts", {
+        "bearing": {"printed": {"designation": "6206", "catalogue": {"static_rating": "11.2 kN"}}},
+        "shaft": {"in": {"bearings": [{"bearing": "ball", "at": "10 mm"}, {"bearing": "printed", "at": "110 mm"}]}}}),
     "sleeve": ("two_stage_shafts", {"shaft": {
         "in": {"bearings": [{"bearing": "ball", "at": "10 mm"}, {"bearing": "ball", "at": "110 mm"},
                             *({"bearing": "ball", "at": at, "around": "sleeve"} for at in ("70 mm", "90 mm"))]},

@@ -19,11 +19,12 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.results.shafts.loaded_shafts import _scales
-from fegear.shafts.beam import Section, Shaft
+from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import LooseBearing, stiff
 from fegear.shafts.gearbox import Gearbox
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.mesh import MeshPlace
+from fegear.shafts.section import Section
 
 MODULE, WIDTH, LOAD = 3e-3, 12e-3, 4000.0
 INF = math.inf

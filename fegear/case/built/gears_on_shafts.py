@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.revolved_body import RevolvedBody
-from fegear.shafts.beam import Section
 from fegear.shafts.gear_on_shaft import GearOnShaft
+from fegear.shafts.section import Section
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene

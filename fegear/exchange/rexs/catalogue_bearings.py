@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from fegear.exchange.rexs.model import Component
     from fegear.exchange.rexs.said import Said
-    from fegear.shafts.designations import Envelope, Kind
+    from fegear.shafts.designations import Envelope
+    from fegear.shafts.printed_bearing import Kind
 
 #: Parts of the types of bearings, by the kind whose inside can be estimated; the first that is found counts.
 _KINDS: tuple[tuple[str, Kind | None], ...] = (
