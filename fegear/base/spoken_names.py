@@ -13,6 +13,8 @@ _PHRASES = {
     "root tension": "root stress, tension side",
     "root compression": "root stress, compression side",
 }
+#: Of drawn populations: the last word, where no tooth is numbered.
+_SHARES = {"50": "median", "95": "95th percentile"}
 #: Identifiers that are symbols: S_H, c_self, K_Hbeta.
 _SYMBOL = re.compile(r"(?:[A-Za-z]|sigma|eps|mu|kappa)_\w+|[A-Z]\w?")
 
@@ -35,7 +37,10 @@ def spoken(name: str) -> str:
 
 
 def _said(part: str) -> str:
-    said = " ".join(_WORDS.get(word, word) for word in part.split("_")).rstrip(",")
+    *words, last = part.split("_")
+    if words and last in _SHARES and words[-1] != "tooth":
+        return f"{_said('_'.join(words))}, {_SHARES[last]}"
+    said = " ".join(_WORDS.get(word, word) for word in (*words, last)).rstrip(",")
     for phrase, better in _PHRASES.items():
         said = said.replace(phrase, better)
     return said

@@ -271,6 +271,8 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
         ("I.driver.largest_root_tension", "driver: maximum root stress, tension side"),
         ("I.te_peak_to_peak.linear_tip_relief", "transmission error, peak to peak: linear tip relief"),
         ("rules_checked", "rules checked"),
+        ("I.te_peak_to_peak_95", "transmission error, peak to peak, 95th percentile"),
+        ("I.hertz_pressure_50", "Hertzian pressure, median"), ("a.stiffness_loss_tooth_50", "stiffness loss tooth 50"),
         ("I.driver.S_F", ""), ("a.c_self_at_pitch", ""), ("I.K_Hbeta", ""),
     ],
 )  # fmt: skip
