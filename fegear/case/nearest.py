@@ -6,7 +6,7 @@ import difflib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Collection, Iterable
 
     from fegear.case.trade_words import Meaning
 
@@ -16,7 +16,10 @@ _ALIKE, _ALIKE_KEYS = 0.5, 0.65
 
 
 def nearest(
-    name: str, known: Iterable[str], lists_all: str = "", words: Callable[[str], Meaning | None] | None = None
+    name: str,
+    known: Iterable[str],
+    lists_all: str = "",
+    words: Callable[[str, Collection[str]], Meaning | None] | None = None,
 ) -> str:
     """Return a remedy that says which known name is nearest to `name` if one is, and lists them or says what does.
 
@@ -27,12 +30,12 @@ def nearest(
     lists_all : str
         What lists all of them, where they are too many for a sentence.
     words : callable, optional
-        ``words(name)`` -> what a word of the trade means, which comes before its spelling.
+        ``words(name, known)`` -> what a word of the trade means, which comes before its spelling.
     """
     names = sorted(known)
     listed = f"known here: {', '.join(names)}" if names else "none is defined here"
     listed = f"{lists_all} lists all {len(names)}" if lists_all else listed
-    meaning = words(name) if words else None
+    meaning = words(name, names) if words else None
     if meaning is not None:
         return f"{meaning.remedy(names)}; {listed}"
     near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE_KEYS if words else _ALIKE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import PATH, InputError, shown
@@ -10,18 +11,22 @@ from fegear.case.nearest import nearest
 from fegear.case.trade_words import Meaning, of_key, of_value
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from pydantic import ValidationError
     from pydantic_core import ErrorDetails
 
 
 #: A key that stands in more tables than these says nothing of the one that is meant.
 _FEW_PLACES = 2
+#: How alike two spellings are of which one is a slip of the other: `torques`, `torque`.
+_ALL_BUT = 0.9
 
 
-def _meant(word: str) -> Meaning | None:
-    """What an unknown key means: a word of the trade, or a key of another table."""
+def _meant(word: str, known: Collection[str] = ()) -> Meaning | None:
+    """What an unknown key means: a word of the trade, or a key of another table unless it is all but one of these."""
     found = of_key(word)
-    places = () if found else tuple(places_of(word))
+    places = () if found or get_close_matches(word, known, n=1, cutoff=_ALL_BUT) else tuple(places_of(word))
     return Meaning(places) if 0 < len(places) <= _FEW_PLACES else found
 
 

@@ -66,7 +66,8 @@ _LETTERS = str.maketrans({
 _RACK = "racks are not supported; use a gear with 1000 teeth as an approximation"
 _STEPPED = "stepped planets are not supported: each planet is one gear meshing with sun and ring"
 _DOUBLE = "double-helical gears are not supported: model one half with half the face width and torque"
-_CRACK = "cracks are not supported"
+_GROWN = "growth of cracks is not computed; see stress-intensity"
+_BROKEN = "broken and missing teeth are not supported; cracked ones are (gear.NAME.odd_tooth)"
 _WORN = "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)"
 _CROSSED = "only cylindrical gears on parallel axes are supported"
 _UNEVEN = "asymmetric teeth are not supported (one pressure angle for both flanks)"
@@ -219,7 +220,9 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", (), _RACK),
     ("herringbone double_helical double_helix pfeilverzahnung gap_width", (), _DOUBLE),
     ("stepped_planet compound_planet stufenplanet", (), _STEPPED),
-    ("crack cracks tooth_crack crack_length riss broken_tooth missing_tooth", (), _CRACK),
+    ("crack cracks tooth_crack cracked_tooth crack_length riss", ("gear.NAME.odd_tooth",),
+     "[[gear.NAME.odd_tooth]], one table for each tooth"),
+    ("broken_tooth missing_tooth", (), _BROKEN),
     ("wear wear_depth spall spalling pit pits verschleiss", (), _WORN),
     (("bevel bevel_gear worm worm_gear hypoid crossed_axes shaft_angle_of_axes cone_angle kegelrad schnecke "
      "achsenwinkel"), (), _CROSSED),
@@ -257,7 +260,8 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("undercut clearance interference tip_thickness plausibility", ("tooth-geometry-check",), ""),
     ("tolerance_analysis monte_carlo sensitivity", ("robustness",), ""),
     ("planet_load_share k_gamma lastverteilung", ("planet-load-sharing",), ""),
-    ("crack crack_propagation stress_intensity_factor sif riss", (), _CRACK),
+    ("crack stress_intensity_factor sif riss", ("stress-intensity",), ""),
+    ("crack_propagation crack_growth", (), _GROWN),
     ("wear wear_depth verschleiss", (), _WORN),
     ("noise sound_power sound_pressure acoustics geraeusch", (),
      "noise is not computed; see transmission-error and dynamic-factor for its excitation"),

@@ -163,7 +163,7 @@ def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -
     if result in known.broken:
         raise known.broken[result]
     if result not in by_result:
-        rule, remedy = "unknown result", nearest(result, by_result, '"fegear results"', of_result)
+        rule, remedy = "unknown result", nearest(result, by_result, '"fegear results"', lambda word, _: of_result(word))
         raise InputError("results", f'"{result}"', rule, remedy)
 
 

@@ -32,7 +32,8 @@ def test_every_task_of_every_case_is_predicted():
         scene, plan = planned(path.stem)
         seconds = forecast_seconds(scene, plan)
         assert all(found is not None and found > 0.0 for found in seconds), path.stem
-        assert not plan.remarks, path.stem
+        # What a drawing leaves to be derived is said in a note.
+        assert path.stem == "typed_drawing" or not plan.remarks, path.stem
 
 
 def test_a_shape_is_solved_once_and_counts_once():

@@ -45,7 +45,8 @@ TYPED = {
     "gear.a.span_measurement": '"span" (with span_teeth)',
     "gear.a.measurement_over_pins": '"over_pins" (with ball_diameter)',
     "gear.a.dimension_over_balls": '"over_balls" (with ball_diameter)',
-    "gear.a.crack": "cracks are not supported",
+    "gear.a.crack": '"odd_tooth" ([[gear.NAME.odd_tooth]], one table for each tooth)',
+    "gear.a.missing_tooth": "broken and missing teeth are not supported",
     "gear.a.tooth_pitch": '"circular_pitch"',
     "gear.a.base_pitch": '"module" (the base pitch over pi cos(alpha))',
     # English
@@ -146,6 +147,7 @@ def test_a_word_of_the_trade_leads_to_what_it_means(path):
 
 
 RESULTS = {
+    "crack": "stress-intensity",
     "contact-ratio": "geometry", "mesh_stiffness": "transmission-error", "te": "transmission-error",
     "bending-stress": "root-stress", "safety": "rating", "AGMA": "rating", "scuffing": "flank-surface",
     "Wirkungsgrad": "gear-mesh-power-loss", "Tragbild": "load-distribution", "eigenfrequencies": "natural-modes",
@@ -154,7 +156,7 @@ RESULTS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("word", [*RESULTS, "crack", "noise"])
+@pytest.mark.parametrize("word", [*RESULTS, "crack_growth", "noise"])
 def test_of_a_result(word, tmp_path):
     document = {"results": [word], "gear": {"a": {"teeth": 24, "module": "3 mm"}}}
     with pytest.raises(InputError) as refusal:
