@@ -13,20 +13,21 @@ from fegear.base.errors import InputError, shown
 
 #: What names of tables and figures go on with where shorter ones end: a test looks for them in all results.
 WORDS = frozenset({
-    "agma", "asymptotes", "candidates", "chart", "charts", "contact", "contact_kinds", "contact_pieces",
-    "contact_single", "convergence", "critical_speeds", "curves", "curves_summary", "design", "design_roll",
-    "designs", "determinants", "deviations", "distribution", "distribution_loads", "distribution_roll",
-    "distributions", "draws", "factors", "families", "force", "forces", "foretold", "fracture", "friction",
-    "functions", "geometry_check", "harmonic", "harmonics", "histogram", "history", "in_ring", "influences",
-    "iso_6336", "kinds", "load_sharing", "loads", "loss", "loss_loads", "map", "members", "modes", "motion", "of",
-    "on_teeth", "optimum", "over_face", "over_face_loads", "over_holes", "passing", "peak_to_peak", "peaks",
-    "percentiles", "phases", "phasing", "pieces", "places", "points", "pressure", "ratios", "reliefs", "response",
-    "ripple", "ripple_critical_speeds", "ripple_spectrum", "ripple_waterfall", "roll", "root_stress", "rotational",
+    "agma", "asymptotes", "bearings", "candidates", "changes", "chart", "charts", "contact", "contact_kinds",
+    "contact_pieces", "contact_single", "convergence", "critical_speeds", "curves", "curves_summary", "design",
+    "design_roll", "designs", "determinants", "deviations", "distribution", "distribution_loads", "distribution_roll",
+    "distributions", "draws", "factors", "families", "first_harmonic", "force", "forces", "foretold", "fracture",
+    "friction", "functions", "geometry_check", "harmonic", "harmonics", "histogram", "history", "in_ring",
+    "influences", "intensity", "iso_6336", "kinds", "load_sharing", "loads", "loads_revolution", "loss", "loss_loads",
+    "map", "max", "members", "meshes", "modes", "motion", "of", "on_teeth", "optimum", "over_face", "over_face_loads",
+    "over_holes", "over_torque", "passing", "peak_to_peak", "peak_to_peak_max", "peaks", "percentiles", "phases",
+    "phasing", "pieces", "places", "points", "pressure", "ratios", "reliefs", "response", "ripple",
+    "ripple_critical_speeds", "ripple_spectrum", "ripple_waterfall", "roll", "root_stress", "rotational",
     "rotational_series", "safety", "series", "set", "shares", "sharing", "sharing_loads", "sidebands", "single", "sn",
     "spectra", "spectrum", "spectrum_factors", "speeds", "spread", "stress", "stress_histogram", "stress_history",
-    "stress_over_face", "stress_ratios", "stress_spread", "stress_study", "study", "summary", "surface",
-    "surface_over_face", "tooth", "tooth_response", "tooth_vibration", "topography", "trade_off", "unequal",
-    "vibration", "waterfall",
+    "stress_over_face", "stress_ratios", "stress_spread", "stress_study", "stress_teeth", "study", "summary",
+    "surface", "surface_over_face", "teeth", "tooth", "tooth_response", "tooth_stiffness", "tooth_vibration",
+    "topography", "trade_off", "unequal", "vibration", "waterfall",
 })  # fmt: skip
 
 

@@ -62,7 +62,7 @@ def test_points_of_the_path_are_marked_on_every_abscissa_that_follows_it():
 
 
 def test_the_pair_in_mesh_has_its_letters_in_page_and_on_paper():
-    figure = pair_figure("I", Drawing({"a": GEAR}, {"I": PAIR}, {"I": ("a", "a")}, {}))
+    figure = pair_figure("I", Drawing({"a": GEAR}, {"I": PAIR}, {"I": ("a", "a")}, {}, {}))
     spec = plotly_json(figure)
     lettered = [trace["text"] for trace in spec["data"] if trace.get("mode") == "markers+text"]
     assert lettered == [list("ABCDE")]

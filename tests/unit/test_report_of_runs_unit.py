@@ -10,7 +10,7 @@ import fegear
 from fegear.engine.stage import Task
 from fegear.engine.value import Value
 from fegear.output.report import run as reported
-from fegear.output.report.blocks import Folded, Group, Heading, Values
+from fegear.output.report.blocks import Folded, Group, Heading, Switch, Values
 from fegear.output.report.gear_data import gear_sections
 
 GEARS = {
@@ -66,7 +66,7 @@ def told(results):
     for block in reported._values(results):
         if isinstance(block, Folded):
             found.append(block.title)
-        else:
+        elif not isinstance(block, Switch):  # of all digits, before the values
             assert isinstance(block, Group)
             head, *rest = block.blocks
             assert isinstance(head, Heading)
