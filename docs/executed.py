@@ -30,6 +30,8 @@ MADE = DOCS.parent / "results" / "pages"
 log = logging.getLogger("mkdocs.plugins.executed")
 _NOTE = re.compile(r"^Note: .{79,}$", re.MULTILINE)
 _MADE_LINK = re.compile(r"\]\((results/[^)#]+)\)")
+#: A whole link to a file of a run, or its picture.
+_MADE = re.compile(r"!?\[([^\]]*)\]\(results/[^)]+\)")
 
 
 def pages() -> list[Path]:
@@ -73,6 +75,8 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_others):
-    """Let links to results lead to the page's own run, and fold the long sentences of its notes."""
+    """Let links to results lead to the page's own run, if it was run, and fold the long sentences of its notes."""
+    if not chosen(Path(page.file.src_uri).stem):
+        markdown = _MADE.sub(r"\1 (not run for this shortened site)", markdown)
     linked = _MADE_LINK.sub(rf"]({Path(page.file.src_uri).stem}_files/\1)", markdown)
     return _NOTE.sub(lambda found: textwrap.fill(found[0], 84, subsequent_indent="      "), linked)
