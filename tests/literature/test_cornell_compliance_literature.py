@@ -94,3 +94,16 @@ def test_weber_banaschek_gives_the_stiffness_that_iso_fitted_to_it(z1, z2, x1):
     x = np.linspace(pair.x_start, pair.x_end, 41)
     found = pair_compliance(SOURCES["weber-banaschek"], pair, x, 3e5).stiffness.max()
     assert found == pytest.approx(part1_stiffness.theoretical_stiffness(z1, z2, x1), rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("teeth", "shifts", "distance"), [((23, 58), (0.0, -0.6336), 39.8206), ((24, 60), (-0.1, -0.6), 41.2452)]
+)
+def test_the_series_of_iso_still_follows_the_theory_below_the_sum_of_shifts_that_it_states(teeth, shifts, distance):
+    # x_1 + x_2 is below -0.5 in published pairs; continued there, the series is as near to the theory as inside
+    steel = Material(206e9, 0.3)
+    cut = [Tooth(z, BasicRack(1.0, 1.2, 0.2), x) for z, x in zip(teeth, shifts, strict=True)]
+    gears = [Gear(t, 1e-3, 0.5e-3 * t.root_radius, 1e-2, steel, plane="strain") for t in cut]
+    pair = GearPair(*gears, centre_distance=distance * 1e-3)
+    found = pair_compliance(SOURCES["weber-banaschek"], pair, np.linspace(pair.x_start, pair.x_end, 41), 3e5)
+    assert found.stiffness.max() == pytest.approx(part1_stiffness.theoretical_stiffness(*teeth, *shifts), rel=0.04)

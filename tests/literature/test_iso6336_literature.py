@@ -247,7 +247,7 @@ def test_rim_and_deep_tooth_factors_are_continuous():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: stiff.theoretical_stiffness(20, 40, -0.4, -0.3), "x_1"),
+        (lambda: stiff.theoretical_stiffness(2, 40, 4.0), "q'"),
         (lambda: stiff.theoretical_stiffness(-20, 40), "external"),
         (lambda: stiff.stiffness((20, 40), 0.9), "at least 1"),
         (lambda: stiff.stiffness((20, 40), 2.6), "below 2.5"),

@@ -65,8 +65,6 @@ _RESULTS = (
 _LEAST_RIM = 2.7
 #: Digits of what was solved: those behind them mean nothing.
 _SOLVED = 12
-#: Least and largest x_1 + x_2 of ISO 6336-1, 9.3.1.1.
-_LEAST_SHIFT, _MOST_SHIFT = -0.5, 2.0
 #: A torque of so much of the largest is none.
 _IDLE = 1e-9
 #: Faces may stand beside each other by so much without being told [m].
@@ -136,7 +134,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     places = places_of(said, stages, middles)
     bent = bool(shafts) and _held(said, shafts, {n: places[n] for n in shafts if n in places})
     rest = {n: _rest_of_shift(said, gear, everything) for n, gear in (gears | of_sets).items()}
-    tables = [_head(sets, said, bent=bent, rated=_rated(said, [stages[n] for n in loaded], rest))]
+    tables = [_head(sets, said, bent=bent)]
     for n, gear in (gears | of_sets).items():
         bore = _bore(said, gear, on[n], middles) if n in gears else _bore_in_set(said, gear, on[n], sets)
         keys = gear_keys(said, gear, rest[n], bore, _far_end(said, gear, stages, flow))
@@ -240,28 +238,8 @@ def _middles(said: Said, gears: dict[int, Component], on: dict[int, Component | 
     return found
 
 
-def _rated(said: Said, stages: list[Stage], rest: dict[int, float | None]) -> bool:
-    """Whether the mesh stiffness of ISO 6336-1, by which pairs are rated, knows the profile shifts of one of them."""
-    both = [
-        sum(x if (x := profile_shift(said, gear)) is not None else rest[gear.id] or 0.0 for gear in stage.gears)
-        for stage in stages
-        if not stage.internal
-    ]
-    if both and not any(_LEAST_SHIFT <= one <= _MOST_SHIFT for one in both):
-        listed_ones = ", ".join(f"{one:.4g}" for one in both)
-        said.notes.append(
-            f"rating not requested: x_1 + x_2 = {listed_ones} is outside {_LEAST_SHIFT:g} to {_MOST_SHIFT:g}, the "
-            "range of ISO 6336-1."
-        )
-        return False
-    return True
-
-
-def _head(sets: list[Planetary], said: Said, *, bent: bool, rated: bool) -> Table:
-    left_out = [
-        *(("rating",) * (not rated)),
-        *(("gearbox", "misalignment", "shaft-deflection") * (not bent)),
-    ]
+def _head(sets: list[Planetary], said: Said, *, bent: bool) -> Table:
+    left_out = () if bent else ("gearbox", "misalignment", "shaft-deflection")
     results = [one for one in _RESULTS if one not in left_out]
     results += ["planet-set", "planet-load-sharing", "root-stress-history"] if sets else []
     title = next((one.name for one in said.model.of("gear_unit") if one.name), "") or "An imported gearbox"
