@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import Side
     from fegear.contact.plane.stress_rows import StressRows
-    from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.root_stress import FilletCurve
     from fegear.geometry.gear import Gear
 
@@ -35,7 +34,70 @@ _NEIGHBOUR_POINTS = 14
 
 
 #: Half-width that c_0 is given for [modules], and that a contact keeps whose width does not follow its load.
-_NOMINAL_HALF_WIDTH = 0.08
+NOMINAL_HALF_WIDTH = 0.08
+
+
+class SolvedTeeth(Protocol):
+    """What a gear answers whose teeth have been solved, or interpolated from solved ones; SI, as `GearInfluence`."""
+
+    @property
+    def gear(self) -> Gear:
+        """Which gear it is."""
+
+    @property
+    def reach(self) -> int:
+        """K: teeth -K..K beside the loaded one are known."""
+
+    @property
+    def log_slope(self) -> float:
+        """Slope of c_0 over the logarithm of the contact's half-width [m^2/N]."""
+
+    @property
+    def reference_half_width(self) -> float:
+        """A contact's usual half-width [m]."""
+
+    @property
+    def lowest_radius(self) -> float:
+        """Minimum radius of the flank [m]."""
+
+    @property
+    def highest_radius(self) -> float:
+        """Maximum radius of the flank [m]."""
+
+    @property
+    def tabulated(self) -> dict[str, Any]:
+        """What has been tabulated of it, by name."""
+
+    def self_compliance(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """c_0 of contacts of a half-width [m], (P,) [m^2/N]."""
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), (P, Q) [m^2/N]."""
+
+    @property
+    def states_error(self) -> bool:
+        """Whether its errors are estimated."""
+
+    def describe(self) -> str:
+        """Return how its numbers were found."""
+
+    def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """Estimated error of `self_compliance` [m^2/N]."""
+
+    def neighbour_error(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """Estimated error of `neighbour` [m^2/N]."""
+
+    def common_errors(self) -> tuple[float, float]:
+        """What of the errors of compliance all teeth have in common [m^2/N]."""
+
+    def fillet_stress(self, k: int, side: Side, radius: ArrayLike) -> Array:
+        """Stress along a fillet of tooth k per unit line load on tooth 0, (points, P) [1/m]."""
+
+    def fillet_curve(self, side: Side) -> FilletCurve:
+        """How the largest stress between those points is found."""
+
+    def root_stress_error(self, k: int, side: Side, radius: ArrayLike) -> Array:
+        """Estimated error of the largest stress [1/m], (P,)."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +106,14 @@ class FiniteElementCompliance(AlikeTeeth):
 
     Parameters
     ----------
-    influence : GearInfluence
+    influence : SolvedTeeth
     own_spline : Spline
         c_0 at the reference half-width [m^2/N] over the roll length [m].
     lowest, highest : float
         Roll lengths of the ends of the flank [m], rising toward the tip: those of internal gears are negative.
     """
 
-    influence: GearInfluence
+    influence: SolvedTeeth
     own_spline: Spline
     lowest: float
     highest: float
@@ -107,7 +169,7 @@ class FiniteElementCompliance(AlikeTeeth):
 
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """The half-width that `own` is for [m]; others follow by their logarithm."""
-        return np.full(np.shape(radius), _NOMINAL_HALF_WIDTH * self.influence.gear.module)
+        return np.full(np.shape(radius), NOMINAL_HALF_WIDTH * self.influence.gear.module)
 
     def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """c_k(p, q), k = i - j, zero beyond the reach."""
@@ -124,7 +186,7 @@ class FiniteElementCompliance(AlikeTeeth):
 
     def fillet_curve(self, i: int, side: Side) -> FilletCurve | None:  # noqa: ARG002  (all alike)
         """That of the solution."""
-        return self.influence.fine.fillet_curve(side, self.influence.gear.module)
+        return self.influence.fillet_curve(side)
 
     def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
         """Estimated error of the largest stress of a fillet of tooth k = i - j under a load on tooth 0 [1/m]."""
@@ -134,7 +196,7 @@ class FiniteElementCompliance(AlikeTeeth):
     def describe(self) -> str:
         """Return what it includes."""
         coupled = f"coupling to neighbours up to {self.reach} teeth away" if self.reach else "no neighbour coupling"
-        return f"FE of the full gear, {coupled}, contact with Hertzian half-width"
+        return f"{self.influence.describe()}, {coupled}, contact with Hertzian half-width"
 
 
 def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) -> Array:
@@ -183,7 +245,7 @@ def chebyshev_over(lowest: float, highest: float, p: Array, q: Array, coefficien
     return np.asarray(along.sum(axis=0)[: first.size].reshape(first.shape))
 
 
-def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:
+def finite_element_compliance(influence: SolvedTeeth) -> FiniteElementCompliance:
     """Tabulate the influence functions of a solved gear, once for each solution."""
     # Kept are the tables alone: what holds the solution itself would keep it alive in a circle, and with it its memory.
     if "own" not in influence.tabulated:
@@ -191,19 +253,28 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
     return FiniteElementCompliance(influence, *influence.tabulated["own"])
 
 
-def tabulated_own(influence: GearInfluence) -> tuple[Spline, float, float]:
+def tabulated_own(influence: SolvedTeeth) -> tuple[Spline, float, float]:
     """c_0 at the nominal half-width [m^2/N] over the roll length [m], and the ends of the flank [m]."""
     gear = influence.gear
     rb, (lowest, highest) = gear.base_radius, gear.involute_radii
     bottom, top = max(influence.lowest_radius, lowest), min(influence.highest_radius, highest)
     low, high = sorted(gear.tooth.side * math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (bottom, top))
-    # The compliance bends most where the patch has to shrink, within its own width of the tip corner: points crowd
-    # there, half of them in the last tenth of a module, and a little where the flank starts.
-    corner = min(0.1 * gear.module * rb / max(abs(high), 1e-9 * rb), 0.3 * (high - low))
-    s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
-    lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
+    lengths = own_lengths(gear, low, high)
     radii = np.clip(np.hypot(rb, lengths), bottom, top)
     # Taken at a usual width, where what goes with the width itself is right, and given for the nominal one.
-    usual, nominal = influence.reference_half_width, _NOMINAL_HALF_WIDTH * gear.module
+    usual, nominal = influence.reference_half_width, NOMINAL_HALF_WIDTH * gear.module
     own = influence.self_compliance(radii, usual) - influence.log_slope * math.log(nominal / usual)
     return spline(lengths, own), low, high
+
+
+def own_lengths(gear: Gear, lowest: float, highest: float) -> Array:
+    """Roll lengths [m] at which c_0 is tabulated on a flank between two roll lengths [m].
+
+    The compliance bends most where the patch has to shrink, within its own width of the tip corner: points crowd
+    there, half of them in the last tenth of a module, and a little where the flank starts.
+    """
+    corner = 0.1 * gear.module * gear.base_radius / max(abs(highest), 1e-9 * gear.base_radius)
+    corner = min(corner, 0.3 * (highest - lowest))
+    s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
+    below = lowest + (highest - corner - lowest) * (s * s * (3.0 - 2.0 * s))
+    return np.concatenate([below[:-1], highest - corner * (1.0 - s)])

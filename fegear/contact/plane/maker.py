@@ -115,7 +115,7 @@ def shifted_sources(first: GearCompliance, second: GearCompliance, *, coupling: 
 def _states_error(source: GearCompliance) -> TypeGuard[FiniteElementCompliance | OddCompliance]:
     if isinstance(source, OddCompliance):
         return source.influence.fine.lower is not None and source.influence.ordinary.estimate is not None
-    return isinstance(source, FiniteElementCompliance) and source.influence.estimate is not None
+    return isinstance(source, FiniteElementCompliance) and source.influence.states_error
 
 
 def _shifted(source: FiniteElementCompliance | OddCompliance) -> GearCompliance:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.fem.plane.influence import Influence, Side
+    from fegear.fem.plane.root_stress import FilletCurve
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear
 
@@ -149,6 +150,10 @@ class GearInfluence:
         r, b = self._modules(radius), self._half_width(half_width)
         return self.fine.fillet_stress(k, side, r, b) / self.gear.module
 
+    def fillet_curve(self, side: Side) -> FilletCurve:
+        """Where the largest stress of a fillet is looked for, radii and places [m]."""
+        return self.fine.fillet_curve(side, self.gear.module)
+
     def largest_root_stress(
         self, k: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None
     ) -> tuple[Array, Array]:
@@ -184,6 +189,15 @@ class GearInfluence:
             value, error, less = self.estimate.contact(r, b)
         modulus = self.gear.material.young_modulus
         return value / modulus, error / modulus, less / modulus
+
+    @property
+    def states_error(self) -> bool:
+        """Whether its errors are estimated."""
+        return self.estimate is not None
+
+    def describe(self) -> str:
+        """Return how its numbers were found."""
+        return "FE of the full gear"
 
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
         """Estimated error of `self_compliance` [m^2/N]: what the elements' last order and wider pressures change."""

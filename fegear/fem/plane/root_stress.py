@@ -152,14 +152,46 @@ class FilletCurve:
         half_width : float
             Of those contacts [modules].
         """
+        above, width = self._beside(radius, half_width)
+        value, place = self.largest_below(stress, above, width)
+        return value, place * self.module
+
+    def along(
+        self, stress: Array, share: Array, radius: ArrayLike = math.inf, half_width: float = REFERENCE_HALF_WIDTH
+    ) -> Array:
+        """The smooth curve through stress at the points, at shares of the fillet's length, shape (shares, Q).
+
+        Root tension nearer to a contact on this tooth itself than it is looked for is that at the search's end.
+
+        Parameters
+        ----------
+        stress, radius, half_width
+            As of `largest`.
+        share : ndarray, shape (shares,)
+            From 0 at the root land to 1 at the flank.
+        """
+        above, width = self._beside(radius, half_width)
+        values = np.ascontiguousarray(stress)
+        if self.side == "tension":
+            ends = np.broadcast_to(search_end(self.length, above, width, CLEARANCE), values.shape[1:])
+            values = _without_contact(values, self.arc, ends, CLEARANCE)
+        smoothing, slopes = smooth_curve(self.arc)
+        height, rise, at = smoothing @ values, slopes @ values, share * self.length
+        piece = np.clip(np.searchsorted(self.arc, at) - 1, 0, self.arc.size - 2)
+        step = (self.arc[piece + 1] - self.arc[piece])[:, None]
+        t = (at - self.arc[piece])[:, None] / step
+        a, b, p, q = height[piece], height[piece + 1], rise[piece] * step, rise[piece + 1] * step
+        return np.asarray(a + t * (p + t * (3.0 * (b - a) - 2.0 * p - q + t * (p + q - 2.0 * (b - a)))))
+
+    def _beside(self, radius: ArrayLike, half_width: float) -> tuple[Array, Array]:
+        """How far above the fillet contacts stand, infinitely where none touches, and their half-widths [modules]."""
         touched, side = np.asarray(radius, dtype=float), 1.0 if self.flank[1] >= self.flank[0] else -1.0
         roll_squared = (touched / (self.module * self.base_radius)) ** 2 - 1.0
         above, room = (
             0.5 * self.base_radius * side * off for off in (roll_squared - self.flank[0], self.flank[1] - roll_squared)
         )
         above = np.where(np.isinf(touched), np.inf, above)
-        value, place = self.largest_below(stress, above, contact_width(half_width, above, room))
-        return value, place * self.module
+        return above, contact_width(half_width, above, room)
 
     def scatter_below(self, stress: Array, place: Array, above: Array, width: Array) -> Array:
         """How far stress at the points scatters about the smooth curve beside places [modules], shape (Q,).
