@@ -29,6 +29,7 @@ LAYERS = {
     "fem": 2,
     "shafts": 2.5,
     "contact": 3,
+    "atlas": 3.5,  # what contact asks of solved gears, interpolated
     "design": 4,
     "dynamics": 5,
     "case": 6,

@@ -21,7 +21,7 @@ UNIT_LOADS = {
     Path("verify/calculix.py"),
     Path("verify/programs.py"),
 }
-ROOMS = (Path("fem"), Path("formulas"), Path("contact/compared"), Path("results/gear"))
+ROOMS = (Path("atlas"), Path("fem"), Path("formulas"), Path("contact/compared"), Path("results/gear"))
 #: Questions about teeth by number, and their fewest arguments.
 ASKED = {"root_stress": 4, "root_stress_error": 3, "fillet_stress": 3, "fillet_curve": 2, "largest_root_stress": 2}
 
