@@ -94,7 +94,7 @@ COMMANDS = (
     (cost, "Accuracy versus computing time."),
     (check, "Independent FE solution (scikit-fem) of the spur gears, compared with the estimated errors."),
     (verify, "Run the verification against published values, other programs and independent code."),
-    (apply, "Write a designed relief into a case."),
+    (apply, "Write a designed relief or lead correction into a case."),
     (export, "Export drawings, solids and meshes."),
     (schema, "Write the JSON schema for editors."),
 )

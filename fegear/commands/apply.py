@@ -1,4 +1,4 @@
-"""``fegear apply``: a designed relief written into a case."""
+"""``fegear apply``: a designed relief or a lead correction written into a case."""
 
 from __future__ import annotations
 
@@ -11,21 +11,22 @@ from fegear.commands.common import Quiet, Voice
 
 
 def apply(
-    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="Folder of a run with a relief design.")],
+    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="Folder of a run with a design.")],
     case: Annotated[Path, typer.Option("--case", metavar="CASE", help="Case file (TOML) to be changed.")],
     relief: Annotated[
         str,
         typer.Option(
             "--relief",
             metavar="NAME",
-            help="Design of the grinding table, e.g. linear or parabolic; exact: relief by theory. Default: the best.",
+            help='Design of the grinding table, e.g. linear, parabolic, "lead correction"; exact: relief by theory. '
+            "Default: the best.",
         ),
     ] = "",
     pair: Annotated[str, typer.Option("--pair", help="Pair. Default: the only pair with a design.")] = "",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the change without writing.")] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write a designed relief into a case; comments, order and form of the rest stay.
+    """Write a designed relief or lead correction into a case; comments, order and form of the rest stay.
 
     For example: fegear apply results/drive --relief linear --case drive.toml
     """

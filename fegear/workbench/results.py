@@ -217,14 +217,15 @@ class Results(Found):
         return target
 
     def apply(self, case: str | os.PathLike[str], relief: str = "", pair: str = "") -> Path:
-        """Write a designed relief into a case file, as ``fegear apply`` does.
+        """Write a designed relief or lead correction into a case file, as ``fegear apply`` does.
 
         Parameters
         ----------
         case : path
             Its comments, order and form of the rest stay.
         relief : str
-            Design of the grinding table, such as ``"linear"``, or ``"exact"``; the best by default.
+            Design of the grinding table, such as ``"linear"`` or ``"lead correction"``, or ``"exact"``; the best by
+            default.
         pair : str
             By default the only pair with a design.
 

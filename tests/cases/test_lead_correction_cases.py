@@ -67,12 +67,16 @@ def test_a_fresh_case_with_the_corrections_has_the_stated_factors(corrected):
 
 @pytest.mark.dear
 def test_the_table_for_grinding_has_gear_amounts_and_factors(corrected):
-    (table,) = corrected.tables
+    table, *grinding = corrected.tables
+    assert [one.name for one in grinding] == ["lead_grinding_II", "lead_grinding_I"]
     assert set(table["gear"]) == {"a", "c"}
     amounts = leads_of(corrected)
     for gear in ("a", "c"):
         rows = np.array(table["gear"]) == gear
         assert np.unique(np.array(table["slope [um]"])[rows]) == pytest.approx(amounts[gear][0])
+        (ground,) = (one for one in grinding if one["gear"][0] == gear)
+        assert list(ground["modification"]) == ["helix slope", "crowning"]
+        assert ground["amount"] == pytest.approx(np.array(amounts[gear]))
     assert all(2.0 * one.slope * 1e6 == pytest.approx(round(2.0 * one.slope * 1e6)) for one in corrected.data.found)
     assert "grind a helix slope" in corrected.answer.sentences[0]
     assert "gear.c.lead" in " ".join(corrected.remarks)

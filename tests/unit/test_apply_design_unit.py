@@ -143,6 +143,40 @@ def test_a_lead_in_the_grinding_table_is_written_too():
     assert found["p"]["bias"] == "2 um"
 
 
+def lead(gear, slope, crowning):
+    return {"lead_grinding_I": grinding([
+        {"gear": gear, "design": "lead correction", "modification": kind, "shape": "linear", "amount": amount}
+        for kind, amount in (("helix slope", slope), ("crowning", crowning))
+    ])}  # fmt: skip
+
+
+WIDE = 'lead = { slope = "2 um", end_relief = { amount = "8 um", length = "2 mm" } }\nbias = "3 um"\n'
+
+
+def test_a_lead_correction_leaves_all_else_of_the_flanks_as_it_is():
+    text = case(p=WIDE, w='bias = "1 um"', more="[effects]\nrelief = true\n")
+    made = applied_design(text, Path("drive.toml"), tomllib.loads(text), TABLES | lead("p", -5e-6, 0.0), "r", "lead")
+    before, after = (tomllib.loads(one)["gear"] for one in (text, made.text))
+    assert after["p"]["lead"] == {"slope": "-5 um", "end_relief": before["p"]["lead"]["end_relief"]}
+    assert {**after["p"], "lead": 0} == {**before["p"], "lead": 0}
+    assert after["w"] == before["w"]
+    assert made.said.endswith("gear p lead (helix slope -5 um, end relief).")
+
+
+def test_a_corrected_lead_of_nothing_takes_the_present_one_away():
+    text = case(p='lead = { slope = "2 um" }', more="[effects]\nrelief = true\n")
+    made = applied_design(text, Path("drive.toml"), tomllib.loads(text), lead("p", 0.0, 0.0), "r")
+    assert "lead" not in tomllib.loads(made.text)["gear"]["p"]
+
+
+def test_a_lead_correction_of_flanks_whose_modifications_did_not_count_takes_their_place():
+    text = case(p=WIDE)
+    made = applied_design(text, Path("drive.toml"), tomllib.loads(text), lead("p", -5e-6, 1e-6), "r")
+    gears = tomllib.loads(made.text)["gear"]
+    assert gears["p"]["lead"] == {"slope": "-5 um", "crowning": "1 um"}
+    assert "bias" not in gears["p"]
+
+
 @pytest.mark.parametrize("offset", [0.0, 3e-3])  # the driver bears lead and twist, or the driven gear does
 def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
     gears = [

@@ -12,7 +12,7 @@ from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError, shown
 from fegear.base.printed import figures
 from fegear.case.nearest import nearest
-from fegear.results.relief.grinding import BIAS, CROWNING, END, NOTHING, SLOPE, TIP
+from fegear.results.relief.grinding import BIAS, CROWNING, END, NOTHING, OF_FLANKS, OF_LEADS, SLOPE, TIP
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 EXACT = "exact"
 #: Points of it: straight lines between them stay within its own error.
 _POINTS = 61
-_GRINDING = "grinding_"
+#: Grinding tables: the best design is in the first that there is.
+_GRINDING = (OF_FLANKS, OF_LEADS)
 #: Keys of a gear that a lead in the grinding table becomes.
 _LEAD = {SLOPE: "slope", CROWNING: "crowning"}
 #: Flank modifications of a gear.
@@ -55,9 +56,16 @@ class Applied:
 
 def designs_of(tables: Mapping[str, Table], pair: str) -> list[str]:
     """Designs of a pair that can be applied, the best first."""
-    table = tables.get(f"{_GRINDING}{pair}")
-    found = [] if table is None else list(dict.fromkeys(str(one) for one in table["design"]))
-    return [*found, *([EXACT] if any(_is_exact(name, pair) for name in tables) else [])]
+    ground, leads = (list(dict.fromkeys(str(row["design"]) for row in _rows(tables, of, pair))) for of in _GRINDING)
+    return [*ground, *([EXACT] if any(_is_exact(name, pair) for name in tables) else []), *leads]
+
+
+def _rows(tables: Mapping[str, Table], of: str, pair: str) -> list[dict[str, Any]]:
+    """Rows of a grinding table of a pair; none without one."""
+    table = tables.get(of + pair)
+    if table is None:
+        return []
+    return [{column.name: column.si[n] for column in table.columns} for n in range(len(table["design"]))]
 
 
 def _is_exact(name: str, pair: str) -> bool:
@@ -79,11 +87,12 @@ def keys_of_design(tables: Mapping[str, Table], pair: str, gears: tuple[str, str
     """
     if design == EXACT:
         return {gear: {"relief": {"table": _exact(tables[f"relief_{pair}_{gear}"])}} for gear in gears}
-    table = tables[f"{_GRINDING}{pair}"]
-    chosen = design or str(table["design"][0])
+    rows = [row for of in _GRINDING for row in _rows(tables, of, pair)]
+    chosen = design or str(rows[0]["design"])
     found: Keys = {gear: {} for gear in gears}
-    for number in np.flatnonzero(np.asarray(table["design"]) == chosen):
-        row = {column.name: column.si[number] for column in table.columns}
+    for row in rows:
+        if str(row["design"]) != chosen:
+            continue
         kind, keys, amount = str(row["modification"]), found[str(row["gear"])], float(row["amount"])
         if abs(amount) <= NOTHING:
             continue
@@ -161,11 +170,15 @@ def applied_design(
     before = build_scene(parse_document(text, f'"{where}"'), where.stem, where.parent)
     gears = _gears(before, document, pair, where)
     keys = keys_of_design(tables, pair, gears, chosen)
+    of_lead = any(str(row["design"]) == chosen for row in _rows(tables, OF_LEADS, pair))
+    modified = _MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",)
+    if of_lead and before.case.effects.relief:  # on flanks that count: all but slope and crowning stays
+        keys, modified = _leads(before, tables, pair, keys), ("lead",)
     remark = f"{REMARK}: {chosen}, {source}, pair {pair}"
     changes: dict[KeyPath, str | None] = {("effects", RELIEF.name): "true"}
     comments: dict[KeyPath, str] = {}
-    for gear in gears:
-        for key in _MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",):
+    for gear in keys:
+        for key in modified:
             path, given = ("gear", gear, key), keys[gear].get(key)
             held = value_at(before.document, path)
             if given is None and held is not None:
@@ -181,6 +194,19 @@ def applied_design(
     return Applied(made, f"{chosen} of {source} in {where}: {_in_words(keys)}.")
 
 
+def _leads(scene: Scene, tables: Mapping[str, Table], pair: str, keys: Keys) -> Keys:
+    """Of the gears with a corrected lead: slope and crowning in place of those of the case, whose other keys stay."""
+    from fegear.case.changed_text import value_at
+
+    found: Keys = {}
+    for gear in dict.fromkeys(str(row["gear"]) for row in _rows(tables, OF_LEADS, pair)):
+        held = value_at(scene.document, ("gear", gear, "lead")) or {}
+        other = {key: value for key, value in held.items() if key not in _LEAD.values()}
+        lead = {**keys[gear].get("lead", {}), **other}
+        found[gear] = {"lead": lead} if lead else {}
+    return found
+
+
 def short_keys(scene: Scene, gear: str, keys: Any) -> Any:
     """Without the radius at which the amount of a tip relief applies, where it is the end of the involute."""
     tip = keys.get("tip") if isinstance(keys, dict) else None
@@ -190,12 +216,12 @@ def short_keys(scene: Scene, gear: str, keys: Any) -> Any:
 
 
 def _pair(tables: Mapping[str, Table], source: str, wanted: str) -> str:
-    names = [name.removeprefix(_GRINDING) for name in tables if name.startswith(_GRINDING)]
-    names += [name for name in _of_exact(tables) if name not in names]
+    named = [name.removeprefix(of) for of in _GRINDING for name in tables if name.startswith(of)]
+    names = list(dict.fromkeys([*named, *_of_exact(tables)]))
     if not names:
         raise InputError(
             "RESULTS", shown(source), "has no relief design",
-            'request the result "relief" (spur) or "flank-design" (helical)',
+            'request the result "relief" (spur), "flank-design" (helical) or "lead-correction" (pairs on shafts)',
         )  # fmt: skip
     if wanted and wanted not in names:
         raise InputError("--pair", shown(wanted), f"has no relief design in {source}", nearest(wanted, names))
@@ -259,6 +285,12 @@ def _in_words(keys: Keys) -> str:
         tip = given.get("relief", {}).get("tip")
         words = [f"{figures(float(tip['amount'].split()[0]))} um tip relief"] if tip else []
         words += ["relief table"] if "table" in given.get("relief", {}) else []
-        words += [key for key in ("lead", "bias") if key in given]
+        words += [f"lead ({_lead_in_words(given['lead'])})"] if "lead" in given else []
+        words += ["bias"] if "bias" in given else []
         parts.append(f"gear {gear} {' and '.join(words) or 'no modification'}")
     return ", ".join(parts)
+
+
+def _lead_in_words(lead: Mapping[str, Any]) -> str:
+    words = {"slope": "helix slope", "crowning": "crowning", "end_relief": "end relief", "file": "file"}
+    return ", ".join(f"{words[key]} {lead[key]}" if key in _LEAD.values() else words[key] for key in lead)

@@ -1,8 +1,7 @@
 """The grinding table: every modification of a flank that is to be ground, as a row, whatever result designs it.
 
 A row has the numbers of its kind; the others are nan, an empty cell of the file, and no column where no row has any.
-A result that designs further kinds
-(a lead, a crowning) makes `Grinding` rows of them, and a table of them by `grinding_table`.
+A result that designs further kinds makes `Grinding` rows of them, and a table of them by `grinding_table`.
 """
 
 from __future__ import annotations
@@ -26,6 +25,9 @@ if TYPE_CHECKING:
 
 #: Kinds of modifications.
 TIP, SLOPE, CROWNING, END, BIAS = "tip relief", "helix slope", "crowning", "end relief", "flank twist"
+#: Beginnings of the names of the tables, which the pair follows: of designs of both gears' flanks, and of the lead of
+#: one gear on its shafts, which leaves all other modifications as they are.
+OF_FLANKS, OF_LEADS = "grinding_", "lead_grinding_"
 #: Columns behind those of the amount and the start.
 _FURTHER = (
     "end_diameter", "start_roll_angle", "length", "length_tolerance", "face_length", "amount_from", "amount_to",
@@ -72,7 +74,7 @@ class Grinding:
         return f"{amount} {self.modification} on gear {self.gear}"
 
 
-def grinding_table(name: Text, title: Text, of: Where) -> Rows:
+def grinding_table(name: Text, title: Text, of: Where, each: Where | None = None) -> Rows:
     """A table of `Grinding` rows; none where there are no rows.
 
     Parameters
@@ -80,6 +82,8 @@ def grinding_table(name: Text, title: Text, of: Where) -> Rows:
     name, title : text
     of : where
         The rows.
+    each : where, optional
+        Objects that have such a table each: too many to be printed.
     """
     return Rows(
         name, title,
@@ -90,7 +94,7 @@ def grinding_table(name: Text, title: Text, of: Where) -> Rows:
             Off("start_diameter", lambda seen: _given(seen, of, "start_diameter_error")),
             *(_cell(quantity, of) for quantity in _FURTHER),
         ),
-        of=of, when=of, printed=True,
+        of=of, each=each, when=of, printed=each is None,
     )  # fmt: skip
 
 

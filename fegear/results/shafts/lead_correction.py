@@ -17,6 +17,7 @@ from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Need, Stage, Task
 from fegear.results import forecasts
+from fegear.results.relief.grinding import CROWNING, OF_LEADS, SLOPE, Grinding, grinding_table
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
     LoadedShaftsInputs,
@@ -75,6 +76,14 @@ class GroundLead:
     )
     crowning: float = shown("um", "lead crowning C_beta", name="crowning", default=0.0)
 
+    @property
+    def grinding(self) -> tuple[Grinding, ...]:
+        """The whole lead as rows of the grinding table; zero, too, where the present lead is to go."""
+        amounts = ((SLOPE, "linear", self.slope), (CROWNING, "parabolic", self.crowning))
+        return tuple(
+            Grinding(self.gear, "driver", "lead correction", kind, shape, amount) for kind, shape, amount in amounts
+        )
+
 
 def _inputs(scene: Scene, name: str) -> LeadInputs:
     shafts = inputs_of_shafts(scene, name)
@@ -126,9 +135,9 @@ def _remarks(seen: Seen) -> Iterator[str]:
     )
     if seen.data:
         yield (
-            "Lead correction: amounts are multiples of 0.5 um, over the face of the driver; to check them set "
-            f'gear.{seen.data[0].gear}.lead = {{ slope = "{seen.data[0].slope * 1e6:.3g} um", crowning = '
-            f'"{seen.data[0].crowning * 1e6:.3g} um" }} and effects.relief = true.'
+            "Lead correction: amounts are multiples of 0.5 um, over the face of the driver; to check them use "
+            f'fegear apply, or set gear.{seen.data[0].gear}.lead slope = "{seen.data[0].slope * 1e6:.3g} um" and '
+            f'crowning = "{seen.data[0].crowning * 1e6:.3g} um", and effects.relief = true.'
         )
     left = max((float(one.left.max()) for one in seen.data), default=0.0)
     if left > _SETTLED:
@@ -147,6 +156,7 @@ _SHEET = Sheet(
             "lead_correction", "Lead correction for grinding",
             ("pair", "gear", "slope", "crowning", "torque", "before", "after"), stacked="",
         ),
+        grinding_table(OF_LEADS + "{one.pair}", "Lead to grind on gear {one.gear} in pair {one.pair}", "grinding", ""),
     ),
     values=(
         Number("slope", owner="{one.pair}", name="lead_slope", each=""),
