@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -13,11 +14,16 @@ from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.flanks import welbourn_amount
+from fegear.design.load_range import NEAR, proportions
 from fegear.design.relief_bench import bench
 from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import Shape, roll_of_radius
 
 Metric = Literal["effective_error", "peak_to_peak"]
+
+#: Reliefs that may be near the optimum of a finer chart: so many times the least of the coarse one, whose valleys lie
+#: between its points. The finer one has at most so many times as many amounts and lengths, and so many points in all.
+_MAYBE, _FINER, _POINTS = 2.0, 4, 5000
 
 
 def harris_map(engagement: Engagement, loads: ArrayLike, positions: int = 200) -> Loaded:
@@ -77,7 +83,10 @@ class ReliefChart:
 
         An optimum at either end of the range is that end.
         """
-        values = self.effective_error if metric == "effective_error" else self.peak_to_peak
+        return self.lowest(self._of(metric))
+
+    def lowest(self, values: Array) -> Array:
+        """The same of other values over amounts and lengths, shape (A, B, L)."""
         i = values.argmin(axis=1)
         if self.lengths.size < 3:
             return self.lengths[i]
@@ -93,11 +102,64 @@ class ReliefChart:
 
     def best(self, metric: Metric = "effective_error") -> tuple[float, float]:
         """Amount [m] and length whose worst excitation over the loads, over the load and by its weight, is least."""
-        values = self.effective_error if metric == "effective_error" else self.peak_to_peak
-        part = values / self.loads
-        worst = (part if self.weights is None else part * self.weights).max(axis=2)
+        worst = self.worst(metric)
         a, b = np.unravel_index(int(worst.argmin()), worst.shape)
         return float(self.amounts[a]), float(self.lengths[b])
+
+    def worst(self, metric: Metric = "effective_error") -> Array:
+        """Excitation at the worst of the loads, in proportion to load and weight, shape (A, B) [m]."""
+        return np.asarray((self._of(metric) * proportions(self.loads, self.weights)).max(axis=2))
+
+    def near_optimum(self, within: float = NEAR, metric: Metric = "effective_error") -> tuple[Array, Array, Array]:
+        """Reliefs whose worst excitation is at most so much above that of `best`; linear between two lengths.
+
+        Parameters
+        ----------
+        within : float
+            Over the least.
+        metric : {"effective_error", "peak_to_peak"}
+
+        Returns
+        -------
+        amounts, shortest, longest : ndarray, shape (N,)
+            Amounts that have such a length [m], and from which to which length.
+        """
+        worst = self.worst(metric)
+        limit = (1.0 + within) * worst.min()
+        there = (worst <= limit).any(axis=1)
+        ends = np.array([_ends(self.lengths, row, limit) for row in worst[there]])
+        return self.amounts[there], ends[:, 0], ends[:, 1]
+
+    def finer(self) -> tuple[Array, Array]:
+        """Amounts and lengths of a finer chart around the optimum."""
+        maybe = (worst := self.worst()) <= _MAYBE * worst.min()
+        ends = []
+        for axis in (1, 0):
+            there = np.flatnonzero(maybe.any(axis=axis))
+            ends.append((max(int(there[0]) - 1, 0), min(int(there[-1]) + 1, maybe.shape[1 - axis] - 1)))
+        cells = max(math.prod(last - first for first, last in ends), 1) * self.loads.size
+        n = int(np.clip(math.sqrt(_POINTS / cells), 1, _FINER))
+        found = (
+            np.interp(np.arange(n * first, n * last + 1) / n, np.arange(grid.size), grid)
+            for grid, (first, last) in zip((self.amounts, self.lengths), ends, strict=True)
+        )
+        return next(found), next(found)
+
+    def _of(self, metric: Metric) -> Array:
+        return self.effective_error if metric == "effective_error" else self.peak_to_peak
+
+
+def _ends(lengths: Array, row: Array, limit: float) -> tuple[float, float]:
+    """First and last length at which a row of values, linear between points, is at most the limit."""
+    good = np.flatnonzero(row <= limit)
+
+    def end(i: int, beyond: int) -> float:
+        if not 0 <= beyond < row.size:
+            return float(lengths[i])
+        share = (limit - row[i]) / (row[beyond] - row[i])
+        return float(lengths[i] + share * (lengths[beyond] - lengths[i]))
+
+    return end(int(good[0]), int(good[0]) - 1), end(int(good[-1]), int(good[-1]) + 1)
 
 
 def relief_chart(

@@ -10,6 +10,9 @@ import numpy as np
 if TYPE_CHECKING:
     from fegear.base.arrays import Floats
 
+#: Excitation of equally good reliefs of a chart above the least, over it: what can be read from a chart.
+NEAR = 0.1
+
 
 @dataclass(frozen=True)
 class LoadRange:

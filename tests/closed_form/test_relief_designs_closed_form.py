@@ -3,6 +3,7 @@
 import itertools
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -23,7 +24,9 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.relief import TabulatedRelief
+from fegear.geometry.relief import TabulatedRelief, normalised_tip_relief
+from fegear.results.relief.harris import HarrisMap
+from fegear.results.relief.relief_chart import ReliefChartData
 
 MODULE, FACE, SOFT = 3e-3, 10e-3, (4e-11, 6e-11)
 EACH = sum(SOFT) / FACE  # of a pair of teeth [m/N]
@@ -82,6 +85,60 @@ def test_a_chart_holds_what_springs_side_by_side_give(shape):
     with pytest.raises(InputError, match="must not be negative"):
         relief_chart(engagement, [1e-6, -1e-9], [1.0], [500.0])
     assert relief_chart(engagement, 0.0, 1.0, 500.0).peak_to_peak.shape == (1, 1, 1)
+
+
+def test_the_boundary_of_a_chart_is_where_its_values_are_so_much_above_the_least():
+    """Worst of two loads: 1 + |amount - 2| + 4 |length - 0.6|, linear between points but for the peak."""
+    amounts, lengths = np.linspace(0.0, 4.0, 5), np.linspace(0.2, 1.0, 9)
+    cone = 1.0 + np.abs(amounts - 2.0)[:, None] + 4.0 * np.abs(lengths - 0.6)
+    chart = ReliefChart(
+        amounts, lengths, np.array([5.0, 10.0]), 1.0, np.stack([0.5 * cone, 0.9 * cone], axis=2), np.zeros(())
+    )
+    assert chart.worst() == pytest.approx(cone)  # at half the load half of it counts twice
+    assert chart.best() == pytest.approx((2.0, 0.6))
+    found, shortest, longest = chart.near_optimum(0.3)
+    assert found == pytest.approx([2.0])
+    fine = (chart.finer()[0][:, None], chart.finer()[1])
+    assert fine[0].ravel() == pytest.approx(np.linspace(0.0, 4.0, 17))  # one beyond those that double it at most
+    assert fine[1] == pytest.approx(np.linspace(0.3, 0.9, 25))
+    cone = 1.0 + np.abs(fine[0] - 2.0) + 4.0 * np.abs(fine[1] - 0.6)
+    finer = replace(
+        chart, amounts=fine[0].ravel(), lengths=fine[1], effective_error=np.stack([0.5 * cone, cone], axis=2)
+    )
+    found, shortest, longest = finer.near_optimum(0.3)
+    assert found == pytest.approx([1.75, 2.0, 2.25])
+    assert longest - 0.6 == pytest.approx((0.3 - np.abs(found - 2.0)) / 4.0)
+    assert 0.6 - shortest == pytest.approx(longest - 0.6)
+    _, shortest, longest = chart.near_optimum(1e3)
+    assert np.all((shortest == 0.2) & (longest == 1.0))
+    weighted = replace(chart, weights=np.array([0.5, 1.0]))
+    assert weighted.worst() == pytest.approx(0.9 * chart.worst())
+
+
+def test_a_chart_marks_optimum_present_reliefs_and_the_worst_of_all_loads():
+    engagement = engaged()
+    pair = engagement.pair
+    reliefs = {
+        f"{member}_relief": normalised_tip_relief(pair, member, 6e-6, length)
+        for member, length in (("driver", 0.8), ("driven", 3.0))
+    }
+    chart = relief_chart(engagement, np.linspace(2e-6, 20e-6, 4), np.linspace(0.4, 1.2, 5), [1000.0, 2000.0])
+    loaded = SimpleNamespace(pair=pair, nominal=2000.0, engagement=replace(engagement, **reliefs))
+    marked = ReliefChartData(loaded, chart, None, chart, 5e-6).marked
+    assert (marked.best_amount[0], marked.best_length[0]) == chart.best()
+    assert marked.present_amounts == pytest.approx([6e-6])  # that of the driven gear is off the chart
+    assert marked.present_lengths == pytest.approx([0.8])
+    assert marked.near_amounts[0] == marked.near_amounts[-1]
+    labels = [one.label for one in ReliefChartData(loaded, chart, None, chart, 5e-6).loads]
+    assert labels == ["2000 N (nominal)", "1000 N", "all loads, worst in proportion"]
+
+
+def test_a_map_has_the_band_between_the_ends_of_its_range():
+    te = np.array([[1.0, 2.0], [3.0, 1.0], [5.0, 9.0]])
+    harris = HarrisMap(None, np.zeros(2), np.array([100.0, 150.0, 300.0]), te, over=(150.0, 300.0))
+    assert harris.band.transmission_error == pytest.approx([4.0, 5.0])
+    assert harris.band.half == pytest.approx([1.0, 4.0])
+    assert replace(harris, over=()).band is None
 
 
 def test_the_unit_of_length_of_high_contact_ratios_is_beyond_the_innermost_pitch():

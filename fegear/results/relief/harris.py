@@ -60,6 +60,21 @@ class HarrisCurve:
 
 
 @dataclass(frozen=True)
+class HarrisBand:
+    """What a family covers between two of its loads; arrays of shape (P,).
+
+    Parameters
+    ----------
+    half : ndarray
+        From its middle to either side [m].
+    """
+
+    x: Array = shown("mm", "mesh position over one base pitch")
+    transmission_error: Array = shown("um", "transmission error")
+    half: Array | None = None
+
+
+@dataclass(frozen=True)
 class HarrisMap:
     """Transmission error of a pair over one base pitch for L loads and P roll positions.
 
@@ -74,6 +89,8 @@ class HarrisMap:
         What that load is called.
     present : HarrisCurve or None
         A further curve, which stands out in place of it.
+    over : tuple of float
+        Ends of the range of loads that a design is for [N]; empty for none.
     """
 
     pair: GearPair
@@ -84,6 +101,15 @@ class HarrisMap:
     at: float = math.nan
     word: str = ""
     present: HarrisCurve | None = None
+    over: tuple[float, ...] = ()
+
+    @property
+    def band(self) -> HarrisBand | None:
+        """From the smallest to the largest load of the range; None without one."""
+        if len(self.over) < 2:
+            return None
+        low, high = (self.transmission_error[int(np.argmin(np.abs(self.load - one)))] for one in self.over)
+        return HarrisBand(self.x, 0.5 * (low + high), 0.5 * np.abs(high - low))
 
     @property
     @shows("um", "peak-to-peak value")
@@ -114,6 +140,7 @@ OVER_ROLL = Over(
             "transmission_error", each=Family("curves", "{one.label}", "ramp", keep="nearest"),
             look=lambda seen: seen.one.look,
         ),
+        Line("transmission_error", role="grey", of="band", error="band.half", look={"width": 0.0, "markers": False}),
         Line("transmission_error", NOW, "ink", of="present", look={"dash": "solid", "width": 3.2, "markers": False}),
     ),
     Axis("transmission error", "um", zero=True),

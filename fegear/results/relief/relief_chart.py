@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.case.built.design_range import design_range
+from fegear.design.load_range import NEAR
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
@@ -18,12 +20,13 @@ from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
+from fegear.geometry.relief import CombinedRelief, EndRelief, roll_of_radius
 from fegear.results import forecasts
 from fegear.results.relief.ground_tips import GroundTip, tip_numbers, tips_of
 from fegear.results.relief.relief import design_pairs, design_part, relief_stage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from fegear.base.arrays import Array
     from fegear.case.design import ChartPart, RobustnessPart
@@ -42,6 +45,28 @@ _BEST = "equal tip reliefs, maximum over the loads, by A_e"
 
 
 @dataclass(frozen=True)
+class MarkedReliefs:
+    """What is marked in a chart, the same at each load: points as amounts [m] and lengths.
+
+    Parameters
+    ----------
+    best_amount, best_length : ndarray, shape (1,)
+        The optimum for all loads.
+    near_amounts, near_lengths : ndarray, shape (N,)
+        Boundary of those that are equally good.
+    present_amounts, present_lengths : ndarray, shape (M,)
+        Tip reliefs of the case inside the chart, each gear on its own.
+    """
+
+    best_amount: Array
+    best_length: Array
+    near_amounts: Array
+    near_lengths: Array
+    present_amounts: Array
+    present_lengths: Array
+
+
+@dataclass(frozen=True)
 class ChartAtLoad:
     """A chart under one of its loads.
 
@@ -54,12 +79,17 @@ class ChartAtLoad:
         [m].
     best_lengths : ndarray, shape (A,)
         With the least of it for each amount; nan at an end of the chart.
+    limits : tuple of float
+        Ends of its colours [m].
+    marked : MarkedReliefs
     """
 
     chart: ReliefChart
     label: str
     effective_error: Array
     best_lengths: Array
+    limits: tuple[float, float]
+    marked: MarkedReliefs
 
 
 @dataclass(frozen=True)
@@ -72,6 +102,8 @@ class ReliefChartData:
     chart : ReliefChart
     best : TipReliefPair
         Found by the optimiser over the chart's loads, each gear on its own.
+    finer : ReliefChart
+        Around the optimum.
     delta : float
         Unit of the amounts in the picture: transmission error of the unmodified pair at its largest.
     """
@@ -79,6 +111,7 @@ class ReliefChartData:
     pair: LoadedPair
     chart: ReliefChart
     best: TipReliefPair
+    finer: ReliefChart
     delta: float = shown("um", "unit of the amounts")
 
     @property
@@ -98,16 +131,52 @@ class ReliefChartData:
 
     @property
     def loads(self) -> list[ChartAtLoad]:
-        """The chart at each load, the nominal one first."""
-        chart, best = self.chart, self.chart.optimum_lengths()
-        inside = (best > chart.lengths[0]) & (best < chart.lengths[-1])
-        return [
-            ChartAtLoad(
-                chart, f"{load:.5g} N{' (nominal)' if load == self.pair.nominal else ''}",
-                chart.effective_error[:, :, i], np.where(inside[:, i], best[:, i], np.nan),
+        """The chart at each load, the nominal one first; of several loads the worst in proportion last."""
+        chart, marked = self.chart, self.marked
+
+        def chart_of(label: str, values: Array, limits: tuple[float, float]) -> ChartAtLoad:
+            best = chart.lowest(values[:, :, None])[:, 0]
+            inside = (best > chart.lengths[0]) & (best < chart.lengths[-1])
+            return ChartAtLoad(chart, label, values, np.where(inside, best, np.nan), limits, marked)
+
+        found = [
+            chart_of(
+                f"{load:.5g} N{' (nominal)' if load == self.pair.nominal else ''}", chart.effective_error[:, :, i],
+                self.limits,
             )
             for i, load in sorted(enumerate(chart.loads.tolist()), key=lambda one: one[1] != self.pair.nominal)
         ]  # fmt: skip
+        if chart.loads.size > 1:
+            worst = chart.worst()
+            found.append(chart_of("all loads, worst in proportion", worst, (float(worst.min()), float(worst.max()))))
+        return found
+
+    @cached_property
+    def marked(self) -> MarkedReliefs:
+        """Optimum, the equally good ones and the present reliefs."""
+        chart = self.chart
+        amount, length = self.finer.best()
+        amounts, shortest, longest = self.finer.near_optimum()
+        boundary = (
+            np.concatenate([way, way_back[::-1], way[:1]])
+            for way, way_back in ((amounts, amounts), (shortest, longest))
+        )
+        present = np.array([one for one in self._present if _inside(chart, *one)]).reshape(-1, 2).T
+        return MarkedReliefs(np.array([amount]), np.array([length]), *boundary, *present)
+
+    @property
+    def _present(self) -> Iterator[tuple[float, float]]:
+        """Amount and length of each tip relief of the case."""
+        pair, engagement = self.pair.pair, self.pair.engagement
+        for gear, relief in ((pair.driver, engagement.driver_relief), (pair.driven, engagement.driven_relief)):
+            tip = float(roll_of_radius(gear, gear.involute_tip_radius))
+            for part in relief.parts if isinstance(relief, CombinedRelief) else (relief,):
+                if isinstance(part, EndRelief) and (part.end - part.start) * (tip - part.start) > 0.0:
+                    yield part.amount, gear.base_radius * abs(part.end - part.start) / self.chart.unit_length
+
+
+def _inside(chart: ReliefChart, amount: float, length: float) -> bool:
+    return chart.amounts[0] <= amount <= chart.amounts[-1] and chart.lengths[0] <= length <= chart.lengths[-1]
 
 
 @dataclass(frozen=True)
@@ -141,8 +210,10 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     amounts = np.array(asked.amounts) if asked.amounts else delta * np.array(shares)
     lengths = np.array(asked.lengths) if asked.lengths else np.linspace(0.05, 1.3, 26)
     chart = relief_chart(e, np.sort(amounts), np.sort(lengths), loads, asked.shape, over.weights)
+    work.progress(0.3)
+    finer = relief_chart(e, *chart.finer(), loads, asked.shape, over.weights)
     work.progress(0.5)
-    return ReliefChartData(pair, chart, grindable(e, over, asked.shape, inputs.metric), delta)
+    return ReliefChartData(pair, chart, grindable(e, over, asked.shape, inputs.metric), finer, delta)
 
 
 def unit_in_words(seen: Seen) -> str:
@@ -179,7 +250,8 @@ _CHART_SHEET = Sheet(
             "relief_chart_{name}", "Tip relief chart of pair {name}",
             lambda seen: seen.said(
                 "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
-                "with minimum A_e for each amount. Dotted: "
+                "with minimum A_e for each amount; star: optimum for all loads, each in proportion, and dashed: within "
+                "10 % of it; diamonds: tip reliefs of the case. Dotted: "
             ) + f"{unit_in_words(seen)} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
             (
                 Over(
@@ -187,11 +259,25 @@ _CHART_SHEET = Sheet(
                     (
                         Map(
                             "chart.effective_error", "chart.amounts", si="effective_error",
-                            limits=lambda seen: seen.data.limits,
+                            limits="limits",
+                        ),
+                        Line(
+                            "chart.amounts", f"within {percent(NEAR)} of the optimum", "orange",
+                            si="marked.near_amounts", x_si="marked.near_lengths",
+                            look={"width": 1.8, "dash": "dash", "markers": False},
                         ),
                         Line(
                             "chart.amounts", lambda _: "length with minimum A_{e}", "over map", x_si="best_lengths",
                             look={"width": 2.2, "markers": False},
+                        ),
+                        Line(
+                            "chart.amounts", "optimum for all loads", "orange", si="marked.best_amount",
+                            x_si="marked.best_length", kind="points", look={"symbol": "star", "size": 13.0},
+                        ),
+                        Line(
+                            "chart.amounts", "present relief of each gear", "red", si="marked.present_amounts",
+                            x_si="marked.present_lengths", kind="points", look={"symbol": "diamond", "size": 9.0},
+                            when="marked.present_amounts",
                         ),
                     ),
                     "chart.amounts",

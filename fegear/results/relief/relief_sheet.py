@@ -241,12 +241,15 @@ class ReliefShown:
     def left(self) -> dict[str, Leaves]:
         """What each relief leaves."""
         design, pair, found = self.data.design, self.data.pair.pair, {}
+        over = () if design.task.over is None else (design.task.over.loads[0], design.task.over.loads[-1])
         searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
         searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
         for label, te in design.te.items():
             curve, ground = design.curves[label], searched.get(label)
             error = design.left if label == "designed" else None if ground is None else ground.objective_error
-            harris = HarrisMap(pair, curve.x, curve.load, curve.transmission_error.T, at=self.load, word="design")
+            harris = HarrisMap(
+                pair, curve.x, curve.load, curve.transmission_error.T, at=self.load, word="design", over=over
+            )
             found[label] = Leaves(te, error, harris, None if ground is None else ground.removal_error)
         return found
 
@@ -419,7 +422,7 @@ RELIEF_SHEET = Sheet(
         Chart(
             "harris_map_{name}", "Harris map of pair {name}",
             "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
-            "wide: the design load, {d.load:.5g} N.",
+            "wide: the design load, {d.load:.5g} N; grey: the range of torques of the design, if there is one.",
             (OVER_ROLL,),
             views="maps",
         ),
