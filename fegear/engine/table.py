@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Heads that the short form of a table shows.
 _HEADS = 8
+#: Tables of no more rows and of more columns than that are shown on their side in a notebook.
+_TALL = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,10 +155,21 @@ class Table(Alike):
         return f"<table {self.name}: {len(self)} rows of {', '.join(heads[:_HEADS] + more)}>"
 
     def _repr_html_(self) -> str:
-        """Show the first rows in a notebook."""
+        """Show the first rows in a notebook; few rows of many columns with a line for each column."""
+        title = self.title or self.name
+        if 0 < len(self) <= _TALL and len(self.columns) > _HEADS:
+            heads = ["", *(str(1 + n) if len(self) > 1 else "" for n in range(len(self)))]
+            tall = ((column.head, *map(short, column.values.tolist())) for column in self.columns)
+            return html_table(heads, tall, title)
         rows = zip(*(map(short, column.values[:ROWS].tolist()) for column in self.columns), strict=True)
         more = f", the first {ROWS} of {len(self)} rows" if len(self) > ROWS else ""
-        return html_table([column.head for column in self.columns], rows, f"{self.title or self.name}{more}")
+        return html_table([column.head for column in self.columns], rows, f"{title}{more}")
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Each row as plain numbers and texts by the heads of the columns; needs no further library."""
+        heads = [column.head for column in self.columns]
+        cells = zip(*(column.values.tolist() for column in self.columns), strict=True)
+        return [dict(zip(heads, row, strict=True)) for row in cells]
 
     def to_pandas(self) -> pd.DataFrame:
         """As pandas has it: what ``tables/<name>.csv`` holds, with units in the heads.
@@ -169,7 +182,7 @@ class Table(Alike):
         try:
             import pandas as pd
         except ImportError:
-            raise MissingLibraryError(f"pandas is not installed; {NOTEBOOK_EXTRA}.") from None
+            raise MissingLibraryError(f"pandas is not installed; {NOTEBOOK_EXTRA}. Without it: rows().") from None
         frame = pd.DataFrame({column.head: column.values for column in self.columns})
         frame.attrs |= {"name": self.name, "title": self.title}
         return frame

@@ -6,12 +6,18 @@ import csv
 import io
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.table import Table
 from fegear.output.file_names import file_name
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Characters of a name in MATLAB.
+_LONGEST = 63
 #: What begins a formula in a spreadsheet.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
@@ -76,10 +82,18 @@ def write_table(folder: Path, table: Table) -> Path:
     Path
     """
     path = folder / table_file(table)
-    path.write_text(table_text(table), encoding="utf-8", newline="")
-    if table.matlab:
-        path.with_suffix(".mat").write_bytes(_matlab(table))
+    for kind in ("csv", "mat") if table.matlab else ("csv",):
+        path.with_suffix(f".{kind}").write_bytes(table_bytes(table, kind))
     return path
+
+
+#: What tables are written as.
+KINDS = ("csv", "mat")
+
+
+def table_bytes(table: Table, kind: str) -> bytes:
+    """A table as the bytes of a file of one of `KINDS`."""
+    return table_text(table).encode("utf-8") if kind == "csv" else _matlab(table)
 
 
 #: Text that begins a .mat file, 116 characters of it; scipy's own says the hour: two files of one table would differ.
@@ -93,7 +107,22 @@ def _matlab(table: Table) -> bytes:
     from scipy.io import savemat
 
     file = BytesIO()
-    units = {column.name: column.unit or "1" for column in table.columns}
-    columns = {column.name: column.values for column in table.columns}
+    names = _variables([column.name for column in table.columns])
+    units = {name: column.unit or "1" for name, column in zip(names, table.columns, strict=True)}
+    columns = {name: column.values for name, column in zip(names, table.columns, strict=True)}
     savemat(file, {**columns, "units": units, "title": table.title}, oned_as="column", long_field_names=True)
     return _MATLAB.ljust(116) + file.getvalue()[116:]
+
+
+def _variables(names: Sequence[str]) -> list[str]:
+    """Names as variables of MATLAB: letters, digits and underscores, a letter first, 63 characters, none twice."""
+    made = ["units", "title"]
+    for name in names:
+        plain = re.sub(r"\W", "_", name, flags=re.ASCII)
+        plain = (plain if plain[:1].isalpha() else f"x{plain}")[:_LONGEST]
+        same, number = plain, 1
+        while same in made:
+            number += 1
+            same = f"{plain[: _LONGEST - 1 - len(str(number))]}_{number}"
+        made.append(same)
+    return made[2:]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError
+from fegear.base.errors import NOTEBOOK_EXTRA, PATH, InputError, MissingLibraryError, shown
 from fegear.base.notes import counted, open_and_folded
 from fegear.engine.html_table import html_table
 from fegear.engine.named import Named
@@ -26,6 +26,7 @@ from fegear.workbench.plots import Plots
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     import pandas as pd
     import xarray as xr
@@ -215,6 +216,48 @@ class Results(Found):
         with whole_or_nothing(target, "folder") as scratch:
             write_results(self, scratch, Silence(), plots=plots)
         return target
+
+    def save_tables(
+        self, folder: str | os.PathLike[str], kinds: str | list[str] = "csv", names: str | Sequence[str] = ()
+    ) -> list[Path]:
+        """Write tables as CSV, for MATLAB or both, beside the files that a folder has.
+
+        Parameters
+        ----------
+        folder : path
+        kinds : str or list of str
+            ``csv``, ``mat`` or both, separated by commas.
+        names : str or list of str
+            Of the tables; all of them by default.
+
+        Returns
+        -------
+        list of Path
+            The files.
+
+        Raises
+        ------
+        InputError
+            If there is no such kind, or the folder cannot be made or written to.
+        """
+        from fegear.output.tables import KINDS, table_bytes, table_file
+
+        asked = [kind.strip() for given in texts(kinds, "kinds", "csv") for kind in given.split(",")]
+        wanted = texts(names, "names", "transmission_error_I")
+        for kind in asked:
+            if kind not in KINDS:
+                raise InputError("kinds", shown(kind), "is not a format of tables", 'use "csv", "mat" or "csv,mat"')
+        tables, target = [self.tables[name] for name in wanted] or list(self.tables), folder_of(folder)
+        made = []
+        try:
+            target.mkdir(parents=True, exist_ok=True)
+            for table in tables:
+                for kind in asked:
+                    made.append(target / Path(table_file(table)).with_suffix(f".{kind}"))
+                    made[-1].write_bytes(table_bytes(table, kind))
+        except OSError as error:
+            raise InputError("folder", shown(str(target), PATH), f"cannot be written ({error.strerror})") from None
+        return made
 
     def apply(self, case: str | os.PathLike[str], relief: str = "", pair: str = "") -> Path:
         """Write a designed relief or lead correction into a case file, as ``fegear apply`` does.

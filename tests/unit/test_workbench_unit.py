@@ -214,6 +214,49 @@ def test_xarray_finds_a_row_of_a_table_by_its_place(found):
         found.to_xarray("transmission_eror_I")
 
 
+def test_any_table_is_written_for_spreadsheets_and_for_matlab_and_read_without_pandas(found, tmp_path):
+    from scipy.io import loadmat
+
+    (tmp_path / "mine.txt").write_text("mine", "utf-8")
+    made = found.save_tables(tmp_path, "csv, mat", ("transmission_error_I",))
+    assert [path.name for path in made] == ["transmission_error_I.csv", "transmission_error_I.mat"]
+    assert (tmp_path / "mine.txt").exists()
+    table, read = found.tables["transmission_error_I"], loadmat(made[1], simplify_cells=True)
+    np.testing.assert_array_equal(read["te"], table["te"])
+    assert read["units"]["te"] == "um"
+    assert len(found.save_tables(tmp_path / "all", "mat")) == len(found.tables)
+    rows = table.rows()
+    assert (len(rows), rows[3]["te [um]"]) == (len(table), table["te"][3])
+    with pytest.raises(InputError, match='use "csv", "mat"'):
+        found.save_tables(tmp_path, "xls")
+
+
+def test_names_of_columns_become_variables_of_matlab(tmp_path):
+    from io import BytesIO
+
+    from scipy.io import loadmat
+
+    from fegear.engine.table import Column, Table
+    from fegear.output.tables import table_bytes
+
+    names = ["te.peak to peak", "te_peak_to_peak", "2nd", "title", "n" * 70, "n" * 69 + "o", "α"]
+    table = Table("t", tuple(Column(name, np.array([float(k)])) for k, name in enumerate(names)))
+    read = loadmat(BytesIO(table_bytes(table, "mat")), simplify_cells=True)
+    found = {name: int(value) for name, value in read.items() if isinstance(value, float)}
+    assert found == {
+        "te_peak_to_peak": 0, "te_peak_to_peak_2": 1, "x2nd": 2, "title_2": 3, "n" * 63: 4, "n" * 61 + "_2": 5, "x_": 6,
+    }  # fmt: skip
+
+
+def test_few_rows_of_many_columns_stand_on_their_side_in_a_notebook():
+    from fegear.engine.table import Column, Table
+
+    wide = Table("t", tuple(Column(f"c{k}", np.array([1.0, 2.0]), "mm") for k in range(9)))
+    assert wide._repr_html_().count("<tr>") == 10
+    assert "<td style='text-align:left'>c8 [mm]</td>" in wide._repr_html_()
+    assert Table("t", wide.columns[:8])._repr_html_().count("<tr>") == 3
+
+
 @pytest.mark.parametrize(
     ("library", "ask"), [("pandas", lambda r: r.tables[0].to_pandas()), ("xarray", lambda r: r.to_xarray())]
 )
