@@ -39,7 +39,12 @@ ALONE = "rating.beside=[]"
 
 def test_the_pictures_and_tables_of_a_rating_are_whole():
     outcome = run("rating_spur", ALONE)
-    assert [t.name for t in outcome.tables] == ["rating_I", "rating_safety_I", "rating_spectrum_I"]
+    assert [t.name for t in outcome.tables] == [
+        "rating_I",
+        "rating_safety_I",
+        "face_load_factors_I",
+        "rating_spectrum_I",
+    ]
     assert [f.name for f in outcome.figures] == ["rating_I", "rating_sn_I"]
     table = outcome.tables[0]
     assert all(str(text) for text in table["meaning"])

@@ -19,6 +19,7 @@ from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.formulas.symbols import ISO_6336
 from fegear.geometry.pair import MEMBERS, Member
+from fegear.results.rating.face_load_factors import FaceLoadFactor, face_load_factors
 from fegear.results.rating.rated_life import nominal_damage, service_life, transmittable_power
 from fegear.results.rating.rated_methods import ByMethod, computed_flanks, methods
 from fegear.results.rating.rating_answer import RATING_ANSWER
@@ -257,6 +258,13 @@ def _shown(data: RatingData, inputs: RatingInputs) -> RatedPair:
     return RatedPair(data, gears, _levels(data, asked), factors, computed, pressure, power, flank, root)
 
 
+def _face_load_factors(seen: Seen) -> tuple[FaceLoadFactor, ...] | None:
+    by_iso = seen.data.factors.K_Hbeta
+    if math.isnan(by_iso):
+        return None
+    return face_load_factors(seen.asked.asked.conditions.alignment, by_iso, seen.data.computed.K_Hbeta)
+
+
 def _of_gear(quantity: str, owner: str = "{name}.{key}", further: str = "") -> Number:
     return Number(quantity, owner=owner, further=further, finite=True)
 
@@ -346,6 +354,10 @@ RATING_SHEET = Sheet(
                 _both("bending_error", each=_estimated),
             ),
             printed=True,
+        ),
+        Rows(
+            "face_load_factors_{name}", "Face load factors of pair {name}: effects included, and where each is used",
+            ("method", "factor", "includes", "excludes", "used_for"), of=_face_load_factors,
         ),
         Rows(
             "rating_agma_{name}", "Rating of pair {name} to ANSI/AGMA 2101-D04, all factors", (Every("factors"),),
