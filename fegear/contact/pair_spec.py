@@ -23,6 +23,7 @@ from fegear.geometry.relief import CombinedRelief, Relief
 from fegear.geometry.relief_spec import BiasSpec, ReliefSpec
 
 if TYPE_CHECKING:
+    from fegear.contact.odd_flank import OddFlank
     from fegear.contact.wide.shaft_gaps import ShaftGaps
     from fegear.contact.wide_spec import WideSpec
 
@@ -56,6 +57,8 @@ class FlankSpec:
         Lead modifications and topography, for teeth with a width.
     bias : BiasSpec or None
         Twist, for teeth with a width.
+    odd : tuple of (int, OddFlank)
+        Flanks that differ from the others, by the number of the tooth in the order of meshing, for plane teeth.
     gear : str
         Name of the gear, for messages.
     measured : bool
@@ -68,6 +71,7 @@ class FlankSpec:
     spacing: Array = field(default_factory=lambda: np.empty(0))
     face: tuple[FlankModification, ...] = ()
     bias: BiasSpec | None = None
+    odd: tuple[tuple[int, OddFlank], ...] = ()
     gear: str = field(default="", compare=False)
     measured: bool = field(default=False, compare=False)
     wrong: Mapping[str, InputError] = field(default_factory=dict, compare=False)

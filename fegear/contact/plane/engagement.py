@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -12,8 +13,10 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.brief import Brief
 from fegear.base.tally import note
+from fegear.contact.odd_flank import OddFlank
 from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.plane.meshing import Contacts, Meshing
+from fegear.contact.plane.odd_contacts import OddContacts, on_less_face, refuse_no_contact
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrid, RollGrids
 from fegear.geometry.pair import GearPair
@@ -115,6 +118,8 @@ class Engagement(Brief):
     driver_spacing, driven_spacing : ndarray
         Spacing error of each tooth in the order of meshing, removal positive [m]; empty for none.
     corner_contact : bool
+    driver_odd, driven_odd : mapping of int to OddFlank
+        Flanks that differ from the others, by the number of the tooth in the order of meshing.
     grids : RollGrids, optional
         Of the same gears under another load or with other reliefs, so that their contacts and compliances are
         evaluated once; its own where it has none or they are of other gears.
@@ -126,6 +131,8 @@ class Engagement(Brief):
     driver_spacing: Array = field(default_factory=lambda: np.empty(0))
     driven_spacing: Array = field(default_factory=lambda: np.empty(0))
     corner_contact: bool = False
+    driver_odd: Mapping[int, OddFlank] = field(default_factory=dict)
+    driven_odd: Mapping[int, OddFlank] = field(default_factory=dict)
     grids: RollGrids = field(default=None, repr=False, compare=False)  # type: ignore[assignment]  # set below
 
     def __post_init__(self) -> None:
@@ -154,7 +161,7 @@ class Engagement(Brief):
         """The same gears with driver and driven exchanged; x changes sign."""
         return Engagement(
             self.compliance.reversed(), self.driven_relief, self.driver_relief, self.driven_spacing,
-            self.driver_spacing, self.corner_contact,
+            self.driver_spacing, self.corner_contact, self.driven_odd, self.driver_odd,
         )  # fmt: skip
 
     def grid(self, x: ArrayLike, *, again: bool = True) -> RollGrid:
@@ -189,25 +196,56 @@ class Engagement(Brief):
     def cycles(self) -> int:
         """Base pitches after which teeth that differ meet again, by their spacing errors or as they are; else 1."""
         errors = (errors.size for errors in (self.driver_spacing, self.driven_spacing) if errors.size)
-        return math.lcm(self.compliance.cycles, *errors)
+        odd = (
+            gear.teeth
+            for gear, flanks in ((self.pair.driver, self.driver_odd), (self.pair.driven, self.driven_odd))
+            if flanks
+        )
+        return math.lcm(self.compliance.cycles, *errors, *odd)
 
     @property
     def uneven(self) -> bool:
         """Whether one base pitch is not as the other: teeth have spacing errors, or differ."""
-        return bool(self.driver_spacing.size or self.driven_spacing.size) or self.compliance.cycles > 1
+        spaced = self.driver_spacing.size or self.driven_spacing.size
+        return bool(spaced or self.driver_odd or self.driven_odd) or self.compliance.cycles > 1
 
     def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
         """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""
         added = self.modification(contacts)
         if self.driver_spacing.size or self.driven_spacing.size:
             added = added + self.spacing(contacts, cycle)
+        if self.odd is not None:
+            added = added + self.odd.gap(contacts, cycle)
         return np.where(contacts.present, contacts.gap + added, np.inf)
 
     def solve(self, grid: RollGrid, load: ArrayLike, cycle: int = 0) -> Loaded:
         """Share loads, shape (L,) [N], at the positions of a grid, by the teeth of a base pitch."""
-        e, at = self.separation(grid.contacts, cycle), self.grids.turned(grid, cycle)
+        at = self._turned(grid, cycle)
+        e = self.separation(at.contacts, cycle)
+        if at.contacts is not grid.contacts:
+            refuse_no_contact(e)
         loads = np.atleast_1d(np.asarray(load, dtype=float))
         return Loaded(at, loads, self.grids.share(at, e, loads), e, cycle)
+
+    @cached_property
+    def odd(self) -> OddContacts | None:
+        """Contacts of flanks that differ from the others; None without any."""
+        if not (self.driver_odd or self.driven_odd):
+            return None
+        return OddContacts(self.pair, self.driver_odd, self.driven_odd, self.corner_contact)
+
+    def _turned(self, grid: RollGrid, cycle: int) -> RollGrid:
+        """The grid with the teeth of a base pitch, their flanks among them."""
+        odd = self.odd
+        if odd is None or not odd.on(grid.contacts.number, cycle):
+            return self.grids.turned(grid, cycle)
+        contacts = odd.changed(grid.contacts, cycle)
+        if contacts is grid.contacts:
+            matrices = self.grids.turned(grid, cycle).matrices
+        else:
+            matrices = self.compliance.matrices(contacts, cycle)
+        matrices = on_less_face(matrices, odd.bearing_share(contacts, cycle), contacts, self.compliance)
+        return RollGrid(grid.x, contacts, matrices, self.compliance.pattern(contacts.number, cycle))
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -223,6 +261,7 @@ class Engagement(Brief):
             *(float(pair.x_of_roll(roll, "driven")) for roll in self.driven_relief.kinks),
             *(float(pair.x_of_radius(radius, "driver")) for radius in self.compliance.driver.kinks),
             *(float(pair.x_of_radius(radius, "driven")) for radius in self.compliance.driven.kinks),
+            *(self.odd.places if self.odd is not None else ()),
         ]
         apart = _APART * pair.base_pitch
         inside = [x for x in places if pair.x_start - apart <= x <= pair.x_end + apart]

@@ -76,6 +76,8 @@ def relieved(spec: PairSpec, engagement: Engagement) -> Engagement:
 
 def with_flanks(spec: PairSpec, engagement: Engagement) -> Engagement:
     """The engagement with all that its spec says of flanks, by the effects that are on."""
+    if any(flank.odd for flank in spec.both):
+        engagement = replace(engagement, driver_odd=dict(spec.driver.odd), driven_odd=dict(spec.driven.odd))
     if spec.spacing_errors:
         engagement = spaced(spec, engagement)
     return relieved(spec, engagement) if spec.relief else engagement

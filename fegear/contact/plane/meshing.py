@@ -108,6 +108,8 @@ class Meshing:
     pair : GearPair
     corner_contact : bool
         Whether tip corners may touch the mating flank before and after the path of contact.
+    single : bool
+        Whether it is of single teeth among others, which need not touch at every roll position.
 
     Raises
     ------
@@ -117,10 +119,12 @@ class Meshing:
 
     pair: GearPair
     corner_contact: bool = False
+    single: bool = False
 
     def __post_init__(self) -> None:
         """Refuse pairs that lose contact."""
-        refuse_gaps(self.pair, "pair", corner_contact=self.corner_contact)
+        if not self.single:
+            refuse_gaps(self.pair, "pair", corner_contact=self.corner_contact)
 
     @cached_property
     def corners(self) -> tuple[CornerContact, CornerContact]:

@@ -49,6 +49,7 @@ class OddCompliance:
         Of the gear whose teeth are all alike.
     own_splines : mapping of int to Spline
         c_ii at the reference half-width [m^2/N] over the roll length [m], by the tooth's number from the middle one.
+        Of no missing tooth: it carries no load.
     series : mapping of (int, int) to ndarray
         Chebyshev coefficients of c_ij(p, q), shape (m, m) each, by such numbers.
     """
@@ -69,9 +70,14 @@ class OddCompliance:
 
     @property
     def _ends(self) -> tuple[float, float]:
-        """Roll lengths of the ends of the flank [m]."""
+        """Roll lengths of the ends of an ordinary flank [m]."""
         plain = self.ordinary.base if isinstance(self.ordinary, ShiftedCompliance) else self.ordinary
         return plain.lowest, plain.highest
+
+    def _along(self, near: int, radius: ArrayLike) -> Array:
+        """Roll lengths on the flank of a tooth [m]: beyond a shorter one's tip that of the tip."""
+        length = roll_length(self.influence.gear, radius, *self._ends)
+        return np.minimum(length, self.own_splines[near].x[-1]) if near in self.own_splines else length
 
     @property
     def reach(self) -> int:
@@ -118,10 +124,10 @@ class OddCompliance:
 
     def own(self, i: int, radius: ArrayLike) -> Array:
         """c_ii at the reference half-width [m^2/N]."""
-        found = self.own_splines.get(self._from_middle(i))
-        if found is None:
+        near = self._from_middle(i)
+        if near not in self.own_splines:
             return self.ordinary.own(i, radius)
-        return np.asarray(found(roll_length(self.influence.gear, radius, *self._ends)))
+        return np.asarray(self.own_splines[near](self._along(near, radius)))
 
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """The half-width that `own` is for [m]."""
@@ -132,21 +138,40 @@ class OddCompliance:
         teeth = self._odd(i, j)
         if teeth is None or teeth not in self.series:
             return self.ordinary.between(i, j, radius_p, radius_q)
-        p, q = (roll_length(self.influence.gear, r, *self._ends) for r in (radius_p, radius_q))
-        return chebyshev_over(*self._ends, p, q, self.series[teeth])
+        p, q = (self._share(near, radius) for near, radius in zip(teeth, (radius_p, radius_q), strict=True))
+        return chebyshev_over(-1.0, 1.0, p, q, self.series[teeth])
+
+    def _share(self, near: int, radius: ArrayLike) -> Array:
+        """Place on the flank of a tooth, from -1 to 1 over its roll length."""
+        low, high = self._ends
+        if near in self.own_splines:
+            high = float(self.own_splines[near].x[-1])
+        return np.asarray((self._along(near, radius) - 0.5 * (low + high)) / (0.5 * (high - low)))
 
     def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """Tangential stress along the fillet of tooth i [1/m], shape (points, Q); zero beyond the reach."""
-        teeth = self._odd(i, j)
+        teeth, missing = self._odd(i, j), self.influence.fine.missing
+        if self._from_middle(i) in missing:  # it has no fillet
+            known = self.ordinary.root_stress(i, i, radius_q, side)
+            return None if known is None else np.zeros_like(known)
+        if self._from_middle(j) in missing:
+            return np.zeros_like(self.influence.fillet_stress(i, i, side, self._within(i, radius_q)))
         if teeth is None and self._from_middle(i) not in self.influence.fine.odd:
             return self.ordinary.root_stress(i, j, radius_q, side)
         if teeth is None or abs(i - j) > self.reach:
-            return np.zeros_like(self.influence.fillet_stress(i, i, side, radius_q))
-        return self.influence.fillet_stress(i, j, side, radius_q)
+            return np.zeros_like(self.influence.fillet_stress(i, i, side, self._within(i, radius_q)))
+        return self.influence.fillet_stress(i, j, side, self._within(j, radius_q))
+
+    def _within(self, tooth: int, radius: ArrayLike) -> Array:
+        """Radii, beyond a shorter tooth's tip that of the tip [m]."""
+        r, near = np.asarray(radius, dtype=float), self._from_middle(tooth)
+        return np.minimum(r, self.influence.ends(near)[1]) if near in self.influence.fine.odd else r
 
     def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet | None:
         """That of the tooth's own solution."""
-        return self.ordinary.fillet_curve(i, side) if self._odd(i, i) is None else self.influence.fillet_curve(i, side)
+        if self._odd(i, i) is None or self._from_middle(i) in self.influence.fine.missing:
+            return self.ordinary.fillet_curve(i, side)
+        return self.influence.fillet_curve(i, side)
 
     def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
         """Estimated error of the largest stress of a fillet of tooth i under a load on tooth j [1/m]."""
@@ -159,33 +184,45 @@ class OddCompliance:
 
     def describe(self) -> str:
         """Return what it includes."""
-        odd = sorted((self.influence.middle + number) % self.period for number in self.influence.fine.odd)
-        which = f"tooth {odd[0]}" if len(odd) == 1 else f"teeth {', '.join(map(str, odd))}"
-        return f"{self.ordinary.describe()}, {which} cracked"
+        fine = self.influence.fine
+        cracked = [number for number, kind in fine.odd.items() if kind.cracked]
+        shorter = [number for number in fine.odd if number not in cracked]
+        said = [self.ordinary.describe()]
+        for numbers, what in ((cracked, "cracked"), (shorter, "shorter"), (fine.missing, "missing")):
+            odd = sorted((self.influence.middle + number) % self.period for number in numbers)
+            if odd:
+                which = f"tooth {odd[0]}" if len(odd) == 1 else f"teeth {', '.join(map(str, odd))}"
+                said.append(f"{which} {what}")
+        return ", ".join(said)
 
 
 def odd_compliance(influence: OddGearInfluence) -> OddCompliance:
     """Tabulate the influence functions of a gear with odd teeth, once for each solution."""
     ordinary, kept = finite_element_compliance(influence.ordinary), influence.tabulated
     if "odd" not in kept:
-        own = {near: tabulated_own(influence.alone(near))[0] for near in influence.touched}
-        kept["odd"] = own, _series(influence, ordinary)
+        there = (near for near in influence.touched if near not in influence.fine.missing)
+        own = {near: tabulated_own(influence.alone(near))[0] for near in there}
+        kept["odd"] = own, _series(influence, ordinary, own)
     return OddCompliance(influence, ordinary, *kept["odd"])
 
 
-def _series(influence: OddGearInfluence, ordinary: FiniteElementCompliance) -> dict[tuple[int, int], Array]:
-    nodes, to_series = chebyshev_nodes(influence.gear, ordinary.lowest, ordinary.highest)
+def _series(
+    influence: OddGearInfluence, ordinary: FiniteElementCompliance, own: Mapping[int, Spline]
+) -> dict[tuple[int, int], Array]:
     found = {}
     for i, j in _coupled(influence, ordinary.reach):
+        ends = (own[near].x[-1] if near in own else ordinary.highest for near in (i, j))
+        (p, to_series), (q, _) = (chebyshev_nodes(influence.gear, ordinary.lowest, float(end)) for end in ends)
         first, second = (influence.middle + near for near in (i, j))
-        found[i, j] = to_series @ influence.between(first, second, nodes, nodes) @ to_series.T
+        found[i, j] = to_series @ influence.between(first, second, p, q) @ to_series.T
         found[j, i] = found[i, j].T  # reciprocity, exact for pressure-weighted deflections
     return found
 
 
 def _coupled(influence: OddGearInfluence, reach: int) -> list[tuple[int, int]]:
     """Pairs i < j of teeth, no farther apart than the reach, that do not answer as ordinary ones do."""
-    known, touched = influence.known, influence.touched
+    touched = influence.touched
+    known = [near for near in influence.known if near not in influence.fine.missing]
     return [(i, j) for i in known for j in known if 0 < j - i <= reach and j >= touched[0] and i <= touched[-1]]
 
 

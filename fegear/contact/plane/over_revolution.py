@@ -158,7 +158,8 @@ def _teeth_and_spacing(engagement: Engagement, number: Index, cycle: int) -> tup
         for errors in (engagement.driver_spacing, engagement.driven_spacing)
         if errors.size
     )
-    return (*engagement.compliance.pattern(number, cycle), *spacing)
+    flanks = () if engagement.odd is None else engagement.odd.on(number, cycle)
+    return (*engagement.compliance.pattern(number, cycle), *spacing, flanks)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""Influence functions of a real gear with cracked teeth in SI, with their own error estimate; per unit face width.
+"""Influence functions of a real gear with odd teeth (cracked, shorter, missing) in SI, with their own error estimate.
 
-Teeth have the numbers of the gear (`fegear.fem.teeth`). Those around the cracked ones are known by number; farther
-away teeth are as on the ordinary gear, whose solution this one is made from, on the same mesh.
+All is per unit face width. Teeth have the numbers of the gear (`fegear.fem.teeth`). Those around the odd ones are known
+by number; farther away teeth are as on the ordinary gear, whose solution this one is made from, on the same mesh.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from fegear.fem.plane.mesh import GENERATED, SectorMesh
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import OddInfluence, OddTooth, ToothKind, solve_odd_influence
 from fegear.fem.plane.odd.odd_ring import OddRing
+from fegear.fem.plane.odd.other_outline import Missing, OtherTip
 from fegear.fem.plane.root_stress import CutFillet, FilletStrain
 from fegear.fem.plane.settings import LEVEL_RATIO
 from fegear.fem.plane.solution import shape_codec
@@ -38,6 +39,9 @@ if TYPE_CHECKING:
     from fegear.fem.plane.root_stress import FilletCurve
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear
+    from fegear.geometry.involute_tooth import InvoluteTooth
+
+    Oddity = Crack | OtherTip | Missing
 
 #: What a solved ring with odd teeth consists of.
 _KINDS: tuple[type, ...] = (OddInfluence, ToothKind, OddRing, SectorMesh, LoadedFlank, FilletStrain)
@@ -99,7 +103,7 @@ class OddGearInfluence:
     @property
     def touched(self) -> range:
         """Teeth from the middle one that answer otherwise than ordinary ones: odd, between odd ones or next to one."""
-        odd, reach = self.fine.odd, self.fine.reach
+        odd, reach = self.fine.unlike, self.fine.reach
         return range(max(min(odd) - _TOUCHED, -reach), min(max(odd) + _TOUCHED, reach) + 1)
 
     def from_middle(self, tooth: int) -> int:
@@ -122,6 +126,16 @@ class OddGearInfluence:
                 raise InputError("tooth", tooth, f"must be one of those near the odd teeth, {first} to {last}")
         return found
 
+    def ends(self, near: int) -> tuple[float, float]:
+        """Radii between which the flank of a tooth lies [m], by its number from the middle one."""
+        flank = self.fine.kind(near).flank
+        return flank.lowest_radius * self.gear.module, flank.highest_radius * self.gear.module
+
+    def _on_flank(self, near: int, radius: ArrayLike) -> Array:
+        """Radii [modules], the nearest ones on a shorter tooth's flank."""
+        r = self._modules(radius)
+        return np.minimum(r, self.fine.kind(near).flank.highest_radius) if near in self.fine.odd else r
+
     def _modules(self, radius: ArrayLike) -> Array:
         return np.atleast_1d(np.asarray(radius, dtype=float)) / self.gear.module
 
@@ -141,8 +155,8 @@ class OddGearInfluence:
 
     def own_error(self, i: int, radius: ArrayLike, half_width: ArrayLike) -> Array:
         """Estimated error of `own`, shape (P,) [m^2/N]; NaN without a solution of lower order."""
-        r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
         (near,) = self._near(i)
+        r, b = self._on_flank(near, radius), np.asarray(half_width, dtype=float) / self.gear.module
         if self.fine.lower is None:
             return np.full(np.broadcast_shapes(r.shape, b.shape), np.nan)
         return self._estimate(near).self_error(r, b) / self._modulus
@@ -155,8 +169,8 @@ class OddGearInfluence:
 
     def between_error(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """Estimated error of `between`, shape (P, Q) [m^2/N]."""
-        p, q = self._modules(radius_p), self._modules(radius_q)
         near, other = self._near(i, j)
+        p, q = self._on_flank(near, radius_p), self._on_flank(other, radius_q)
         if self.fine.lower is None:
             return np.full((p.size, q.size), np.nan)
         usual = self._usual_between(near, other)
@@ -172,7 +186,7 @@ class OddGearInfluence:
     def _usual_between(self, i: int, j: int) -> float:
         key = "c", i, j
         if key not in self._kept:
-            off = self._off_between(i, j, self._samples, self._samples)
+            off = self._off_between(i, j, self._samples(i), self._samples(j))
             self._kept[key] = float(np.sqrt(np.mean(off**2)))
         return self._kept[key]
 
@@ -207,12 +221,12 @@ class OddGearInfluence:
     ) -> Array:
         """Estimated error of `largest_root_stress`, shape (P,) [1/m]."""
         near, other = self._near(i, j)
-        r, b = self._modules(radius), self._half_width(half_width)
+        r, b = self._on_flank(other, radius), self._half_width(half_width)
         if self.fine.lower is None:
             return np.full(r.shape, np.nan)
         key = side, near, other
         if key not in self._kept:
-            off = self._off_stress(near, other, side, self._samples, np.asarray(REFERENCE_HALF_WIDTH))
+            off = self._off_stress(near, other, side, self._samples(other), np.asarray(REFERENCE_HALF_WIDTH))
             self._kept[key] = float(np.sqrt(np.mean(off**2)))
         error = np.maximum(self._off_stress(near, other, side, r, b), _USUAL * self._kept[key])
         return np.asarray(_STRESS_SHARE * error / self.gear.module)
@@ -261,10 +275,9 @@ class OddGearInfluence:
     def _kept(self) -> dict[tuple[str, int, int], float]:
         return {}
 
-    @cached_property
-    def _samples(self) -> Array:
-        """Radii over the flank, evenly in roll angle [modules]."""
-        tooth, flank = self.fine.ordinary.tooth, self.fine.ordinary.flank
+    def _samples(self, near: int) -> Array:
+        """Radii over the flank of a tooth, evenly in roll angle [modules]."""
+        tooth, flank = self.fine.kind(near).tooth, self.fine.kind(near).flank
         least, most = tooth.involute_radii
         low, high = max(flank.lowest_radius, least), min(flank.highest_radius, most)
         first, last = tooth.roll(np.array([max(low, tooth.base_radius), high])).tolist()
@@ -278,21 +291,21 @@ class OddGearInfluence:
 
 def solve_cracked_gear(
     ordinary: GearInfluence,
-    cracks: Mapping[int, Crack],
+    cracks: Mapping[int, Oddity],
     *,
     beside: int | None = None,
     cache: SolutionCache | None = None,
 ) -> OddGearInfluence:
-    """Solve a gear some of whose teeth are cracked, from the same gear without cracks.
+    """Solve a gear some of whose teeth are cracked, shorter or missing, from the same gear of ordinary teeth.
 
     Parameters
     ----------
     ordinary : GearInfluence
         Its settings are taken, and whether errors are estimated.
-    cracks : mapping of int to Crack
+    cracks : mapping of int to Crack, OtherTip or Missing
         By the number of the tooth.
     beside : int, optional
-        Teeth on either side of the outermost cracked ones that are known by number, where there are so many; by default
+        Teeth on either side of the outermost odd ones that are known by number, where there are so many; by default
         as many as neighbours are known of the ordinary gear, and two at least.
     cache : SolutionCache, optional
         Where solved gears are recalled from and kept.
@@ -300,7 +313,8 @@ def solve_cracked_gear(
     Raises
     ------
     InputError
-        If there is no crack; if a crack does not fit its tooth; of a gear with a mesh of its own or a supported rim.
+        If all teeth are ordinary; if a crack or a tip does not fit its tooth; of a gear with a mesh of its own or a
+        supported rim.
     """
     started, gear = time.perf_counter(), ordinary.gear
     known = SolutionCache() if cache is None else cache
@@ -312,10 +326,23 @@ def solve_cracked_gear(
         shape_codec(gear.tooth, _KINDS), _solve, ordinary.fine, gear.bore_radius / gear.module, ordinary.settings,
         tuple(zip(numbers, cracks.values(), strict=True)), reach, ordinary.fine.lower is not None,
     ).value  # fmt: skip
+    fine = _with_teeth(fine, dict(zip(numbers, cracks.values(), strict=True)), gear.tooth)
     return OddGearInfluence(ordinary, fine, middle, {**fine.seconds, "total": time.perf_counter() - started})
 
 
-def _refuse(ordinary: GearInfluence, cracks: Mapping[int, Crack]) -> None:
+def _with_teeth(fine: OddInfluence, unlike: Mapping[int, Oddity], ordinary: InvoluteTooth) -> OddInfluence:
+    """A solution whose shorter teeth know their outline: what is recalled from disk has the ordinary tooth for all."""
+    shorter = {number: one.tooth(ordinary) for number, one in unlike.items() if isinstance(one, OtherTip)}
+    if not shorter:
+        return fine
+    odd = {
+        number: replace(kind, tooth=shorter[number]) if number in shorter else kind for number, kind in fine.odd.items()
+    }
+    lower = None if fine.lower is None else _with_teeth(fine.lower, unlike, ordinary)
+    return replace(fine, odd=odd, lower=lower)
+
+
+def _refuse(ordinary: GearInfluence, cracks: Mapping[int, Oddity]) -> None:
     if not cracks:
         raise InputError("cracks", "(none)", "must name at least one tooth")
     z = ordinary.gear.teeth
@@ -327,8 +354,8 @@ def _refuse(ordinary: GearInfluence, cracks: Mapping[int, Crack]) -> None:
         raise InputError("mesh", ordinary.fine.mesh.origin, "of a gear with odd teeth must be a generated one")
 
 
-def _numbers(cracks: Mapping[int, Crack], teeth: int) -> tuple[int, list[int]]:
-    """Tooth in the middle of the shortest arc with all cracked ones, and their numbers from it, in their order."""
+def _numbers(cracks: Mapping[int, Oddity], teeth: int) -> tuple[int, list[int]]:
+    """Tooth in the middle of the shortest arc with all odd ones, and their numbers from it, in their order."""
     at = sorted(number % teeth for number in cracks)
     gaps = [(after - before) % teeth or teeth for before, after in zip(at, at[1:] + at[:1], strict=True)]
     widest = int(np.argmax(gaps))
@@ -341,13 +368,25 @@ def _solve(
     fine: Influence,
     bore_radius: float,
     settings: MeshSettings,
-    cracks: tuple[tuple[int, Crack], ...],
+    cracks: tuple[tuple[int, Oddity], ...],
     reach: int,
     two_orders: bool,
 ) -> OddInfluence:
     odd = {
-        number: OddTooth(fine.tooth, cracked_sector(fine.tooth, bore_radius, settings, one)) for number, one in cracks
+        number: _odd_tooth(fine.tooth, bore_radius, settings, one)
+        for number, one in cracks
+        if not isinstance(one, Missing)
+    }
+    missing = {
+        number: one.mesh(fine.tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)
     }
     return solve_odd_influence(
-        fine.tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders
-    )
+        fine.tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
+        missing=missing,
+    )  # fmt: skip
+
+
+def _odd_tooth(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, one: Crack | OtherTip) -> OddTooth:
+    if isinstance(one, OtherTip):
+        return OddTooth(one.tooth(tooth), one.mesh(tooth, bore_radius, settings))
+    return OddTooth(tooth, cracked_sector(tooth, bore_radius, settings, one))

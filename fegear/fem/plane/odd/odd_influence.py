@@ -145,6 +145,8 @@ class OddInfluence:
     seconds : mapping of str to float
     lower : OddInfluence, optional
         The same on the same meshes with elements one order lower, which shows the error.
+    missing : tuple of int
+        Sectors without a tooth, -reach to reach.
     """
 
     poisson_ratio: float
@@ -155,6 +157,12 @@ class OddInfluence:
     ring: OddRing
     seconds: Mapping[str, float] = field(compare=False)
     lower: OddInfluence | None = None
+    missing: tuple[int, ...] = ()
+
+    @property
+    def unlike(self) -> tuple[int, ...]:
+        """Numbers of the teeth that are not ordinary, or missing."""
+        return tuple(sorted((*self.odd, *self.missing)))
 
     @property
     def reach(self) -> int:
@@ -162,7 +170,15 @@ class OddInfluence:
         return self.ring.reach
 
     def kind(self, i: int) -> ToothKind:
-        """Of what kind a tooth is."""
+        """Of what kind a tooth is.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if i in self.missing:
+            raise InputError("tooth", i, "is missing")
         return self.odd.get(i, self.ordinary)
 
     @cached_property
@@ -278,6 +294,7 @@ def solve_odd_influence(
     *,
     reach: int = 2,
     two_orders: bool = False,
+    missing: Mapping[int, SectorMesh] | None = None,
 ) -> OddInfluence:
     """Solve one ring with odd teeth for all that can be asked of its teeth.
 
@@ -297,6 +314,8 @@ def solve_odd_influence(
         R: teeth -R..R are known; twice this and one at most z.
     two_orders : bool
         Whether to solve with elements one order lower as well (`OddInfluence.lower`).
+    missing : mapping of int to SectorMesh, optional
+        Meshes of the sectors without a tooth, by number.
 
     Raises
     ------
@@ -306,30 +325,38 @@ def solve_odd_influence(
         If a stiffness is not positive definite.
     """
     ordinary = OddTooth(tooth, mesh)
-    every = [ordinary, *odd.values()]
+    every, bare = [ordinary, *odd.values()], missing or {}
+    meshes = [*(one.mesh for one in every), *bare.values()]
     with one_thread():
         order, solver = settings.order, settings.solver
         if two_orders:
-            pairs = [assemble_two_orders(one.mesh, poisson_ratio, plane, order, solver) for one in every]
+            pairs = [assemble_two_orders(mesh, poisson_ratio, plane, order, solver) for mesh in meshes]
             orders = [list(each) for each in zip(*pairs, strict=True)]
         else:
-            orders = [[assemble(one.mesh, poisson_ratio, plane, order, solver) for one in every]]
+            orders = [[assemble(mesh, poisson_ratio, plane, order, solver) for mesh in meshes]]
         found = []
         for elasticity in orders:
             started = time.perf_counter()
             (usual, part), *others = (
-                _kind(one, each, poisson_ratio, plane) for one, each in zip(every, elasticity, strict=True)
+                _kind(one, each, poisson_ratio, plane) for one, each in zip(every, elasticity, strict=False)
             )
             kinds = {number: kind for number, (kind, _) in zip(odd, others, strict=True)}
             parts = {number: each for number, (_, each) in zip(odd, others, strict=True)}
+            for number, mesh, each in zip(bare, bare.values(), elasticity[len(every) :], strict=True):
+                condensed_bare, side_size, turn, _ = condensed_sector(mesh, each, np.zeros(0, dtype=np.intp))
+                parts[number] = between_sides(condensed_bare, side_size, turn)
             condensed = time.perf_counter()
             ring = odd_ring(part, parts, tooth.teeth, reach)
             seconds = {
-                "mesh": sum(one.mesh.seconds for one in every),
+                "mesh": sum(mesh.seconds for mesh in meshes),
                 "condensation": condensed - started,
                 "ring": time.perf_counter() - condensed,
             }
-            found.append(OddInfluence(poisson_ratio, plane, settings.corner_distance, usual, kinds, ring, seconds))
+            found.append(
+                OddInfluence(
+                    poisson_ratio, plane, settings.corner_distance, usual, kinds, ring, seconds, None, tuple(bare)
+                )
+            )
     return replace(found[0], lower=found[1]) if two_orders else found[0]
 
 
