@@ -159,7 +159,8 @@ SPACING_ERRORS = Effect(
     lambda pair: pair.has("spacing_errors"), (*_LIN, _SPACING, _RELIEF),
 )  # fmt: skip
 ODD_TEETH = Effect(
-    "odd_teeth", "Include teeth with cracks (`odd_tooth`) in results over a revolution.", "identical teeth",
+    "odd_teeth", "Include teeth that differ (`odd_tooth`: crack, missing, pits) in results over a revolution.",
+    "identical teeth",
     '`odd_tooth` on a spur gear of a plane (2D) pair with compliance source "fe"', "revolution",
     {"odd sectors": "gear with odd teeth solved by FE"},
     lambda pair: pair.has("odd_tooth"),

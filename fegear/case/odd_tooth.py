@@ -1,4 +1,4 @@
-"""``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs from the others: a crack from a root fillet."""
+"""``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs: cracked, missing, broken, shorter, with pits."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.case.part import Angle, Length, LengthOrZero, Part, PositiveLength, PositiveNumber, Table, refuse
+from fegear.case.relief import several
 
 #: Keys that say where a crack starts, and that say where it ends.
 STARTS = ("tangent_angle", "arc", "radius", "diameter")
@@ -72,6 +73,50 @@ class CrackPart(Part):
         return self
 
 
+class PitPart(Part):
+    """``pits = [{ radius | diameter = [from, to], face_share, depth }]``."""
+
+    radius: Annotated[list[PositiveLength], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="Radii [from, to] of the damage; specify `radius` or `diameter`."
+    )
+    diameter: Annotated[list[PositiveLength], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="Diameters [from, to] of the damage."
+    )
+    face_share: Annotated[PositiveNumber, Field(le=1.0)] = Field(
+        default=1.0,
+        description="Share of the face width over which the flank is damaged. Below 1 the remaining face carries the "
+        "load of the contact (Hertz). Default: 1.",
+    )
+    depth: LengthOrZero | None = Field(
+        default=None,
+        description="Depth normal to the flank, a gap; required with face_share = 1, without effect below 1.",
+    )
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """From and to [m]."""
+        low, high = self.radius or [0.5 * diameter for diameter in self.diameter or (0.0, 0.0)]
+        return low, high
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if self.radius is not None and self.diameter is not None:
+            raise refuse("contradicts radius", "specify either radius or diameter", key="diameter")
+        if self.radius is None and self.diameter is None:
+            raise refuse("is required, or radius", 'set diameter = ["50 mm", "51 mm"]', key="diameter")
+        low, high = self.radii
+        if not low < high:
+            key = "radius" if self.radius is not None else "diameter"
+            raise refuse("must rise from the first to the second", "exchange them", key=key)
+        if self.face_share >= 1.0 and self.depth is None:
+            raise refuse("is required with face_share = 1", 'set depth = "0.1 mm"', key="depth")
+        return self
+
+
+#: What a tooth may be other than cracked, and which of them exclude each other.
+OUTLINES = ("missing", "broken_at", "tip_diameter")
+
+
 class OddToothPart(Part):
     """A tooth that differs from the others."""
 
@@ -79,4 +124,39 @@ class OddToothPart(Part):
         default=0,
         description="Number of the tooth in meshing order, 0 for the first value of `spacing_errors`. Default: 0.",
     )
-    crack: Table[CrackPart] = Field(description="Crack from a root fillet, through the full face width.")
+    crack: Table[CrackPart] | None = Field(
+        default=None, description="Crack from a root fillet, through the full face width."
+    )
+    missing: bool = Field(default=False, description="Omit the tooth down to the root circle. Default: false.")
+    broken_at: PositiveLength | None = Field(
+        default=None,
+        description="Diameter at which the tooth is broken off; below the root form circle it is a missing tooth.",
+    )
+    tip_diameter: PositiveLength | None = Field(
+        default=None, description="Tip diameter of this tooth, at most that of the gear."
+    )
+    pits: Annotated[list[Table[PitPart]], several(PitPart)] = Field(
+        default_factory=list, description="Pits or spalls of the loaded flank, a table for each."
+    )
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        outlines = [key for key in OUTLINES if getattr(self, key)]
+        if self.crack is None and not outlines and not self.pits:
+            raise refuse(
+                "is required, or missing, broken_at, tip_diameter or pits", 'set crack = { depth = "0.5 mm" }',
+                key="crack",
+            )  # fmt: skip
+        if len(outlines) > 1:
+            raise refuse(f"contradicts {outlines[0]}", f"specify one of {', '.join(OUTLINES)}", key=outlines[1])
+        if self.crack is not None and outlines:
+            key, value = outlines[0], "true" if self.missing else None
+            raise refuse("is not available for a cracked tooth", "remove it, or remove crack", key=key, value=value)
+        if self.missing and self.pits:
+            raise refuse("contradicts missing", "remove it: there is no flank", key="pits")
+        return self
+
+    @property
+    def reshaped(self) -> bool:
+        """Whether its body differs, not only its flank."""
+        return self.crack is not None or any(getattr(self, key) for key in OUTLINES)

@@ -9,7 +9,7 @@ from solved_once import CACHE
 
 import fegear
 from fegear.base.errors import InputError
-from fegear.case.built.odd_teeth import cracked_gear
+from fegear.case.built.odd_teeth import odd_teeth_of
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -131,6 +131,20 @@ def planned(*changes):
             "tooth = 0, crack = { depth_ratio = 0.4, angle = '0 deg' }",
             "depth_ratio = 0.4: .*requires a crack that runs",
         ),
+        ("missing = true, crack = { depth = '1 mm' }", "missing = true: is not available for a cracked tooth"),
+        ("missing = true, tip_diameter = '53 mm'", "tip_diameter = .*: contradicts missing"),
+        (
+            "missing = true, pits = [{ diameter = ['50 mm', '51 mm'], depth = '1 mm' }]",
+            "pits = .*: contradicts missing",
+        ),
+        ("tip_diameter = '55 mm'", r"tip_diameter = 55 mm: must be between .* and 54 mm, the tip diameter"),
+        ("tip_diameter = '46 mm'", r"tip_diameter = 46 mm: must be between"),
+        ("broken_at = '40 mm'", r"broken_at = 40 mm: must be between 45 and 54 mm"),
+        ("pits = [{ depth = '1 mm' }]", "diameter = .*: is required, or radius"),
+        ("pits = [{ diameter = ['51 mm', '50 mm'], depth = '1 mm' }]", "must rise from the first to the second"),
+        ("pits = [{ diameter = ['50 mm', '51 mm'] }]", "depth = .*: is required with face_share = 1"),
+        ("pits = [{ diameter = ['50 mm', '51 mm'], face_share = 2 }]", "face_share = 2"),
+        ("pits = [{ radius = ['30 mm', '31 mm'], face_share = 0.5 }]", "radius = 30 to 31 mm: is outside the flank"),
         ("tooth = 0, crack = { depht = '1 mm' }", 'is an unknown key; did you mean "depth"'),
     ],
 )
@@ -149,6 +163,7 @@ def test_what_is_no_crack_is_refused_in_a_sentence(change, said):
         (('pair.I.width="solid"', 'results=["load-sharing"]'), "is not available for 3D pairs yet"),
         (('pair.I.compliance={ source = "weber-banaschek" }', "effects.neighbour_coupling=false"), "is not available"),
         (("gear.pinion.odd_tooth=[]",), "has no effect: no gear of this case has odd_tooth"),
+        (("effects.corner_contact=false", "gear.pinion.odd_tooth=[{ missing = true }]"), "beside a missing tooth"),
         (('pair.I.driven="pinion"',), "is driver and driven gear of pair I"),
     ],
 )
@@ -160,7 +175,7 @@ def test_where_there_are_no_odd_teeth_yet_is_said(changes, said):
 def test_places_that_are_the_same_are_the_same():
     def first(text):
         scene = read_scene(CASE, (f"gear.pinion.odd_tooth=[{{ crack = {{ {text} }} }}]",))
-        return cracked_gear(scene, "pinion").cracks[0][1]
+        return odd_teeth_of(scene, "pinion").cracks[0][1]
 
     one = first("radius = '22.7 mm', depth = '1 mm'")
     other = first("diameter = '45.4 mm', depth = '1 mm'")
@@ -175,6 +190,44 @@ def test_places_that_are_the_same_are_the_same():
     back = first("fillet = 'compression', radius = '22.7 mm', depth = '1 mm'")
     assert back.back
     assert back.corners[0] == pytest.approx((-one.corners[0][0], one.corners[0][1]))
+
+
+def test_outlines_and_pits_of_a_case():
+    text = "[{ tooth = 1, broken_at = '52 mm' }, { tooth = 2, broken_at = '46 mm' }, { tooth = 3, missing = true }, "
+    pits = "[{ diameter = ['49 mm', '51 mm'], face_share = 0.3 }, { radius = ['24 mm', '24.2 mm'], depth = '50 um' }]"
+    scene = read_scene(CASE, (f"gear.pinion.odd_tooth={text} {{ tooth = 4, pits = {pits} }}]",))
+    found = odd_teeth_of(scene, "pinion")
+    assert found.cracks == ()
+    assert found.described == "teeth 2, 3 missing, tooth 1 shorter, tooth 4 pitted"
+    flanks = dict(found.flanks)
+    assert flanks[1].tip_radius == pytest.approx(26e-3)
+    assert flanks[2].missing
+    assert [pit.face_share for pit in flanks[4].pits] == [0.3, 1.0]
+    assert flanks[4].pits[0].low == pytest.approx(24.5e-3)
+    assert flanks[4].pits[1].depth == pytest.approx(50e-6)
+    assert sorted(found.by_number(25)) == [22, 23, 24]  # pits change no body
+
+
+@pytest.mark.dear
+def test_a_missing_tooth_and_a_pit_in_a_case():
+    """Of driver and driven gear; the missing one as of a prototype: 9.5 to 67.8 um."""
+    gone = run(REVOLUTION, "gear.pinion.odd_tooth=[{ tooth = 4, missing = true }]")
+    te = pitches(gone)
+    assert te.max() * 1e6 == pytest.approx(67.8, rel=5e-3)
+    assert column(gone, "root_stress_teeth_I_pinion", "root_tension")[4] == 0.0
+    load, tooth = (column(gone, "tooth_loads_revolution_I", name) for name in ("load", "driver_tooth"))
+    assert 4 not in tooth[load > 0.0]
+    assert "tooth 4 missing (driver)" in " ".join(gone.answer.sentences)
+    pit = "pits = [{ diameter = ['49 mm', '51 mm'], face_share = 0.4 }]"
+    pitted = run(
+        REVOLUTION,
+        "gear.pinion.odd_tooth=[]",
+        f"gear.wheel.odd_tooth=[{{ tooth = 7, {pit.replace('49', '59').replace('51', '61')} }}]",
+    )
+    residual = np.abs(pitches(pitted, "te_residual")).max(axis=1)
+    assert np.argmax(residual) == 7
+    assert 0.05e-6 < residual[7] < 2e-6
+    assert residual[12] < 1e-12
 
 
 @pytest.mark.dear

@@ -1,4 +1,4 @@
-"""From ``[[gear.NAME.odd_tooth]]`` to cracks of the mechanics, by the numbers that its teeth have there."""
+"""From ``[[gear.NAME.odd_tooth]]`` to the mechanics: cracks, outlines and flanks of teeth by their numbers."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
+from fegear.contact.odd_flank import OddFlank, Pit
+from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 from fegear.fem.teeth import meshing_order
 
 if TYPE_CHECKING:
-    from fegear.case.odd_tooth import CrackPart
+    from fegear.case.odd_tooth import CrackPart, OddToothPart, PitPart
     from fegear.case.reading import Scene
     from fegear.fem.plane.odd.crack import Crack
     from fegear.geometry.gear import Gear
@@ -28,25 +30,44 @@ _IN_MODULES = re.compile(r"(\d[\d.e+-]*)( to (\d[\d.e+-]*))? modules")
 
 
 @dataclass(frozen=True)
-class CrackedGear:
-    """The cracks of a gear.
+class OddTeeth:
+    """The odd teeth of a gear, by their number in meshing order.
 
     Parameters
     ----------
     cracks : tuple of (int, Crack)
-        By the number of the tooth in meshing order.
+    outlines : tuple of (int, OtherTip or Missing)
+    flanks : tuple of (int, OddFlank)
     member : {"driver", "driven"}
         What it is in its pairs: its teeth mesh the other way round.
     name : str
     """
 
     cracks: tuple[tuple[int, Crack], ...]
+    outlines: tuple[tuple[int, OtherTip | Missing], ...]
+    flanks: tuple[tuple[int, OddFlank], ...]
     member: Member
     name: str = field(compare=False)
 
-    def by_number(self, teeth: int) -> dict[int, Crack]:
-        """Cracks by the tooth's own number, as of `fegear.fem.teeth`."""
-        return {meshing_order(tooth, teeth, self.member): crack for tooth, crack in self.cracks}
+    def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing]:
+        """Cracks and outlines by the tooth's own number, as of `fegear.fem.teeth`."""
+        return {meshing_order(tooth, teeth, self.member): one for tooth, one in (*self.cracks, *self.outlines)}
+
+    @property
+    def described(self) -> str:
+        """Which teeth are what, in words."""
+        known = dict(self.flanks)
+        of = {
+            "cracked": [tooth for tooth, _ in self.cracks],
+            "missing": [tooth for tooth, flank in known.items() if flank.missing],
+            "shorter": [tooth for tooth, flank in known.items() if not math.isnan(flank.tip_radius)],
+            "pitted": [tooth for tooth, flank in known.items() if flank.pits],
+        }
+        return ", ".join(
+            f"{'tooth' if len(teeth) == 1 else 'teeth'} {', '.join(map(str, sorted(teeth)))} {what}"
+            for what, teeth in of.items()
+            if teeth
+        )
 
 
 def odd_gears(scene: Scene) -> tuple[str, ...]:
@@ -56,25 +77,75 @@ def odd_gears(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in scene.spur_gears if scene.case.gear[name].odd_tooth)
 
 
+def reshaped_gears(scene: Scene) -> tuple[str, ...]:
+    """Those of which bodies of teeth differ, not only flanks."""
+    return tuple(name for name in odd_gears(scene) if any(one.reshaped for one in scene.case.gear[name].odd_tooth))
+
+
+def cracked_gears(scene: Scene) -> tuple[str, ...]:
+    """Those with a cracked tooth."""
+    return tuple(name for name in odd_gears(scene) if any(one.crack for one in scene.case.gear[name].odd_tooth))
+
+
 def odd_gears_of(scene: Scene, pair: str) -> tuple[str, ...]:
     """Those of a pair."""
     part, odd = scene.case.pair[pair], odd_gears(scene)
     return tuple(name for name in dict.fromkeys((part.driver, part.driven)) if name in odd)
 
 
-def cracked_gear(scene: Scene, name: str) -> CrackedGear:
-    """The cracks of a gear as the case describes them.
+def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
+    """The odd teeth of a gear as the case describes them.
 
     Raises
     ------
     InputError
-        If a crack does not fit its tooth.
+        If a crack, a tip or a pit does not fit its tooth.
     """
-    gear, found = scene.gears[name], []
+    gear, cracks, outlines, flanks = scene.gears[name], [], [], []
     for n, part in enumerate(scene.case.gear[name].odd_tooth):
-        found.append((part.tooth, crack_of(gear, part.crack, f"gear.{name}.odd_tooth[{n}].crack")))
+        prefix = f"gear.{name}.odd_tooth[{n}]"
+        if part.crack is not None:
+            cracks.append((part.tooth, crack_of(gear, part.crack, f"{prefix}.crack")))
+        outline = _outline(gear, part, prefix)
+        if outline is not None:
+            outlines.append((part.tooth, outline))
+        pits = tuple(_pit(gear, pit, f"{prefix}.pits[{at}]") for at, pit in enumerate(part.pits))
+        if outline is not None or pits:
+            tip = outline.radius * gear.module if isinstance(outline, OtherTip) else math.nan
+            flanks.append((part.tooth, OddFlank(isinstance(outline, Missing), tip, pits)))
     driven = any(name == part.driven for part in scene.case.pair.values())
-    return CrackedGear(tuple(found), "driven" if driven else "driver", name)
+    return OddTeeth(tuple(cracks), tuple(outlines), tuple(flanks), "driven" if driven else "driver", name)
+
+
+def _outline(gear: Gear, part: OddToothPart, prefix: str) -> OtherTip | Missing | None:
+    """Another outline of a tooth than the gear's, if it has one."""
+    if part.missing:
+        return Missing()
+    key = "broken_at" if part.broken_at is not None else "tip_diameter"
+    diameter = getattr(part, key)
+    if diameter is None:
+        return None
+    tooth, m = gear.tooth, gear.module
+    root, shortest, tip = 2.0 * m * np.array([tooth.root_radius, tooth.form_radius + SHORTEST_FLANK, tooth.tip_radius])
+    least = root if key == "broken_at" else shortest
+    if not least <= diameter <= tip * (1.0 + 1e-12):
+        raise InputError(
+            f"{prefix}.{key}", f"{diameter * 1e3:.6g} mm",
+            f"must be between {least * 1e3:.6g} and {tip * 1e3:.6g} mm, the tip diameter of the gear",
+        )  # fmt: skip
+    return OtherTip(min(0.5 * diameter / m, tooth.tip_radius)) if diameter >= shortest else Missing()
+
+
+def _pit(gear: Gear, part: PitPart, prefix: str) -> Pit:
+    low, high = part.radii
+    start, end = gear.involute_radii
+    if high <= start or low >= end:
+        key, scale = ("radius", 1e3) if part.radius is not None else ("diameter", 2e3)
+        raise InputError(
+            f"{prefix}.{key}", f"{low * scale:.6g} to {high * scale:.6g} mm",
+            f"is outside the flank, {start * scale:.6g} to {end * scale:.6g} mm",
+        )  # fmt: skip
+    return Pit(low, high, part.face_share, part.depth or 0.0)
 
 
 def crack_of(gear: Gear, part: CrackPart, prefix: str) -> Crack:
@@ -117,6 +188,8 @@ def check_crack(scene: Scene, gear: str, number: int) -> None:
     from fegear.fem.plane.odd.cracked_sector import refuse_crack
 
     part, made = scene.case.gear[gear].odd_tooth[number].crack, scene.gears[gear]
+    if part is None:
+        return
     prefix = f"gear.{gear}.odd_tooth[{number}].crack"
     crack = crack_of(made, part, prefix)
     start = next((key for key in STARTS if getattr(part, key) is not None), "tangent_angle")
@@ -127,7 +200,7 @@ def check_crack(scene: Scene, gear: str, number: int) -> None:
 
 
 def check_odd_gear(scene: Scene, name: str) -> None:
-    """Refuse cracks that no tooth has, and gears whose teeth are loaded on both flanks.
+    """Refuse what no tooth has, and gears whose teeth are loaded on both flanks.
 
     Raises
     ------
@@ -147,8 +220,27 @@ def check_odd_gear(scene: Scene, name: str) -> None:
             key, "(given)", f"is not available for idlers yet: pairs {driven} and {drives} load opposite flanks",
             "use one case for each pair",
         )  # fmt: skip
+    odd_teeth_of(scene, name)
     for n in range(len(scene.case.gear[name].odd_tooth)):
         check_crack(scene, name, n)
+
+
+def check_left_contact(scene: Scene, pair: str) -> None:
+    """Refuse a missing tooth where no other pair is in contact.
+
+    Raises
+    ------
+    InputError
+    """
+    meshed = scene.pairs[pair]
+    flanks = (flank for gear in odd_gears_of(scene, pair) for _, flank in odd_teeth_of(scene, gear).flanks)
+    gone = any(flank.missing for flank in flanks)
+    if gone and not scene.case.effects.corner_contact and meshed.contact_ratio < 2.0:
+        raise InputError(
+            "effects.corner_contact", "false",
+            f"leaves no tooth pair in contact beside a missing tooth (contact ratio {meshed.contact_ratio:.3f})",
+            "set effects.corner_contact = true",
+        )  # fmt: skip
 
 
 def _as_given(error: InputError, part: CrackPart, start: str, module: float) -> InputError:

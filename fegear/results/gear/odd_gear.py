@@ -1,10 +1,10 @@
-"""Stage ``odd-gear-solution``: a gear with cracked teeth, solved from the same gear without cracks."""
+"""Stage ``odd-gear-solution``: a gear with odd teeth, solved from the same gear of ordinary ones."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.built.odd_teeth import CrackedGear, check_odd_gear, cracked_gear, odd_gears
+from fegear.case.built.odd_teeth import OddTeeth, check_odd_gear, odd_teeth_of, reshaped_gears
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 #: The stage's name.
 ODD = "odd-gear-solution"
-#: Seconds of a ring with one odd sector with the default settings, and of each further crack.
+#: Seconds of a ring with one odd sector with the default settings, and of each further odd tooth.
 _RING, _CRACK = 1.0, 0.3
 #: What results on cracks rest on.
 CRACKS = (
@@ -37,7 +37,7 @@ def odd_solution_of(upstream: Upstream, gear: str) -> OddGearInfluence:
     return cast("OddGearInfluence", upstream[Task(ODD, gear)])
 
 
-def _compute(asked: CrackedGear, upstream: Upstream, work: Work) -> OddGearInfluence:
+def _compute(asked: OddTeeth, upstream: Upstream, work: Work) -> OddGearInfluence:
     from fegear.fem.plane.odd.odd_gear import solve_cracked_gear
 
     ordinary = solution_of(upstream, asked.name)
@@ -49,9 +49,9 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 ODD_GEAR = Stage(
-    subjects=odd_gears,
+    subjects=reshaped_gears,
     needs=lambda _scene, name: needs_solution(name),
-    inputs=cracked_gear,
+    inputs=odd_teeth_of,
     compute=_compute,
     present=Sheet().present,
     check=check_odd_gear,

@@ -12,7 +12,7 @@ from fegear.base.arrays import Array, Index
 from fegear.base.effects import ODD_TEETH
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.case.built.odd_teeth import CrackedGear, cracked_gear, odd_gears
+from fegear.case.built.odd_teeth import OddTeeth, cracked_gears, odd_teeth_of
 from fegear.engine.citation import citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import DeferredFigure, Figure
@@ -107,7 +107,7 @@ class OddTeethData:
         return found
 
 
-def _compute(asked: CrackedGear, upstream: Upstream, _work: Work) -> OddTeethData:
+def _compute(asked: OddTeeth, upstream: Upstream, _work: Work) -> OddTeethData:
     known = odd_solution_of(upstream, asked.name)
     gear, plain = known.gear, known.ordinary
     low, high = gear.involute_radii
@@ -120,7 +120,12 @@ def _compute(asked: CrackedGear, upstream: Upstream, _work: Work) -> OddTeethDat
     teeth, cracked = [], {tooth for tooth, _ in asked.cracks}
     # The next tooth in meshing order is behind on a driving gear, ahead on a driven one.
     ahead = -1 if asked.member == "driver" else 1
+    other = {known.from_middle(number) for number in asked.by_number(gear.teeth)} - {
+        known.from_middle(meshing_order(tooth, gear.teeth, asked.member)) for tooth in cracked
+    }
     for near in known.touched:
+        if near in other:  # missing or shorter: not what the result is about
+            continue
         number = known.middle + near
         own = known.own(number, radius, half)
         prev, next_ = (_beside(known, number, k * ahead, radius) for k in (-1, 1))
@@ -138,8 +143,11 @@ def _compute(asked: CrackedGear, upstream: Upstream, _work: Work) -> OddTeethDat
 def _beside(known: OddGearInfluence, number: int, k: int, radius: Array) -> tuple[Array, Array]:
     """Deflection of a tooth's k-th neighbour at the radius of the load, and its estimated error, shape (P,)."""
     there = number + k
+    if known.from_middle(there) in known.fine.missing:
+        return np.zeros(radius.shape), np.zeros(radius.shape)
     if known.from_middle(there) in known.known:
-        both = known.between(there, number, radius, radius), known.between_error(there, number, radius, radius)
+        seen = np.minimum(radius, known.ends(known.from_middle(there))[1])
+        both = known.between(there, number, seen, radius), known.between_error(there, number, radius, radius)
     else:
         both = known.ordinary.neighbour_with_error(k, radius, radius)
     return np.diagonal(both[0]), np.diagonal(both[1])
@@ -240,9 +248,9 @@ def _forecast(_scene: Scene, _name: str) -> Forecast:
 
 
 ODD_TOOTH_STIFFNESS = Stage(
-    subjects=odd_gears,
+    subjects=cracked_gears,
     needs=lambda _scene, name: needs_odd_solution(name),
-    inputs=cracked_gear,
+    inputs=odd_teeth_of,
     compute=_compute,
     present=_SHEET.present,
     requires=(Need(ODD_TEETH.name, "its teeth are what the result is about"),),

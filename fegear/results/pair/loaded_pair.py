@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import AT_REST
 from fegear.case.built.neglected_effects import whole_ratio_remarks
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, odd_gears_of, odd_teeth_of, reshaped_gears
 from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
 from fegear.case.built.pair_notes import pair_notes
 from fegear.case.built.pair_spec import pair_spec
@@ -123,7 +123,8 @@ def _odd_pairs(scene: Scene) -> tuple[str, ...]:
 
 
 def _odd_needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    part, odd = scene.case.pair[name], odd_gears_of(scene, name)
+    part, reshaped = scene.case.pair[name], reshaped_gears(scene)
+    odd = tuple(gear for gear in odd_gears_of(scene, name) if gear in reshaped)
     return (
         *(needs_odd_solution(*odd)),
         *needs_solution(*(gear for gear in (part.driver, part.driven) if gear not in odd)),
@@ -131,7 +132,12 @@ def _odd_needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 
 def _odd_inputs(scene: Scene, name: str) -> AskedOfTeeth:
-    return replace(AskedOfTeeth.of(scene, pair_spec(scene, name), ()), neglected=False)
+    spec, odd = pair_spec(scene, name), odd_gears_of(scene, name)
+    driver, driven = (
+        replace(flank, odd=odd_teeth_of(scene, flank.gear).flanks) if flank.gear in odd else flank
+        for flank in spec.both
+    )
+    return replace(AskedOfTeeth.of(scene, replace(spec, driver=driver, driven=driven), ()), neglected=False)
 
 
 def _compute_odd(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedPair:
@@ -145,6 +151,9 @@ def _compute_odd(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedP
 def _check_odd(scene: Scene, name: str) -> None:
     check_odd_teeth(scene, name)
     check_plane_pair(scene, name)
+    for gear in odd_gears_of(scene, name):
+        check_odd_gear(scene, gear)
+    check_left_contact(scene, name)
 
 
 #: A pair of which a gear has odd teeth: results over a revolution read it, all others the ordinary one.

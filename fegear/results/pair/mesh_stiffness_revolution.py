@@ -16,7 +16,7 @@ from fegear.base.arrays import Array, Index
 from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
-from fegear.case.built.odd_teeth import cracked_gear, odd_gears_of
+from fegear.case.built.odd_teeth import odd_gears_of, odd_teeth_of
 from fegear.case.built.pair_checks import check_odd_teeth
 from fegear.contact.plane.over_revolution import OverRevolution, StressOfTeeth, over_revolution, stress_over_revolution
 from fegear.contact.plane.revolution_orders import (
@@ -61,13 +61,17 @@ class RevolutionInputs:
 
     Parameters
     ----------
-    odd : tuple of (member, tuple of int)
-        Odd teeth of driver and driven gear, in meshing order.
+    odd, cracked : tuple of (member, tuple of int)
+        Odd teeth of driver and driven gear, and those with a crack, in meshing order.
+    described : tuple of (member, str)
+        Which of them are what, in words.
     gears : tuple of str
         Names of driver and driven gear.
     """
 
     odd: tuple[tuple[Member, tuple[int, ...]], ...]
+    cracked: tuple[tuple[Member, tuple[int, ...]], ...]
+    described: tuple[tuple[Member, str], ...]
     gears: tuple[str, str] = field(compare=False)
     name: str = field(compare=False)
 
@@ -174,11 +178,10 @@ def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
     """Odd teeth and names of a pair's gears."""
     part, odd = scene.case.pair[name], odd_gears_of(scene, name)
     gears = part.driver, part.driven
-    teeth = tuple(
-        (member, tuple(sorted(tooth for tooth, _ in cracked_gear(scene, gear).cracks)))
-        for member, gear in zip(MEMBERS, gears, strict=True) if gear in odd
-    )  # fmt: skip
-    return RevolutionInputs(teeth, gears, name)
+    known = [(m, odd_teeth_of(scene, gear)) for m, gear in zip(MEMBERS, gears, strict=True) if gear in odd]
+    cracked = tuple((member, tuple(sorted(tooth for tooth, _ in one.cracks))) for member, one in known)
+    teeth = tuple((member, tuple(sorted({tooth for tooth, _ in (*one.cracks, *one.flanks)}))) for member, one in known)
+    return RevolutionInputs(teeth, cracked, tuple((member, one.described) for member, one in known), gears, name)
 
 
 def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> RevolutionData:
@@ -209,12 +212,9 @@ def _answer(seen: Seen) -> Iterator[str]:
     data: RevolutionData = seen.data
     if not seen.asked.odd:
         return
-    which = " and ".join(
-        f"{'tooth' if len(teeth) == 1 else 'teeth'} {', '.join(map(str, teeth))} of the {member}"
-        for member, teeth in seen.asked.odd
-    )
+    which = " and ".join(f"{said} ({member})" for member, said in seen.asked.described)
     yield (
-        f"Pair {seen.name}, {which} cracked: minimum mesh stiffness {data.mesh_stiffness_min * 1e-6:.4g} N/µm, "
+        f"Pair {seen.name}, {which}: minimum mesh stiffness {data.mesh_stiffness_min * 1e-6:.4g} N/µm, "
         f"{percent(data.mesh_stiffness_loss)} below that of ordinary teeth "
         f"({data.mesh_stiffness_min_ordinary * 1e-6:.4g} N/µm)."
     )

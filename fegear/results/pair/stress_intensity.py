@@ -9,7 +9,7 @@ from fegear.base.arrays import Array
 from fegear.base.effects import ODD_TEETH
 from fegear.base.notes import neglecting
 from fegear.base.shown import shown
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_teeth import cracked_gears, odd_gears_of
 from fegear.contact.plane.crack_in_mesh import CrackInMesh, crack_in_mesh
 from fegear.contact.plane.over_revolution import over_revolution
 from fegear.engine.citation import citing
@@ -94,7 +94,7 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, _work: Work) -> Stress
     loaded = cast("LoadedPair", upstream[Task(ODD, asked.name)])
     over = over_revolution(loaded.engagement, loaded.nominal, POSITIONS)
     found = []
-    for member, teeth in asked.odd:
+    for member, teeth in asked.cracked:
         gear = asked.gears[MEMBERS.index(member)]
         known = odd_solution_of(upstream, gear)
         for order in teeth:
@@ -173,17 +173,23 @@ _SHEET = Sheet(
 )  # fmt: skip
 
 
+def _cracked(scene: Scene, name: str) -> tuple[str, ...]:
+    """Gears of a pair with cracks."""
+    cracked = cracked_gears(scene)
+    return tuple(gear for gear in odd_gears_of(scene, name) if gear in cracked)
+
+
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (Task(ODD, name), *needs_odd_solution(*odd_gears_of(scene, name)))
+    return (Task(ODD, name), *needs_odd_solution(*_cracked(scene, name)))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    cracks = sum(len(scene.case.gear[gear].odd_tooth) for gear in odd_gears_of(scene, name))
+    cracks = sum(len(scene.case.gear[gear].odd_tooth) for gear in _cracked(scene, name))
     return Forecast({"positions": POSITIONS}, _SECONDS * cracks)
 
 
 STRESS_INTENSITY = Stage(
-    subjects=lambda scene: tuple(name for name in plane_pairs(scene) if odd_gears_of(scene, name)),
+    subjects=lambda scene: tuple(name for name in plane_pairs(scene) if _cracked(scene, name)),
     needs=_needs,
     inputs=inputs_of,
     compute=_compute,

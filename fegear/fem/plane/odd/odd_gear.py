@@ -25,6 +25,7 @@ from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import OddInfluence, OddTooth, ToothKind, solve_odd_influence
 from fegear.fem.plane.odd.odd_ring import OddRing
 from fegear.fem.plane.odd.other_outline import Missing, OtherTip
+from fegear.fem.plane.odd.other_sector import empty_sector, shorter_sector
 from fegear.fem.plane.root_stress import CutFillet, FilletStrain
 from fegear.fem.plane.settings import LEVEL_RATIO
 from fegear.fem.plane.solution import shape_codec
@@ -378,7 +379,7 @@ def _solve(
         if not isinstance(one, Missing)
     }
     missing = {
-        number: one.mesh(fine.tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)
+        number: empty_sector(fine.tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)
     }
     return solve_odd_influence(
         fine.tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
@@ -388,5 +389,5 @@ def _solve(
 
 def _odd_tooth(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, one: Crack | OtherTip) -> OddTooth:
     if isinstance(one, OtherTip):
-        return OddTooth(one.tooth(tooth), one.mesh(tooth, bore_radius, settings))
+        return OddTooth(*shorter_sector(tooth, bore_radius, settings, one))
     return OddTooth(tooth, cracked_sector(tooth, bore_radius, settings, one))
