@@ -97,8 +97,8 @@ def rounded(value: float, error: float | None = None, digits: int = 3) -> str:
 
 
 def unit_said(unit: str) -> str:
-    """A unit as a sentence has it: ``µm``, ``N m``."""
-    return unit.replace("um", "µm").replace(".", " ")
+    """A unit as a sentence has it: ``µm``, ``N m``, ``MPa·√m``."""
+    return unit.replace(".m^(1/2)", "·√m").replace("um", "µm").replace(".", " ")
 
 
 def with_its_error(value: float, error: float) -> str:

@@ -8,10 +8,15 @@ import re
 _WORDS = {
     "te": "transmission error,", "fe": "FE", "largest": "maximum", "highest": "maximum", "smallest": "minimum",
     "lowest": "minimum", "least": "minimum", "rms": "RMS", "iso": "ISO", "agma": "AGMA", "hertz": "Hertzian",
+    "fm0": "FM0", "fm4": "FM4", "m6a": "M6A",
 }  # fmt: skip
 _PHRASES = {
     "root tension": "root stress, tension side",
     "root compression": "root stress, compression side",
+    "mesh stiffness min ordinary": "minimum mesh stiffness of ordinary teeth",
+    "mesh stiffness min": "minimum mesh stiffness",
+    "mesh stiffness loss": "reduction of the mesh stiffness",
+    "transmission error, residual max": "maximum residual of the transmission error",
 }
 #: Of drawn populations: the last word, where no tooth is numbered.
 _SHARES = {"50": "median", "95": "95th percentile"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-_SIGNS = (("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
+_SIGNS = (("m^(1/2)", "√m"), ("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
 
 
 #: Errors below this share of the value are given as a share; digits that a float does not hold are not.

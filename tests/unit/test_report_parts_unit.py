@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from fegear.base.notes import failing
+from fegear.base.printed import unit_said
 from fegear.base.spoken_names import spoken
 from fegear.case.reading import read_scene
 from fegear.engine.citation import bibliography
@@ -273,11 +274,19 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
         ("rules_checked", "rules checked"),
         ("I.te_peak_to_peak_95", "transmission error, peak to peak, 95th percentile"),
         ("I.hertz_pressure_50", "Hertzian pressure, median"), ("a.stiffness_loss_tooth_50", "stiffness loss tooth 50"),
+        ("I.fm0", "FM0"), ("I.m6a", "M6A"), ("I.mesh_stiffness_min", "minimum mesh stiffness"),
+        ("I.mesh_stiffness_min_ordinary", "minimum mesh stiffness of ordinary teeth"),
+        ("I.te_residual_max", "maximum residual of the transmission error"),
         ("I.driver.S_F", ""), ("a.c_self_at_pitch", ""), ("I.K_Hbeta", ""),
     ],
 )  # fmt: skip
 def test_an_identifier_is_said_in_words(name, said):
     assert spoken(name) == said
+
+
+def test_a_stress_intensity_has_the_root_of_a_metre():
+    assert pretty_unit("MPa.m^(1/2)") == unit_said("MPa.m^(1/2)") == "MPa·√m"
+    assert unit_said("N.m") == "N m"
 
 
 def test_every_block_has_its_macro(tmp_path):
