@@ -47,7 +47,7 @@ def test_cracked_ring_is_the_whole_gear(name):
     found = solve_odd_influence(
         tooth, mesh_sector(tooth, bore, SETTINGS), {0: OddTooth(tooth, sector)}, 0.3, "strain", SETTINGS
     )
-    whole = Solved(tooth, bore, cracked_gear(tooth, bore, crack.path(tooth), radii, 0.05, 0.025))
+    whole = Solved(tooth, bore, cracked_gear(tooth, bore, crack.path(tooth), radii, 0.08, 0.025))
     largest, apart = float(found.own(0, radii, PATCH, 0.02).max()), ~np.eye(3, dtype=bool)
     for i in (-1, 0, 1):
         for j in (-1, 0, 1):
