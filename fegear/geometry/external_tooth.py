@@ -10,16 +10,15 @@ import numpy as np
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Involute, Trochoid
-from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, meeting, protuberance_fillet
+from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, check_trochoid, meeting, protuberance_fillet
 from fegear.geometry.involute import roll_of_polar_angle
+from fegear.geometry.involute_side import check_given
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import BasicRack, transverse_angle
 from fegear.geometry.thickness import ToothNumbers
 
 #: Half the thickness of the thinnest neck that undercut may leave [modules].
-_THINNEST_NECK = 0.02
-#: A rack tip as sharp as this [modules] needs as much room below the pitch line to leave a fillet.
-_SMALLEST_FILLET = 1e-6
+THINNEST_NECK = 0.02
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Tooth(InvoluteTooth):
 
     def __post_init__(self) -> None:
         """Fill in the tip radius and refuse teeth that cannot exist."""
-        self._check_given()
+        check_given(self)
         if math.isnan(self.tip_radius):
             object.__setattr__(self, "tip_radius", self.pitch_radius + self.profile_shift + self.rack.addendum)
         self._check_root()
@@ -85,21 +84,7 @@ class Tooth(InvoluteTooth):
             raise GeometryError("rack.dedendum", self.rack.dedendum, "extends to the centre of the gear")
         if self.root_land_half_angle > math.pi / self.teeth or self.root_land_half_angle < -1e-12:
             raise GeometryError("rack.tip_radius", self.rack.tip_radius, "gives a negative root land")
-        if max(self.rack.tip_radius, abs(self.rack.tip_centre_depth - self.profile_shift)) < _SMALLEST_FILLET:
-            raise GeometryError(
-                "rack.tip_radius",
-                self.rack.tip_radius,
-                "is a sharp corner on the pitch line and would generate a notch instead of a fillet",
-                "specify a tip radius of the rack, or a profile shift different from its dedendum",
-            )
-        fillet = self._full_trochoid()
-        if np.min(fillet.speed(np.linspace(fillet.start, fillet.end, 65))) < 0.0:
-            raise GeometryError(
-                "profile_shift",
-                self.profile_shift,
-                "is too large: the rack tip rounding crosses the pitch line",
-                f"choose a profile shift below {self.rack.tip_centre_depth:.4f} or a larger rack tip radius",
-            )
+        check_trochoid(self._full_trochoid(), self.rack, self.profile_shift)
 
     def _check_tip(self) -> None:
         if self.tip_radius <= self.base_radius:
@@ -126,7 +111,7 @@ class Tooth(InvoluteTooth):
             )
         self._check_tip_edge()
         neck = float(self.fillet.points(np.linspace(self.fillet.start, self.fillet.end, 257))[0].min())
-        if neck < _THINNEST_NECK:
+        if neck < THINNEST_NECK:
             raise GeometryError(
                 "profile_shift",
                 self.profile_shift,

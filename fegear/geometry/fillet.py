@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,50 @@ from fegear.geometry.rack import BasicRack, transverse_angle
 
 #: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
 _SLIGHT_UNDERCUT = 1e-4
+
+
+#: A rack tip as sharp as this [modules] needs as much room below the pitch line to leave a fillet.
+_SMALLEST_FILLET = 1e-6
+
+
+class RoundedTip(Protocol):
+    """The rounding of a rack's tip beside one of its flanks, in the normal section."""
+
+    @property
+    def tip_radius(self) -> float:
+        """rho_fP [modules]."""
+
+    @property
+    def tip_centre_depth(self) -> float:
+        """Depth of the rounding's centre below the reference line [modules]."""
+
+
+def check_trochoid(fillet: Trochoid, tip: RoundedTip, profile_shift: float, key: str = "rack.tip_radius") -> None:
+    """Refuse a rack whose tip rounding leaves a notch, or a loop, in place of a fillet.
+
+    Parameters
+    ----------
+    fillet : Trochoid
+        Of the whole rounding.
+    tip : RoundedTip
+    profile_shift : float
+    key : str
+        Of the tip radius, in messages.
+    """
+    if max(tip.tip_radius, abs(tip.tip_centre_depth - profile_shift)) < _SMALLEST_FILLET:
+        raise GeometryError(
+            key,
+            tip.tip_radius,
+            "is a sharp corner on the pitch line and would generate a notch instead of a fillet",
+            "specify a tip radius of the rack, or a profile shift different from its dedendum",
+        )
+    if np.min(fillet.speed(np.linspace(fillet.start, fillet.end, 65))) < 0.0:
+        raise GeometryError(
+            "profile_shift",
+            profile_shift,
+            "is too large: the rack tip rounding crosses the pitch line",
+            f"choose a profile shift below {tip.tip_centre_depth:.4f} or a larger rack tip radius",
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +160,7 @@ class RackFlankLine:
         half = self.half_pitch - self.half_space + self.shift * math.tan(self.pressure_angle)
         return half / self.pitch_radius + float(inv(self.pressure_angle))
 
-    def tangent_roll(self, rack: BasicRack) -> float:
+    def tangent_roll(self, rack: RoundedTip) -> float:
         """Roll angle at which the flank ends on the line of action at the tip rounding; negative means undercut."""
         alpha = self.pressure_angle
         height = self.shift - rack.tip_centre_depth - rack.tip_radius * math.sin(self.normal_angle)

@@ -13,6 +13,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Involute, PinionTipFillet
 from fegear.geometry.involute import inv, pressure_angle_of_inv, roll_of_polar_angle
+from fegear.geometry.involute_side import check_given
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import transverse_angle
 
@@ -108,7 +109,7 @@ class InternalTooth(InvoluteTooth):
 
     def __post_init__(self) -> None:
         """Fill in the tip radius and refuse teeth that cannot exist."""
-        self._check_given()
+        check_given(self)
         if self.teeth - self.cutter.teeth < _FEWEST_MORE:
             raise GeometryError(
                 "cutter.teeth", self.cutter.teeth,

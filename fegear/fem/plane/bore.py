@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
-    from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.involute_side import InvoluteSide
 
 #: Bores that can be solved [root radius]. Nearer the centre the whole gear turns about its bore so freely, with the
 #: inverse square of the radius, that the difference between teeth is lost at the start of a flank; a thinner rim
@@ -18,12 +18,12 @@ _SMALLEST_BORE, _THINNEST_RIM = 5e-4, 5e-3
 _LARGEST_RING = 10.0
 
 
-def check_bore(tooth: InvoluteTooth, bore_radius: float, module: float | None = None) -> None:
+def check_bore(tooth: InvoluteSide, bore_radius: float, module: float | None = None) -> None:
     """Refuse bores so near the centre or the outline that elements cannot resolve what is left.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     bore_radius : float
         [modules].
     module : float, optional

@@ -17,7 +17,7 @@ from fegear.base.arrays import Array
 from fegear.fem.plane.bore import check_bore
 from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.curves import Curve, arc_length
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.outline import turned
 
 Law = Callable[[Array], Array]
@@ -114,12 +114,12 @@ def _at_nodes(name: str, curve: Curve, nodes: Array, side: int) -> Chain:
     return Chain(name, vertices, middles, tangents)
 
 
-def fillet_chain(tooth: InvoluteTooth, name: str, size: Law, through: float) -> tuple[Chain, int]:
+def fillet_chain(tooth: InvoluteSide, name: str, size: Law, through: float) -> tuple[Chain, int]:
     """Edges along a fillet with a vertex at a given place, in their order round the sector.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     name : {"fillet", "back_fillet"}
     size : callable
         Edge length over the arc length up the fillet [modules].
@@ -132,10 +132,12 @@ def fillet_chain(tooth: InvoluteTooth, name: str, size: Law, through: float) -> 
     vertex : int
         Number of that vertex among the chain's.
     """
-    end, side, back = _length(tooth.fillet), tooth.side, name == "back_fillet"
+    side, back = tooth.side, name == "back_fillet"
+    fillet = (tooth.back if back else tooth).fillet
+    end = _length(fillet)
     lower, upper = graded(through, size), through + graded(end - through, lambda s: size(s + through))
     nodes, vertex = np.concatenate([lower, upper[1:]]), lower.size - 1
-    chain = _at_nodes(name, tooth.fillet, nodes, side)
+    chain = _at_nodes(name, fillet, nodes, side)
     if back:
         chain = _mirrored(chain, name)
     if side < 0:
@@ -150,13 +152,13 @@ def _mirrored(chain: Chain, name: str) -> Chain:
 
 
 def sector_boundary(
-    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
 ) -> list[Chain]:
     """Discretise the closed boundary of one sector, counterclockwise from the bore on side A.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     bore_radius : float
         Radius at which the body is held: of the bore, or of the outer circle of a ring gear [modules].
     settings : MeshSettings
@@ -178,7 +180,7 @@ def sector_boundary(
     check_bore(tooth, bore_radius)
     pieces, side = tooth.outline, tooth.side
     pitch_angle = 2.0 * math.pi / tooth.teeth
-    beside = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
+    beside = max(float(_fillet_size(one, settings)(np.zeros(1))[0]) for one in (tooth, tooth.back))
     short = tooth.root_radius * tooth.root_land_half_angle < max(_SHORTEST_LAND, _LEAST_LAND * beside)
     land = (
         []
@@ -202,15 +204,7 @@ def sector_boundary(
     ]
     if not land:
         front[0] = _from_the_side(front[0], tooth)
-    back_laws = _back_sizes(tooth, settings)
-    back_tip = [
-        _mirrored(_on_curve(_boundary(piece, tooth), pieces[piece], law, side=side), "tip")
-        for piece, law in reversed(back_laws.items())
-        if piece in pieces and piece != "flank"
-    ]
-    back_flank = _mirrored(_on_curve("flank", tooth.involute, back_laws["flank"], side=side), "back_flank")
-    fillet = _on_curve("fillet", tooth.fillet, _fillet_size(tooth, settings), fewest, side=side)
-    back_fillet = _mirrored(fillet if land else _from_the_side(fillet, tooth), "back_fillet")
+    back = _back(tooth, settings, short=not land)
     top = (land + front)[0].vertices
     first = float(np.hypot(*(top[:, 1] - top[:, 0])))
     outer = float(np.hypot(*top[:, 0]))
@@ -228,17 +222,35 @@ def sector_boundary(
     by_size = round(pitch_angle * bore_radius / float(body_size(np.array(side * (outer - bore_radius)))))
     bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
-    back_land = [_mirrored(chain, "root_land") for chain in land]
-    chains = [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+    chains = [bore, side_b, *land, *front, *back, side_a]
     # Round the sector of a ring gear, which lies outside its outline, this runs clockwise.
     return chains if side > 0 else [_reversed(chain) for chain in reversed(chains)]
+
+
+def _back(tooth: InvoluteSide, settings: MeshSettings, *, short: bool) -> list[Chain]:
+    """The other side of the sector from the middle of the tip land to that of the tooth space, whose land is short."""
+    back, laws = tooth.back, _back_sizes(tooth, settings)
+    pieces, side = back.outline, tooth.side
+    tip = [
+        _mirrored(_on_curve(_boundary(piece, back), pieces[piece], law, side=side), "tip")
+        for piece, law in reversed(laws.items())
+        if piece in pieces and piece != "flank"
+    ]
+    flank = _mirrored(_on_curve("flank", back.involute, laws["flank"], side=side), "back_flank")
+    fewest = _fewest_edges(back, settings)
+    fillet = _on_curve("fillet", back.fillet, _fillet_size(back, settings), fewest, side=side)
+    fillet = _mirrored(_from_the_side(fillet, back) if short else fillet, "back_fillet")
+    if short or back.root_land is None:
+        return [*tip, flank, fillet]
+    land = _on_curve("root_land", back.root_land, _land_size(back, settings), side=side)
+    return [*tip, flank, fillet, _mirrored(land, "root_land")]
 
 
 def _reversed(chain: Chain) -> Chain:
     return Chain(chain.name, chain.vertices[:, ::-1], chain.middles[:, ::-1], -chain.tangents[:, ::-1])
 
 
-def _from_the_side(fillet: Chain, tooth: InvoluteTooth) -> Chain:
+def _from_the_side(fillet: Chain, tooth: InvoluteSide) -> Chain:
     """Fillet that starts in the middle of the tooth space, on the side of the sector."""
     vertices = fillet.vertices.copy()
     half = math.pi / tooth.teeth
@@ -246,7 +258,7 @@ def _from_the_side(fillet: Chain, tooth: InvoluteTooth) -> Chain:
     return Chain(fillet.name, vertices, fillet.middles, fillet.tangents)
 
 
-def _boundary(piece: str, tooth: InvoluteTooth) -> str:
+def _boundary(piece: str, tooth: InvoluteSide) -> str:
     """Name of the boundary that a piece of the outline belongs to; a rounding carries load as the flank does."""
     if piece == "tip_edge" and tooth.tip_rounding > 0.0:
         return "tip_rounding"
@@ -257,14 +269,14 @@ def _length(curve: Curve) -> float:
     return float(arc_length(curve)[1][-1])
 
 
-def _land_size(tooth: InvoluteTooth, settings: MeshSettings) -> Law:
+def _land_size(tooth: InvoluteSide, settings: MeshSettings) -> Law:
     """Edges on the root land grow away from the fillet."""
     length = tooth.root_radius * tooth.root_land_half_angle
     first = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
     return lambda s: first + settings.growth * (length - s)
 
 
-def _fewest_edges(tooth: InvoluteTooth, settings: MeshSettings) -> int:
+def _fewest_edges(tooth: InvoluteSide, settings: MeshSettings) -> int:
     """Least number of edges along a fillet."""
     if _length(tooth.fillet) >= _SHORT_FILLET:
         return _FEWEST_FILLET_EDGES
@@ -272,7 +284,7 @@ def _fewest_edges(tooth: InvoluteTooth, settings: MeshSettings) -> int:
     return max(_FEWEST_FILLET_EDGES, round(graded_by_level))
 
 
-def fillet_edges(tooth: InvoluteTooth, settings: MeshSettings) -> float:
+def fillet_edges(tooth: InvoluteSide, settings: MeshSettings) -> float:
     """How many edges a fillet would have if all were as long as along most of it: those graded to its ends count less.
 
     Errors of root stress go with them; they are known before anything is meshed.
@@ -283,7 +295,7 @@ def fillet_edges(tooth: InvoluteTooth, settings: MeshSettings) -> float:
     return float(edges.sum() ** 2 / (edges**2).sum())
 
 
-def _fillet_size(tooth: InvoluteTooth, settings: MeshSettings) -> Law:
+def _fillet_size(tooth: InvoluteSide, settings: MeshSettings) -> Law:
     """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
     parameter, length = arc_length(tooth.fillet)
     radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
@@ -297,17 +309,17 @@ def _fillet_size(tooth: InvoluteTooth, settings: MeshSettings) -> Law:
     return lambda s: np.interp(s, length, sizes)
 
 
-def _back_sizes(tooth: InvoluteTooth, settings: MeshSettings) -> dict[str, Law]:
-    """Edge lengths along the other side from its fillet to the tooth's centre line.
+def _back_sizes(tooth: InvoluteSide, settings: MeshSettings) -> dict[str, Law]:
+    """Edge lengths along the other side from its fillet to the middle of the tip land.
 
-    Nothing is loaded there: edges grow away from the fillet, from the centre line, where they are as long as the loaded
+    Nothing is loaded there: edges grow away from the fillet, from that middle, where they are as long as the loaded
     side's, and from a rounded tip, which they must follow.
     """
-    grow, longest = settings.growth, settings.back_edge_length
-    flank, land = _length(tooth.involute), _length(tooth.outline["tip_land"])
-    edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
-    last = float(_fillet_size(tooth, settings)(np.array([_length(tooth.fillet)]))[0])
-    middle = float(front_sizes(tooth, settings)["tip_land"](np.array([land]))[0])
+    grow, longest, back = settings.growth, settings.back_edge_length, tooth.back
+    flank, land = _length(back.involute), _length(back.outline["tip_land"])
+    edge = _length(back.tip_edge) if back.tip_edge else 0.0
+    last = float(_fillet_size(back, settings)(np.array([_length(back.fillet)]))[0])
+    middle = float(front_sizes(tooth, settings)["tip_land"](np.array([_length(tooth.outline["tip_land"])]))[0])
     # a rounding that turns sharper than an edge can follow is drawn straight, as on the loaded side
     round_ = max(_SHARPEST_TURN * tooth.tip_rounding, settings.tip_edge_length) if tooth.tip_rounding > 0.0 else longest
 
@@ -325,7 +337,7 @@ def _back_sizes(tooth: InvoluteTooth, settings: MeshSettings) -> dict[str, Law]:
 
 
 def front_sizes(
-    tooth: InvoluteTooth, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+    tooth: InvoluteSide, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
 ) -> dict[str, Law]:
     """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
     grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length

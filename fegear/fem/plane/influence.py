@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.plane.settings import Solver
     from fegear.geometry.gear import Plane
-    from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.involute_side import InvoluteSide
     from fegear.geometry.rim_support import RimSupport
 
 Side = Literal["tension", "compression"]
@@ -77,7 +77,7 @@ class Influence:
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     poisson_ratio : float
     plane : {"strain", "stress"}
     mesh : SectorMesh
@@ -103,7 +103,7 @@ class Influence:
         What carries the rim of a ring gear; by default its whole outer circle is held.
     """
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     poisson_ratio: float
     plane: Plane
     mesh: SectorMesh
@@ -388,7 +388,7 @@ class Influence:
 
 @tallied("tooth shapes")
 def solve_influence(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     mesh: SectorMesh,
     poisson_ratio: float,
     plane: Plane,
@@ -406,7 +406,7 @@ def solve_influence(
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     mesh : SectorMesh
     poisson_ratio : float
     plane : {"strain", "stress"}
@@ -444,7 +444,7 @@ def solve_influence(
 class _Asked(NamedTuple):
     """What a ring is solved for, whatever its elements; as of `solve_influence`."""
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     mesh: SectorMesh
     poisson_ratio: float
     plane: Plane

@@ -103,7 +103,7 @@ class OutlineMotion:
         """Places of contacts and the directions into the tooth there, shape (2, P) each."""
         flank, tooth = self.influence.flank, self.influence.tooth
         radius = flank.radius_of_arc(arc)
-        half = tooth.half_thickness_angle(radius)
+        half = tooth.flank_angle(radius)
         lean = flank.base_half_angle - flank.side * np.sqrt(np.maximum((radius / flank.base_radius) ** 2 - 1.0, 0.0))
         place = radius * np.stack([np.sin(half), np.cos(half)])
         return place, np.stack([-np.cos(lean), np.sin(lean)])

@@ -39,7 +39,7 @@ from fegear.fem.plane.root_stress import CLEARANCE, search_end
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.tooth_meshing import mesh_inside, mesh_sector
 from fegear.geometry.gear import Plane
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.outline import turned
 from fegear.geometry.rim_support import RimSupport
 
@@ -77,7 +77,7 @@ class WholeGearAlone:
 
 
 def solve_alone(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     bore_radius: float,
     poisson_ratio: float,
     plane: Plane,
@@ -90,7 +90,7 @@ def solve_alone(
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     bore_radius : float
         [modules].
     poisson_ratio : float
@@ -148,7 +148,7 @@ def _on_average(stiffness: Any, held: Array, loads: Array) -> Array:
     return np.asarray(free - by_support @ np.linalg.solve(held.T @ by_support, held.T @ free))
 
 
-def _flank_arc(tooth: InvoluteTooth, radius: Array) -> Array:
+def _flank_arc(tooth: InvoluteSide, radius: Array) -> Array:
     """Arc length of radii from the start of the flank."""
     roll = tooth.roll(np.maximum(np.append(radius, tooth.form_radius), tooth.base_radius))
     arc = 0.5 * tooth.base_radius * np.asarray(roll) ** 2
@@ -156,7 +156,7 @@ def _flank_arc(tooth: InvoluteTooth, radius: Array) -> Array:
 
 
 def _whole_gear(
-    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
+    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
 ) -> SectorMesh:
     """All sectors joined, boundaries by name and tooth: ``flank:1`` is that of the tooth clockwise of tooth 0."""
     coarse = min(settings_at(_BODY), settings.refined(_FINER**-2), key=lambda s: s.root_edge_length)
@@ -287,7 +287,7 @@ class _Ring:
             normal = np.where((normal * inward).sum(axis=0) > 0.0, -normal, normal)
             yield _Edges(basis, place, normal, tangent, length)
 
-    def pressure(self, tooth: InvoluteTooth, arc: float, half_width: float) -> Array:
+    def pressure(self, tooth: InvoluteSide, arc: float, half_width: float) -> Array:
         """Nodal forces of a semi-elliptic pressure of unit load on tooth 0, exact below its ends inside an edge."""
         forces = np.zeros(self.dofs.N)
         for facet in self.facets("flank:0"):

@@ -34,7 +34,7 @@ from fegear.fem.plane.settings import (
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.rim_support import RimSupport
 
 Progress = Callable[[str], None]
@@ -49,7 +49,7 @@ _FALLS, _FARTHEST = 2.5, 2.0
 
 
 def influence_of_shape(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     bore_radius: float,
     poisson_ratio: float,
     plane: Plane,
@@ -68,7 +68,7 @@ def influence_of_shape(
 
 
 def _solve_shape(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     bore_radius: float,
     poisson_ratio: float,
     plane: Plane,
@@ -209,7 +209,7 @@ def solve_to_tolerance(
         level = min(level + levels_finer(rounds[-1].error / tolerance), FINEST_LEVEL)
 
 
-def first_level(tooth: InvoluteTooth, tolerance: float) -> float:
+def first_level(tooth: InvoluteSide, tolerance: float) -> float:
     """Level at which a tolerance starts: where most gears meet it half a level coarser, there if the fillet suits it.
 
     The largest error is that of root stress, and it goes with the number of edges along the fillet.
@@ -233,7 +233,7 @@ def _estimate(fine: Influence, corner_distance: float, patch: float, coarse_patc
     return Estimate(fine, replace(fine.lower, corner_distance=corner_distance), patch, coarse_patch)
 
 
-def _shape(gear: Gear) -> tuple[InvoluteTooth, float, float, Plane]:
+def _shape(gear: Gear) -> tuple[InvoluteSide, float, float, Plane]:
     return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
 
 
@@ -241,12 +241,12 @@ def _shape(gear: Gear) -> tuple[InvoluteTooth, float, float, Plane]:
 _PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain, PinForces, RimSupport)
 
 
-def shape_codec(tooth: InvoluteTooth, kinds: tuple[type, ...] = _PLANE) -> Codec[Any]:
+def shape_codec(tooth: InvoluteSide, kinds: tuple[type, ...] = _PLANE) -> Codec[Any]:
     """How the solution of a shape is kept on disk.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
         Which whoever asks for the solution knows: it is not kept.
     kinds : tuple of type
         Dataclasses that the solution consists of, its own first; those with the tooth as a field are given it.
@@ -264,7 +264,7 @@ def _plain(item: object, kinds: tuple[type, ...]) -> object:
     return item
 
 
-def _restored(data: bytes | memoryview, tooth: InvoluteTooth, kinds: tuple[type, ...]) -> Any:
+def _restored(data: bytes | memoryview, tooth: InvoluteSide, kinds: tuple[type, ...]) -> Any:
     """Rebuild a solution; None if the bytes do not fit."""
     names = {kind.__name__: kind for kind in kinds}
     of_tooth = {kind for kind in kinds if any(one.name == "tooth" for one in dataclasses.fields(kind))}

@@ -24,7 +24,7 @@ from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.settings import MeshSettings
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 #: What gmsh's wheel needs from the system, for the error message.
 SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
@@ -133,13 +133,13 @@ def _forget_the_last_model(gmsh: Any) -> None:
 
 
 def mesh_sector(
-    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, *, frontal: bool = False
+    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, *, frontal: bool = False
 ) -> SectorMesh:
     """Mesh the sector of one tooth.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     bore_radius : float
         [modules].
     settings : MeshSettings
@@ -177,9 +177,7 @@ def mesh_sector(
     ) from refused
 
 
-def _mesh(
-    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, started: float, frontal: bool
-) -> SectorMesh:
+def _mesh(tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, started: float, frontal: bool) -> SectorMesh:
     growth = None if frontal else settings.side_growth
     mesh = mesh_inside(sector_boundary(tooth, bore_radius, settings), tooth.teeth, started, growth)
     if settings.order > 2:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.involute_side import InvoluteSide
 
 _GAUSS = np.polynomial.legendre.leggauss(6)
 
@@ -308,7 +308,7 @@ class BoundaryUnknowns(Protocol):
         """Order of the elements."""
 
 
-def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: InvoluteTooth, margin: float) -> LoadedFlank:
+def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: InvoluteSide, margin: float) -> LoadedFlank:
     """Collect the loaded run: the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""
 
     def upward(name: str) -> tuple[Index, Index, Array]:

@@ -1,0 +1,237 @@
+"""Teeth whose two flanks differ: an own rolling of the rack, equal flanks as ever, and flanks exchanged."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import GeometryError
+from fegear.geometry.asymmetric_pair import AsymmetricPair
+from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
+from fegear.geometry.asymmetric_tooth import AsymmetricTooth
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+
+
+def rack(drive, coast, radii=(0.25, 0.25), addendum=1.0, dedendum=1.25):
+    flanks = (RackFlank(math.radians(a), r) for a, r in zip((drive, coast), radii, strict=True))
+    return AsymmetricRack(*flanks, addendum, dedendum)
+
+
+#: Teeth, rack, profile shift, allowance, helix angle [deg].
+TEETH = {
+    "20/30": (28, rack(20.0, 30.0, (0.25, 0.2)), 0.1, 0.0, 0.0),
+    "28/18": (23, rack(28.0, 18.0, (0.2, 0.3)), 0.3, 0.05, 0.0),
+    "35/20": (40, rack(35.0, 20.0, (0.15, 0.2)), 0.0, 0.0, 0.0),
+    "35/20, helical": (31, rack(35.0, 20.0, (0.1, 0.22)), -0.1, 0.0, 18.0),
+    "undercut on one flank": (13, rack(30.0, 17.0, (0.15, 0.25)), 0.1, 0.0, 0.0),
+    "one rounding beyond the middle": (30, rack(38.0, 15.0, (0.25, 0.3), dedendum=1.1), 0.0, 0.0, 0.0),
+}
+
+
+def made(name, **more):
+    teeth, tool, shift, allowance, helix = TEETH[name]
+    return AsymmetricTooth(teeth, tool, shift, allowance, helix_angle=math.radians(helix), **more)
+
+
+def rolled(tooth, sign):
+    """Points that the rack's flank and rounding on one side cut, in the space's frame: clockwise angle and radius.
+
+    The rack's tooth hangs into the space, its middle at u = 0; it is cut where the normal passes through the pitch
+    point. `sign` is -1 on the rack's left, where it makes the drive flank of the tooth before the space.
+    """
+    one = tooth.rack.drive if sign < 0 else tooth.rack.coast
+    alpha, rho, c, r = one.pressure_angle, one.tip_radius, math.cos(tooth.helix_angle), tooth.pitch_radius
+    line = tooth.profile_shift - tooth.thickness_allowance / (
+        math.tan(tooth.rack.drive.pressure_angle) + math.tan(tooth.rack.coast.pressure_angle)
+    )
+    v = np.linspace(line - tooth.rack.dedendum, line + 1.5, 4001)
+    flank = np.stack([math.pi / 4 + (v - line) * math.tan(alpha), v])
+    flank_normal = np.stack([np.full_like(v, math.cos(alpha)), np.full_like(v, -math.sin(alpha))])
+    depth = line - tooth.rack.dedendum + rho
+    middle = math.pi / 4 + (depth - line) * math.tan(alpha) - rho / math.cos(alpha)
+    b = np.linspace(0.0, math.pi / 2 - alpha, 301)
+    round_normal = np.stack([np.sin(b), -np.cos(b)])
+    rounding = np.array([[middle], [depth]]) + rho * round_normal
+    cut = []
+    for (u, height), (nu, nv) in ((flank, flank_normal), (rounding, round_normal)):
+        across = sign * u / c
+        travel = height * sign * nu * c / nv - across
+        x, y, turn = across + travel, r + height, travel / r
+        # the gear has turned clockwise by `turn`; back to where it began
+        cut.append((np.arctan2(x, y) - turn, np.hypot(x, y)))
+    return cut, middle / c, b
+
+
+@pytest.mark.parametrize("name", TEETH)
+def test_an_own_rolling_of_the_rack_gives_both_flanks_and_fillets(name):
+    tooth = made(name)
+    found = {sign: rolled(tooth, sign) for sign in (-1, 1)}
+    # the middle of the root land, from which the tooth's centre line lies half a pitch away
+    middle = 0.5 * (found[1][1] - found[-1][1]) / tooth.pitch_radius
+    for side, sign in ((tooth.drive, -1), (tooth.coast, 1)):
+        ((angle, radius), (fillet_angle, fillet_radius)), _, b = found[sign]
+        on = (radius > side.form_radius) & (radius < side.tip_radius)
+        # a point ahead of the involute's cusp lies on its other branch
+        on &= np.arange(on.size) >= np.argmin(radius)
+        assert on.sum() > 100
+        own = math.pi / tooth.teeth - sign * (angle[on] - middle)
+        assert np.abs((own - side.flank_angle(radius[on])) * radius[on]).max() < 1e-9
+        drawn = side.fillet.points(b)
+        own = math.pi / tooth.teeth - sign * (fillet_angle - middle)
+        assert np.hypot(*drawn) == pytest.approx(fillet_radius, abs=1e-9)
+        assert np.abs((np.arctan2(*drawn) - own) * fillet_radius).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", TEETH)
+def test_the_outline_has_no_gap_from_land_to_land(name):
+    tooth = made(name)
+    ends = []
+    for side in (tooth.drive, tooth.coast):
+        pieces = list(side.outline.values())
+        for one, other in pairwise(pieces):
+            assert one.points(one.end) == pytest.approx(other.points(other.start), abs=2e-9)
+        ends.append(pieces)
+    front, back = (pieces[-1].points(pieces[-1].end) for pieces in ends)
+    assert front[0] == -back[0]
+    assert front[1] == back[1]
+    starts = [pieces[0].points(pieces[0].start) for pieces in ends]
+    assert np.array_equal(*starts)
+    assert math.atan2(*starts[0]) == pytest.approx(math.pi / tooth.teeth, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"teeth": 28},
+        {"teeth": 10, "profile_shift": 0.1},
+        {"teeth": 35, "helix_angle": 0.3, "thickness_allowance": 0.04, "tip_rounding": 0.1},
+        {"teeth": 22, "tip_chamfer": 0.05, "profile_shift": 0.3},
+    ],
+)
+def test_equal_flanks_are_the_symmetric_tooth_to_the_last_bit(given):
+    usual = Tooth(rack=BasicRack(1.0, 1.25, 0.25, math.radians(20.0)), **given)
+    tooth = AsymmetricTooth(rack=rack(20.0, 20.0), **given)
+    assert tooth.tip_radius == usual.tip_radius
+    assert tooth.least_profile_shift == pytest.approx(usual.least_profile_shift, abs=1e-13)
+    for side in (tooth.drive, tooth.coast):
+        assert side.outline == usual.outline
+        for name in ("base_radius", "base_half_angle", "form_radius", "root_radius", "undercut", "tip_half_angle"):
+            assert getattr(side, name) == getattr(usual, name)
+
+
+@pytest.mark.parametrize("name", TEETH)
+def test_a_tooth_turned_round_shows_its_other_flank(name):
+    tooth = made(name, tip_rounding=0.05)
+    other = tooth.reversed
+    assert other.reversed == tooth
+    assert other.drive.outline == tooth.coast.outline
+    assert other.coast.outline == tooth.drive.outline
+    assert tooth.drive.back is tooth.coast
+    assert tooth.coast.back is tooth.drive
+
+
+def test_the_steeper_flank_has_the_smaller_base_circle_and_the_flatter_one_is_cut_first():
+    tooth = made("undercut on one flank")
+    assert tooth.drive.base_radius < tooth.coast.base_radius
+    assert tooth.coast.undercut
+    assert not tooth.drive.undercut
+    just = replace(tooth, profile_shift=tooth.least_profile_shift + 1e-6)
+    below = replace(tooth, profile_shift=tooth.least_profile_shift - 1e-6)
+    assert not just.coast.undercut
+    assert below.coast.undercut
+
+
+def test_what_takes_symmetric_teeth_only_is_not_given_others():
+    tooth = made("20/30")
+    assert not isinstance(tooth, InvoluteTooth)
+    assert not isinstance(tooth.drive, InvoluteTooth)
+    assert not hasattr(tooth, "half_thickness_angle")
+    assert not hasattr(tooth.drive, "half_thickness_angle")
+
+
+@pytest.mark.parametrize(
+    ("build", "said"),
+    [
+        (lambda: rack(20.0, 60.0), "rack.coast.pressure_angle"),
+        (lambda: rack(40.0, 40.0), "pointed rack tooth"),
+        (lambda: rack(28.0, 28.0, (0.3, 0.3)), "do not fit side by side"),
+        (lambda: AsymmetricTooth(20, rack(30.0, 28.0, (0.1, 0.1)), 0.9), "pointed tooth"),
+        (lambda: AsymmetricTooth(5, rack(14.0, 14.0), -0.5), "undercut from both sides"),
+        (lambda: AsymmetricTooth(28, rack(20.0, 30.0, (0.2, 0.2)), tip_rounding=0.7), "is too large for the tip"),
+        (lambda: AsymmetricTooth(28, rack(20.0, 30.0, (0.2, 0.2)), tip_radius=13.1), "larger base radius"),
+    ],
+)
+def test_what_cannot_be_is_refused(build, said):
+    with pytest.raises(GeometryError, match=said):
+        build()
+
+
+def test_full_fillet_of_two_angles_is_accepted_and_no_more():
+    widest = rack(20.0, 30.0, (0.0, 0.0)).full_fillet_radius
+    assert rack(20.0, 30.0, (widest, widest)).tip_land == pytest.approx(0.0, abs=1e-14)
+    with pytest.raises(GeometryError, match="do not fit"):
+        rack(20.0, 30.0, (widest + 1e-6, widest))
+
+
+# ---- pairs ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("distance", [math.nan, 26.4])
+def test_a_pair_of_equal_flanks_is_the_usual_pair(distance):
+    numbers = ((20, 0.25), (32, 0.0))
+    usual = [Gear(Tooth(z, BasicRack(), x, 0.02), 1e-3, 5e-3, 5e-3) for z, x in numbers]
+    pair = GearPair(*usual, distance * 1e-3)
+    found = AsymmetricPair(*(AsymmetricTooth(z, rack(20.0, 20.0), x, 0.02) for z, x in numbers), distance)
+    assert found.centre_distance == pytest.approx(pair.centre_distance * 1e3, rel=1e-13)
+    assert found.tight_centre_distance == pytest.approx(pair.tight_centre_distance * 1e3, rel=1e-13)
+    assert found.circumferential_backlash == pytest.approx(pair.circumferential_backlash * 1e3, abs=1e-11)
+    for flank in ("drive", "coast"):
+        assert found.working_pressure_angle(flank) == pytest.approx(pair.working_pressure_angle, rel=1e-12)
+        assert found.contact_ratio(flank) == pytest.approx(pair.contact_ratio, rel=1e-12)
+        assert found.x_start(flank) == pytest.approx(pair.x_start * 1e3, rel=1e-12)
+        assert found.gap(flank) == pytest.approx(pair.normal_backlash * 1e3, abs=1e-11)
+
+
+def test_a_pair_turned_round_drives_on_its_other_flanks():
+    one, other = (AsymmetricTooth(z, rack(30.0, 20.0, (0.15, 0.3)), x) for z, x in ((22, 0.3), (41, -0.1)))
+    pair = AsymmetricPair(one, other, AsymmetricPair(one, other).centre_distance + 0.05)
+    turned = pair.reversed
+    assert turned.centre_distance == pair.centre_distance
+    assert turned.circumferential_backlash == pytest.approx(pair.circumferential_backlash, abs=1e-13)
+    for flank, back in (("drive", "coast"), ("coast", "drive")):
+        assert turned.contact_ratio(flank) == pair.contact_ratio(back)
+    # the steep flank has the shorter path of contact and, at one backlash, the smaller gap along its normal
+    assert pair.contact_ratio("drive") < pair.contact_ratio("coast")
+    assert pair.gap("drive") < pair.gap("coast")
+
+
+def test_backlash_is_what_driven_points_of_both_flanks_leave_free():
+    """Both gears' involutes laid through the pitch point in turn; the driven gear turns back until its others touch."""
+    teeth = [AsymmetricTooth(z, rack(30.0, 20.0, (0.15, 0.3)), x, 0.03) for z, x in ((22, 0.3), (41, -0.1))]
+    pair = AsymmetricPair(*teeth, AsymmetricPair(*teeth).centre_distance + 0.02)
+    taken = 0.0
+    for tooth in teeth:
+        working = pair.centre_distance * tooth.teeth / (teeth[0].teeth + teeth[1].teeth)
+        for side in (tooth.drive, tooth.coast):
+            involute, roll = side.involute, float(side.roll(working))
+            taken += working * math.atan2(*involute.points(roll))
+    pitch = 2.0 * math.pi * pair.centre_distance / (teeth[0].teeth + teeth[1].teeth)
+    assert pair.circumferential_backlash == pytest.approx(pitch - taken, abs=1e-12)
+    tight = AsymmetricPair(*teeth, pair.tight_centre_distance)
+    assert tight.circumferential_backlash == pytest.approx(0.0, abs=1e-12)
+
+
+def test_pairs_that_cannot_run_are_refused():
+    one, other = AsymmetricTooth(22, rack(30.0, 20.0, (0.15, 0.3))), AsymmetricTooth(41, rack(28.0, 20.0, (0.15, 0.3)))
+    with pytest.raises(GeometryError, match="drive flanks"):
+        AsymmetricPair(one, other)
+    with pytest.raises(GeometryError, match="leaves no backlash"):
+        AsymmetricPair(one, one, 21.9)
+    with pytest.raises(GeometryError, match="no contact of the drive flanks"):
+        AsymmetricPair(one, one, 24.2)
