@@ -22,7 +22,7 @@ from fegear.base.shown import shown
 from fegear.geometry.curves import Curve
 from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 #: Gauss points of a panel; panels of a curve are halved until both integrals stay within this share of themselves.
 _POINTS = np.polynomial.legendre.leggauss(12)
@@ -93,10 +93,11 @@ def _enclosed(pieces: list[Curve], panels: int) -> Array:
 
 
 @lru_cache(maxsize=256)
-def section_moments(tooth: InvoluteTooth) -> SectionMoments:
+def section_moments(tooth: InvoluteSide) -> SectionMoments:
     """Area and polar moment of area that the outline of all teeth encloses [modules]."""
+    halves = [tooth] if tooth.back is tooth else [tooth, tooth.back]
     pieces: list[Curve] = []
-    for piece in tooth.outline.values():
+    for piece in (piece for half in halves for piece in half.outline.values()):
         pieces += [piece.trochoid, piece.involute] if isinstance(piece, ProtuberanceFillet) else [piece]
     panels, found = 1, _enclosed(pieces, 1)
     while True:
@@ -106,19 +107,19 @@ def section_moments(tooth: InvoluteTooth) -> SectionMoments:
         found = finer
         if error <= _CONVERGED or panels >= _PANELS:
             break
-    whole = 2.0 * tooth.teeth * found  # both flanks of every tooth
+    whole = 2.0 / len(halves) * tooth.teeth * found  # both flanks of every tooth
     return SectionMoments(float(whole[0]), float(whole[1]), max(error, float(np.finfo(float).eps)))
 
 
 def mass_properties(
-    tooth: InvoluteTooth, module: float, face_width: float, held_radius: float, density: float,
+    tooth: InvoluteSide, module: float, face_width: float, held_radius: float, density: float,
     body: GearBody | None = None,
 ) -> MassProperties:  # fmt: skip
     """Mass, inertia and centre of gravity of a gear.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
         External or internal.
     module, face_width, held_radius : float
         m_n, b, and the radius of the bore or, of an internal gear, of its outer circle [m].

@@ -23,6 +23,7 @@ from fegear.geometry.curves import Arc, Drawn, Involute, Line
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.relief import Relief
 
@@ -50,22 +51,30 @@ def turned(points: Array, angle: float) -> Array:
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def tooth_outline(tooth: InvoluteTooth, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
+def tooth_outline(tooth: InvoluteSide, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
     """One tooth from the middle of its left space over the tip to the middle of its right space [modules], (2, N).
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteSide
+        Seen from its right flank.
     tolerance : float
         How far chords may lie off the curves [modules].
     pieces : sequence of Drawn, optional
-        Another right half than the generated one, see `relieved_outline`.
+        Another right half than the generated one, see `relieved_outline`; of equal flanks another left half, too.
     """
-    lines = [along(curve, tolerance) for curve in pieces or tooth.outline.values()]
-    right = np.hstack([lines[0], *[line[:, 1:] for line in lines[1:]]])
-    right[0, -1] = 0.0  # the tooth's centre line, free of round-off
-    left = right * np.array([[-1.0], [1.0]])
+    right = _half(pieces or list(tooth.outline.values()), tolerance)
+    if tooth.back is tooth:
+        right[0, -1] = 0.0  # the tooth's centre line, free of round-off
+        left = right * np.array([[-1.0], [1.0]])
+    else:
+        left = _half(list(tooth.back.outline.values()), tolerance) * np.array([[-1.0], [1.0]])
     return np.hstack([left, right[:, -2::-1]])
+
+
+def _half(pieces: Sequence[Drawn], tolerance: float) -> Array:
+    lines = [along(curve, tolerance) for curve in pieces]
+    return np.hstack([lines[0], *[line[:, 1:] for line in lines[1:]]])
 
 
 def gear_outline(gear: Gear, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:

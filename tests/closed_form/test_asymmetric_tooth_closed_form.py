@@ -14,6 +14,8 @@ from fegear.geometry.asymmetric_tooth import AsymmetricTooth
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.mass import section_moments
+from fegear.geometry.outline import tooth_outline
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 
@@ -105,6 +107,20 @@ def test_the_outline_has_no_gap_from_land_to_land(name):
     assert math.atan2(*starts[0]) == pytest.approx(math.pi / tooth.teeth, rel=1e-14)
 
 
+@pytest.mark.parametrize("name", TEETH)
+def test_area_and_polar_moment_are_those_of_the_drawn_polygon(name):
+    tooth = made(name, tip_chamfer=0.05)
+    exact = section_moments(tooth.drive)
+    x, y = tooth_outline(tooth.drive, 1e-7)
+    # the triangles from the gear's centre to each chord: area, and polar moment about the centre
+    cross = x[:-1] * y[1:] - x[1:] * y[:-1]
+    squares = x[:-1] ** 2 + x[:-1] * x[1:] + x[1:] ** 2 + y[:-1] ** 2 + y[:-1] * y[1:] + y[1:] ** 2
+    assert -0.5 * tooth.teeth * cross.sum() == pytest.approx(exact.area, rel=1e-7)
+    assert -tooth.teeth * (cross * squares).sum() / 12.0 == pytest.approx(exact.polar, rel=1e-7)
+    turned_round = section_moments(tooth.coast)
+    assert (turned_round.area, turned_round.polar) == pytest.approx((exact.area, exact.polar), rel=1e-14)
+
+
 @pytest.mark.parametrize(
     "given",
     [
@@ -119,6 +135,8 @@ def test_equal_flanks_are_the_symmetric_tooth_to_the_last_bit(given):
     tooth = AsymmetricTooth(rack=rack(20.0, 20.0), **given)
     assert tooth.tip_radius == usual.tip_radius
     assert tooth.least_profile_shift == pytest.approx(usual.least_profile_shift, abs=1e-13)
+    assert np.array_equal(tooth_outline(tooth.drive)[:, 1:-1], tooth_outline(usual)[:, 1:-1])
+    assert section_moments(tooth.drive).area == pytest.approx(section_moments(usual).area, rel=1e-14)
     for side in (tooth.drive, tooth.coast):
         assert side.outline == usual.outline
         for name in ("base_radius", "base_half_angle", "form_radius", "root_radius", "undercut", "tip_half_angle"):

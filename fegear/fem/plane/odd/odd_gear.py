@@ -30,6 +30,7 @@ from fegear.fem.plane.root_stress import CutFillet, FilletStrain
 from fegear.fem.plane.settings import LEVEL_RATIO
 from fegear.fem.plane.solution import shape_codec
 from fegear.fem.plane.trace import LoadedFlank
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -373,16 +374,19 @@ def _solve(
     reach: int,
     two_orders: bool,
 ) -> OddInfluence:
+    tooth = fine.tooth
+    if not isinstance(tooth, InvoluteTooth):
+        raise TypeError("odd teeth are placed on gears with equal flanks only")
     odd = {
-        number: _odd_tooth(fine.tooth, bore_radius, settings, one)
+        number: _odd_tooth(tooth, bore_radius, settings, one)
         for number, one in cracks
         if not isinstance(one, Missing)
     }
     missing = {
-        number: empty_sector(fine.tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)
+        number: empty_sector(tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)
     }
     return solve_odd_influence(
-        fine.tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
+        tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
         missing=missing,
     )  # fmt: skip
 
