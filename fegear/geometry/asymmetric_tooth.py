@@ -4,8 +4,12 @@ Both flanks are involutes, each of a base circle of its own, and both fillets tr
 them independently of each other. The tooth's centre line is chosen so that the middle of a tooth space's root land lies
 half a pitch beside it: a sector of one tooth then ends on root lands of equal length. The middle of the tip land lies
 elsewhere (`InvoluteSide.tip_middle`).
-(Kapelevich, Geometry and design of involute spur gears with asymmetric teeth, Mechanism and Machine Theory 35, 2000;
-the equations here are those of ISO 21771 for each flank, with the thickness as the sum of both.)
+
+Derivation. The rack's half beside a flank generates that flank as a symmetric rack of its pressure angle would, so base
+circle, roll angles and fillet are those of ISO 21771 with the flank's own angle. On the reference line tooth and space
+of the rack are pi/2 wide; fed out by x_E, each half loses x_E tan alpha of its own flank, which the gear's tooth gains:
+its thickness is pi/2 + x_E (tan alpha_drive + tan alpha_coast), and a flank lies pi/4 + x_E tan alpha beside the line
+that passes through the middle of the rack's space.
 """
 
 from __future__ import annotations
