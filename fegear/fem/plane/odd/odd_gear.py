@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from fegear.fem.plane.root_stress import FilletCurve
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear
-    from fegear.geometry.involute_tooth import InvoluteTooth
 
     Oddity = Crack | OtherTip | Missing
 
@@ -378,13 +377,9 @@ def _solve(
     if not isinstance(tooth, InvoluteTooth):
         raise TypeError("odd teeth are placed on gears with equal flanks only")
     odd = {
-        number: _odd_tooth(tooth, bore_radius, settings, one)
-        for number, one in cracks
-        if not isinstance(one, Missing)
+        number: _odd_tooth(tooth, bore_radius, settings, one) for number, one in cracks if not isinstance(one, Missing)
     }
-    missing = {
-        number: empty_sector(tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)
-    }
+    missing = {number: empty_sector(tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)}
     return solve_odd_influence(
         tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
         missing=missing,
