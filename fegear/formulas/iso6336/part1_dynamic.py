@@ -25,10 +25,10 @@ _LEAST_LOAD = 100e3
 #: Ends of the ranges of the resonance ratio: the main resonance to 1.15, supercritical from 1.5.
 MAIN_END, SUPERCRITICAL = 1.15, 1.5
 #: K_1 of method C for grades 3 to 8, spur and helical; IACS UR M56 (Rev. 4), table 1.1.
-_K_1 = {"spur": (2.1, 3.9, 7.5, 14.9, 26.8, 39.1), "helical": (1.9, 3.5, 6.7, 13.3, 23.9, 34.8)}
+K_1 = {"spur": (2.1, 3.9, 7.5, 14.9, 26.8, 39.1), "helical": (1.9, 3.5, 6.7, 13.3, 23.9, 34.8)}
 #: Where K_3 = 2.071 - .357 x has fallen to nothing [m/s].
-_NO_K_3 = 2.071 / 0.357
-_K_2 = {"spur": 0.0193, "helical": 0.0087}
+NO_K_3 = 2.071 / 0.357
+K_2 = {"spur": 0.0193, "helical": 0.0087}
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,16 +259,16 @@ def method_c(pair: PairGeometry, specific_load: float, velocity: float, grade: i
     if not 3 <= grade <= 8:
         raise RangeError("accuracy grade", grade, "must be 3 to 8 for K_v by method C", "use method B")
     x = speed_parameter(pair, velocity)
-    if not 0.0 <= x <= _NO_K_3:
+    if not 0.0 <= x <= NO_K_3:
         raise RangeError(
             "v z_1/100 sqrt(u^2/(1 + u^2))", f"{x:.4g} m/s", "must be at most 5.8 for K_v by method C", "use method B"
         )
     load = max(specific_load, _LEAST_LOAD) / 1e3
     k_3 = 2.0 if x <= 0.2 else 2.071 - 0.357 * x
-    spur, helical = (1.0 + (_K_1[kind][grade - 3] / load + _K_2[kind]) * x * k_3 for kind in ("spur", "helical"))
+    spur, helical = (1.0 + (K_1[kind][grade - 3] / load + K_2[kind]) * x * k_3 for kind in ("spur", "helical"))
     k_v = spur - min(pair.overlap_ratio, 1.0) * (spur - helical)
     remarks = []
-    if x > 0.5 * _NO_K_3:
+    if x > 0.5 * NO_K_3:
         remarks.append("K_v falls with speed beyond 2.9 m/s of v z_1/100 sqrt(u^2/(1 + u^2))")
     if pair.helix_angle > math.radians(30.0) and x >= 3.0:
         remarks.append("beta is above 30 deg")

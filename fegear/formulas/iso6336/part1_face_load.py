@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 
 #: .023 mm um/N of f_sh and .005 mm um/N of F_betaxmin, in m^2/N.
-_BENDING, _LEAST = 0.023e-9, 0.005e-9
+BENDING, LEAST = 0.023e-9, 0.005e-9
 
 
 #: K' where the pinion stiffens its shaft and where it does not, and the s/l below which they hold.
-_SEAT: dict[Arrangement, tuple[float, float, float]] = {
+SEAT: dict[Arrangement, tuple[float, float, float]] = {
     "a": (0.48, 0.8, 0.3),
     "b": (-0.48, -0.8, 0.3),
     "c": (1.33, 1.33, 0.5),
@@ -102,11 +102,11 @@ def shaft_deformation(shaft: PinionShaft, specific_load: float, width: float, di
     for name, value in (("F_m/b", specific_load), ("b", width), ("d_1", diameter)):
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
-    stiff, free, most = _SEAT[shaft.arrangement]
+    stiff, free, most = SEAT[shaft.arrangement]
     k = stiff if diameter / shaft.diameter >= STIFFENING else free
     torque = 1.0 + 2.0 * (1.0 - shaft.power_share) / shaft.power_share  # B*
     bending = k * shaft.bearing_span * shaft.offset / diameter**2 * (diameter / shaft.diameter) ** 4
-    deformation = specific_load * _BENDING * (abs(torque + bending - 0.3) + 0.3) * (width / diameter) ** 2
+    deformation = specific_load * BENDING * (abs(torque + bending - 0.3) + 0.3) * (width / diameter) ** 2
     place = shaft.offset / shaft.bearing_span
     remarks = []
     if not place < most:
@@ -197,7 +197,7 @@ def method_c(
     if alignment.contact_pattern == "favourable" and slope_5 is None:
         raise RangeError("f_Hbeta5", "missing", "a favourable contact pattern requires the tolerance of grade 5")
     manufacture = manufacturing(quality) if alignment.manufacture is None else alignment.manufacture
-    least = max(_LEAST * specific_load, 0.5 * max(q.helix_slope for q in quality))
+    least = max(LEAST * specific_load, 0.5 * max(q.helix_slope for q in quality))
     initial = initial_misalignment(alignment, deformation, manufacture, least, slope_5 or 0.0)
     one, other = (running_in.helix_allowance(s, initial, velocity) for s in strength)
     worn = running_in.mean((one, other))

@@ -16,7 +16,7 @@ from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
 from fegear.geometry.pair import GearPair
 
 #: Table 9 of the standard: q' in mm um/N.
-_C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
+COEFFICIENTS = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
 #: 1 N/(mm um) in Pa.
 UNIT = 1e9
 #: E of the steel behind q' [Pa].
@@ -71,7 +71,7 @@ def theoretical_stiffness(z_n1: float, z_n2: float, x_1: float = 0.0, x_2: float
         if not z > 0.0:
             raise RangeError(name, z, "must be positive: the series is for external gears (inf for a rack)")
     terms = (1.0, 1.0 / z_n1, 1.0 / z_n2, x_1, x_1 / z_n1, x_2, x_2 / z_n2, x_1 * x_1, x_2 * x_2)
-    q = sum(c * t for c, t in zip(_C, terms, strict=True))
+    q = sum(c * t for c, t in zip(COEFFICIENTS, terms, strict=True))
     if not q > 0.0:
         raise RangeError("q'", f"{q:.4g} mm um/N", "is not positive: the series is not valid for these gears")
     return UNIT / q

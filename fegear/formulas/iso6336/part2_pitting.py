@@ -155,7 +155,7 @@ _SOFT, _HARD = 850e6, 1200e6
 
 
 #: Gear ratio beyond which Z_W of a harder pinion grows no more.
-_LARGEST_RATIO = 20.0
+LARGEST_RATIO = 20.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,27 +205,28 @@ def life_knots(strength: Strength) -> Knots:
     return Knots((1e5, 5e7, LONG), (1.6, 1.0, end))
 
 
-def _between(contact: float, soft: float, hard: float) -> float:
+def between(contact: float, soft: float, hard: float) -> float:
+    """Constant of sigma_Hlim [Pa]: `soft` to 850 MPa, `hard` from 1200 MPa, straight in between."""
     part = min(max((contact - _SOFT) / (_HARD - _SOFT), 0.0), 1.0)
     return soft + part * (hard - soft)
 
 
 def lubricant_factor(contact: float, viscosity: float) -> float:
     """Z_L of the softer material's sigma_Hlim [Pa] and nu_40 [m^2/s] (ISO 6336-2, clause 12; Eq. 37 of 2006)."""
-    c = _between(contact, 0.83, 0.91)
+    c = between(contact, 0.83, 0.91)
     return c + 4.0 * (1.0 - c) / (1.2 + 134e-6 / viscosity) ** 2
 
 
 def velocity_factor(contact: float, velocity: float) -> float:
     """Z_v of the softer material's sigma_Hlim [Pa] and v at the pitch line [m/s] (ISO 6336-2, clause 12; Eq. 42)."""
-    c = _between(contact, 0.85, 0.93)
+    c = between(contact, 0.85, 0.93)
     return c + 2.0 * (1.0 - c) / math.sqrt(0.8 + 32.0 / velocity)
 
 
 def roughness_factor(contact: float, roughness: Both, curvature_radius: float) -> float:
     """Z_R = (3 um / Rz10)^C_ZR, Rz10 the mean Rz of a flank with rho_red = 10 mm (ISO 6336-2, clause 12; Eq. 48)."""
     relative = 0.5 * sum(roughness) * (10e-3 / curvature_radius) ** (1.0 / 3.0)
-    return float((3e-6 / relative) ** _between(contact, 0.15, 0.08))
+    return float((3e-6 / relative) ** between(contact, 0.15, 0.08))
 
 
 def equivalent_roughness(roughness: Both, curvature_radius: float, viscosity: float, velocity: float) -> float:
@@ -255,7 +256,7 @@ def through_hardened_factor(ratio_of_hardness: float, ratio: float) -> float:
     if ratio_of_hardness < 1.2:
         return 1.0
     slope = 0.00698 if ratio_of_hardness > 1.7 else 0.00898 * ratio_of_hardness - 0.00829
-    return max(1.0 + slope * (min(ratio, _LARGEST_RATIO) - 1.0), 1.0)
+    return max(1.0 + slope * (min(ratio, LARGEST_RATIO) - 1.0), 1.0)
 
 
 def work_hardening(

@@ -26,7 +26,7 @@ STANDARD_GEAR = 2.0
 #: Load cycles of the reference strength.
 REFERENCE = 3e6
 #: q_sT, notch parameter of the reference gears.
-_REFERENCE_NOTCH = 2.5
+REFERENCE_NOTCH = 2.5
 #: Slip-layer thickness rho' [mm] over yield (St, V, tough iron) or tensile strength (soft iron) [MPa]: table 3.
 _LAYER_ST = ((300.0, 0.0833), (400.0, 0.0445))
 _LAYER_V = ((500.0, 0.0281), (600.0, 0.0194), (800.0, 0.0064), (1000.0, 0.0014))
@@ -100,7 +100,7 @@ def slip_layer(strength: Strength) -> tuple[float, str]:
 
 def notch_sensitivity(notch: float, layer: float) -> float:
     """Y_deltarelT at reference of q_s and rho' [m] (ISO 6336-3, clause 13; Eq. 49 of 2006)."""
-    gradient, reference = 0.2e3 * (1.0 + 2.0 * notch), 0.2e3 * (1.0 + 2.0 * _REFERENCE_NOTCH)
+    gradient, reference = 0.2e3 * (1.0 + 2.0 * notch), 0.2e3 * (1.0 + 2.0 * REFERENCE_NOTCH)
     return (1.0 + math.sqrt(layer * gradient)) / (1.0 + math.sqrt(layer * reference))
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 #: What takes load off the ends of the face.
-_LIGHT_ENDS = {"crowned", "crowned for manufacture", "helix corrected and crowned", "end relief"}
+LIGHT_ENDS = {"crowned", "crowned for manufacture", "helix corrected and crowned", "end relief"}
 
 
 #: Equations of K_v in the ranges of the resonance ratio.
@@ -150,7 +150,7 @@ def load_factors(table: FactorTable, conditions: Conditions, computed: Replaceme
         table.add("K_Fbeta", k_fb, "ISO 6336-1, clause 7", f"K_Fbeta: {COMPUTED}")
     else:
         # lightly loaded ends bend no less than the middle (7.6; IACS UR M56, 1.6.4 b)
-        light = conditions.alignment.modification in _LIGHT_ENDS and computed.K_Hbeta is None
+        light = conditions.alignment.modification in LIGHT_ENDS and computed.K_Hbeta is None
         exponent = 1.0 if light else root_exponent(width, depth)
         k_fb = (k_hb**exponent, k_hb**exponent)
         table.add("N_F", exponent, "ISO 6336-1:2006, 7.6, Eq. 70")

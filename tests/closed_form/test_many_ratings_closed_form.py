@@ -1,0 +1,230 @@
+"""Arrays of pairs are rated as each pair is rated alone: random pairs of all materials, rims, methods and spectra.
+
+Two codes of the same standard: `fegear.formulas.iso6336` with one pair, `fegear.formulas.many` with all of them.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import ConvergenceError, RangeError
+from fegear.formulas.iso1328 import flank_tolerances
+from fegear.formulas.iso6336.conditions import Conditions, Replacement
+from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
+from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
+from fegear.formulas.iso6336.part3_strength import mean_stress_factor, mean_stress_ratio
+from fegear.formulas.iso6336.part5_materials import MATERIALS
+from fegear.formulas.iso6336.rated import Duty, Quality, Strength
+from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
+from fegear.formulas.many.conditions import ManyConditions, ManyDuties, qualities_of_class
+from fegear.formulas.many.pairs import many_pairs
+from fegear.formulas.many.ratings import ManyLevels, rate_many, rate_many_spectra
+
+GROUPS = tuple(dict.fromkeys(MATERIALS.values()))
+ROUGH = (4.8e-6, 20e-6)
+
+
+def draw_pair(rng: np.random.Generator, *, rims: bool) -> PairGeometry:
+    module = float(rng.choice([0.8, 1.5, 2.0, 3.0, 6.0, 12.0])) * 1e-3
+    z_1 = int(rng.integers(14, 45))
+    z_2 = round(z_1 * rng.uniform(1.0, 6.0))
+    beta = math.radians(float(rng.choice([0.0, 0.0, 8.0, 15.0, 28.0, 36.0])))
+    deep = float(rng.choice([1.0, 1.0, 1.3]))
+    x_1, x_2 = rng.uniform(-0.1, 0.6), rng.uniform(-0.8, 0.5)
+    alpha = math.radians(20.0)
+    a_t = math.atan(math.tan(alpha) / math.cos(beta))
+    wanted = math.tan(a_t) - a_t + 2.0 * (x_1 + x_2) * math.tan(alpha) / (z_1 + z_2)
+    low, high = 0.01, 1.2
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if math.tan(middle) - middle > wanted else (middle, high)
+    distance = 0.5 * module * (z_1 + z_2) / math.cos(beta) * math.cos(a_t) / math.cos(low)
+    width = module * rng.uniform(6.0, 25.0)
+    shapes = []
+    for z, x in ((z_1, x_1), (z_2, x_2)):
+        d = z * module / math.cos(beta)
+        tip, root = d + 2.0 * module * (deep + x), d - 2.0 * module * (deep + 0.25 - x)
+        rim = float(rng.uniform(0.3, 3.0)) * 0.5 * (tip - root) if rims else None
+        shapes.append(
+            GearShape(
+                z,
+                x,
+                tip,
+                root,
+                width * rng.uniform(1.0, 1.2),
+                deep + 0.25,
+                0.3 if deep == 1.0 else 0.2,
+                bore_diameter=float(rng.uniform(0.0, 0.6)) * root,
+                generating_shift=x - rng.uniform(0.0, 0.03),
+                rim_thickness=rim,
+                web_ratio=float(rng.uniform(0.1, 1.3)) if rims else None,
+            )
+        )
+    return PairGeometry((shapes[0], shapes[1]), module, alpha, beta, distance)
+
+
+def draw_strength(rng: np.random.Generator, group: str) -> Strength:
+    iron = group == "GG"
+    return Strength(
+        group, float(rng.uniform(400e6, 1500e6)), float(rng.uniform(100e6, 500e6)), float(rng.uniform(120.0, 500.0)),
+        math.nan if iron else float(rng.uniform(200e6, 1100e6)), float(rng.uniform(120e6, 320e6)) if iron else math.nan,
+        bool(rng.integers(0, 2)), (float(rng.uniform(0.85, 1.0)), float(rng.uniform(0.85, 1.0))),
+    )  # fmt: skip
+
+
+def draw_alignment(rng: np.random.Generator, kind: int) -> Alignment:
+    modification = str(rng.choice(["none", "crowned", "end relief", "helix corrected"]))
+    if kind == 0:
+        return Alignment(deformation=float(rng.uniform(0.0, 20e-6)), modification=modification)
+    if kind == 1:
+        shaft = PinionShaft("a", 0.2, float(rng.uniform(0.0, 0.05)), 0.03, float(rng.uniform(0.3, 1.0)))
+        return Alignment(
+            shaft=shaft, modification=modification, contact_pattern=str(rng.choice(["unknown", "verified"]))
+        )
+    if kind == 2:
+        return Alignment(computed=float(rng.uniform(0.0, 1e-10)), contact_pattern="favourable")
+    return Alignment(face_load_factor=1.3)
+
+
+class Group:
+    """Pairs that share materials, method, edition, alignment and tolerance class."""
+
+    def __init__(self, seed: int, count: int) -> None:
+        rng = np.random.default_rng(seed)
+        self.strength = (draw_strength(rng, GROUPS[seed % len(GROUPS)]), draw_strength(rng, str(rng.choice(GROUPS))))
+        self.edition, self.method = (2019, 2006)[seed % 2], "C" if seed % 5 == 3 else "B"
+        self.grade = int(rng.integers(3, 9))
+        self.alignment = draw_alignment(rng, seed % 4)
+        self.relief = (30e-6, 40e-6) if seed % 3 == 0 else (0.0, 0.0)
+        self.ratio = (-1.2, 0.0) if seed % 6 == 1 else (0.0, 0.0)
+        self.computed = Replacement(K_v=1.2) if seed % 7 == 2 else Replacement()
+        self.meshes = (3, 1) if seed % 4 == 2 else (1, 1)
+        self.pairs = [draw_pair(rng, rims=seed % 3 == 1) for _ in range(count)]
+        self.loads = [float(10.0 ** rng.uniform(1.5, 2.9)) * p.face_width * 1e3 for p in self.pairs]
+        self.speeds = [float(10.0 ** rng.uniform(0.5, 3.0)) / p.diameters[0] * 0.2 for p in self.pairs]
+        if self.method == "C":
+            self.speeds = [0.1 * v for v in self.speeds]
+        self.cycles = [(n := float(10.0 ** rng.uniform(2.0, 10.5)), n / p.ratio_of) for p in map(_Ratio, self.pairs)]
+
+    def conditions(self, k: int) -> Conditions:
+        pair = self.pairs[k]
+        quality = []
+        for gear, d, relief in zip(pair.gears, pair.diameters, self.relief, strict=True):
+            t = flank_tolerances(self.grade, d, pair.module, gear.face_width).rounded
+            pitch = t.base_pitch(pair.transverse_pressure_angle)
+            quality.append(Quality(self.grade, pitch, t.profile_form, t.helix_slope, *ROUGH, relief))
+        slope = max(
+            flank_tolerances(5, d, pair.module, gear.face_width).rounded.helix_slope
+            for gear, d in zip(pair.gears, pair.diameters, strict=True)
+        )
+        duty = Duty(self.loads[k], self.speeds[k], self.cycles[k], 220e-6, 1.25, 1.1, meshes=self.meshes)
+        return Conditions(
+            pair, self.strength, (quality[0], quality[1]), duty, replace(self.alignment, helix_slope_5=slope),
+            self.edition, self.method,
+        )  # fmt: skip
+
+    def rated_alone(self, k: int):
+        conditions = self.conditions(k)
+        if any(self.ratio):
+            y_s = rate_pair(conditions, self.computed)["Y_S"].values
+            both = [
+                tuple(
+                    mean_stress_factor(mean_stress_ratio(s.group, y, static=static), r) if r else 1.0
+                    for s, y, r in zip(self.strength, y_s, self.ratio, strict=True)
+                )
+                for static in (False, True)
+            ]
+            conditions = replace(
+                conditions, duty=replace(conditions.duty, mean_stress=both[0], mean_stress_static=both[1])
+            )
+        return conditions, rate_pair(conditions, self.computed)
+
+    def together(self) -> ManyConditions:
+        pairs = many_pairs(self.pairs)
+        quality = qualities_of_class(self.grade, pairs, (ROUGH[0],) * 2, (ROUGH[1],) * 2, self.relief)
+        duty = ManyDuties(
+            np.array(self.loads), np.array(self.speeds), np.array(self.cycles).T, 220e-6, 1.25, 1.1, self.meshes,
+            self.ratio,
+        )  # fmt: skip
+        return ManyConditions(
+            pairs, self.strength, quality, duty, self.alignment, self.edition, self.method, computed=self.computed
+        )
+
+
+class _Ratio:
+    def __init__(self, pair: PairGeometry) -> None:
+        self.ratio_of = pair.signed_ratio
+
+
+def compared(seed: int, count: int) -> tuple[float, int]:
+    """Largest relative difference of stresses and safeties, and how many pairs were rated."""
+    group = Group(seed, count)
+    many = rate_many(group.together())
+    worst, rated = 0.0, 0
+    for k in range(count):
+        try:
+            _, alone = group.rated_alone(k)
+        except (RangeError, ConvergenceError):
+            assert not many.rated[k], seed
+            assert np.isnan(many.contact_safety[:, k]).all()
+            continue
+        assert many.rated[k], (seed, k, [words for words, mask in many.refused if mask[k]])
+        rated += 1
+        for name in ("contact_stress", "contact_safety", "bending_stress", "bending_safety"):
+            off = getattr(many, name)[:, k] / np.array(getattr(alone, name)) - 1.0
+            worst = max(worst, float(np.abs(off).max()))
+        loads = (many.loads.K_v[k], many.loads.K_Hbeta[k], many.loads.K_Halpha[k])
+        factors = tuple(alone[name].value for name in ("K_v", "K_Hbeta", "K_Halpha"))
+        assert loads == pytest.approx(factors, rel=1e-12)
+    return worst, rated
+
+
+def test_random_pairs_are_rated_as_each_alone():
+    found = [compared(seed, 4) for seed in range(42)]
+    assert sum(rated for _, rated in found) > 130
+    assert max(worst for worst, _ in found) < 1e-13
+
+
+@pytest.mark.dear
+def test_thousand_random_pairs_of_all_materials_are_rated_as_each_alone():
+    found = [compared(seed, 25) for seed in range(100, 144)]
+    assert sum(rated for _, rated in found) > 1000
+    assert max(worst for worst, _ in found) < 1e-13
+
+
+@pytest.mark.dear
+def test_spectra_of_many_pairs_are_those_of_each_alone():
+    shares = ((1.4, 1.0, 1e-4), (1.0, 1.0, 0.1), (0.6, 1.3, 0.5), (0.0, 1.0, 0.4))
+    rated = 0
+    for seed in (0, 1, 4, 5, 10):
+        group = Group(seed, 6)
+        asked = group.together()
+        levels = [
+            ManyLevels(asked.duty.tangential * f, asked.duty.speed * n, asked.duty.cycles * s) for f, n, s in shares
+        ]
+        many = rate_many_spectra(asked, levels)
+        for k in range(6):
+            try:
+                conditions, _ = group.rated_alone(k)
+            except (RangeError, ConvergenceError):
+                continue
+            duty = conditions.duty
+            alone = rate_spectrum(
+                conditions,
+                [
+                    (
+                        replace(duty, tangential=duty.tangential * f, speed=duty.speed * n) if f else None,
+                        (duty.cycles[0] * s, duty.cycles[1] * s),
+                    )
+                    for f, n, s in shares
+                ],
+                group.computed,
+            )
+            rated += 1
+            for name in ("contact_safety", "bending_safety"):
+                assert getattr(many, name)[:, k] == pytest.approx(getattr(alone, name), rel=1e-12)
+            for name in ("contact_damage", "bending_damage"):
+                assert getattr(many, name)[:, k] == pytest.approx(getattr(alone, name), rel=1e-9)
+    assert rated > 20
