@@ -18,9 +18,9 @@ from fegear.formulas.iso6336.part3_strength import mean_stress_factor, mean_stre
 from fegear.formulas.iso6336.part5_materials import MATERIALS
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
 from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
-from fegear.formulas.many.conditions import ManyConditions, ManyDuties, qualities_of_class
 from fegear.formulas.many.pairs import many_pairs
 from fegear.formulas.many.ratings import ManyLevels, rate_many, rate_many_spectra
+from fegear.formulas.many.shared import ManyConditions, ManyDuties, qualities_of_class
 
 GROUPS = tuple(dict.fromkeys(MATERIALS.values()))
 ROUGH = (4.8e-6, 20e-6)
@@ -175,7 +175,7 @@ def compared(seed: int, count: int) -> tuple[float, int]:
         for name in ("contact_stress", "contact_safety", "bending_stress", "bending_safety"):
             off = getattr(many, name)[:, k] / np.array(getattr(alone, name)) - 1.0
             worst = max(worst, float(np.abs(off).max()))
-        loads = (many.loads.K_v[k], many.loads.K_Hbeta[k], many.loads.K_Halpha[k])
+        loads = (many.factors.K_v[k], many.factors.K_Hbeta[k], many.factors.K_Halpha[k])
         factors = tuple(alone[name].value for name in ("K_v", "K_Hbeta", "K_Halpha"))
         assert loads == pytest.approx(factors, rel=1e-12)
     return worst, rated

@@ -18,9 +18,9 @@ from fegear.formulas.many.loads import contact_ratio_square
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.formulas.many.conditions import ManyConditions
     from fegear.formulas.many.loads import ManyLoadFactors
     from fegear.formulas.many.pairs import ManyPairs
+    from fegear.formulas.many.shared import ManyConditions
 
 
 def tip_relief_factor(asked: ManyConditions) -> float:
@@ -51,7 +51,7 @@ def single_pair_factors(pairs: ManyPairs, tip_relief: float) -> Array:
     return np.array(found)
 
 
-def contact_stresses(asked: ManyConditions, loads: ManyLoadFactors) -> Array:
+def contact_stresses(asked: ManyConditions, factors: ManyLoadFactors) -> Array:
     """sigma_H of pinion and wheel [Pa], shape (2, N)."""
     pairs, duty = asked.pairs, asked.duty
     z_h = np.sqrt(
@@ -63,8 +63,8 @@ def contact_stresses(asked: ManyConditions, loads: ManyLoadFactors) -> Array:
     u = pairs.ratio
     load = duty.tangential * (u + 1.0) / (pairs.diameters[0] * pairs.face_width * u)
     nominal = z_h * z_e * z_eps * z_beta * np.sqrt(load)
-    factor = duty.application_factor * duty.mesh_load_factor * loads.K_v * loads.K_Hbeta * loads.K_Halpha
-    return np.asarray(single_pair_factors(pairs, tip_relief_factor(asked)) * nominal * np.sqrt(factor))
+    applied = duty.application_factor * duty.mesh_load_factor * factors.K_v * factors.K_Hbeta * factors.K_Halpha
+    return np.asarray(single_pair_factors(pairs, tip_relief_factor(asked)) * nominal * np.sqrt(applied))
 
 
 def _work_hardening(asked: ManyConditions, velocity: Array) -> tuple[list[Array | float], list[Array | float]]:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.formulas.iso6336.part1_face_load import PinionShaft
     from fegear.formulas.iso6336.rated import Strength
-    from fegear.formulas.many.conditions import ManyConditions
     from fegear.formulas.many.pairs import ManyPairs
+    from fegear.formulas.many.shared import ManyConditions
 
 
 @dataclass(frozen=True, slots=True)

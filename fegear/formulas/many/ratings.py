@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.formulas.iso6336.part2_pitting import life_knots
-from fegear.formulas.many.conditions import ManyConditions, ManyDuties
 from fegear.formulas.many.flanks import contact_stresses, flank_lines
 from fegear.formulas.many.lives import ManyBins, ManyKnots, damages, spectrum_safeties
 from fegear.formulas.many.loads import ManyLoadFactors, contact_ratio_square, load_factors
 from fegear.formulas.many.roots import ManyForms, bending_stresses, root_forms, root_lines
+from fegear.formulas.many.shared import ManyConditions, ManyDuties
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
@@ -40,7 +40,7 @@ class ManyRatings:
         sigma_H, sigma_HG [Pa], S_H; NaN where a pair is not rated.
     bending_stress, bending_permissible, bending_safety : ndarray, shape (2, N)
         sigma_F, sigma_FG [Pa], S_F.
-    loads : ManyLoadFactors
+    factors : ManyLoadFactors
     forms : ManyForms
     refused : tuple of (str, ndarray)
         Why pairs are not rated, the first reason first, and which of them.
@@ -52,7 +52,7 @@ class ManyRatings:
     bending_stress: Array
     bending_permissible: Array
     bending_safety: Array
-    loads: ManyLoadFactors
+    factors: ManyLoadFactors
     forms: ManyForms
     refused: tuple[tuple[str, Mask], ...]
 
@@ -67,7 +67,7 @@ def _outside(name: str, values: Array) -> Mask:
     return np.asarray((values < low * (1.0 - _SLACK) - _SLACK * high) | (values > high * (1.0 + _SLACK)))
 
 
-def _refused(pairs: ManyPairs, loads: ManyLoadFactors, forms: ManyForms) -> tuple[tuple[str, Mask], ...]:
+def _refused(pairs: ManyPairs, factors: ManyLoadFactors, forms: ManyForms) -> tuple[tuple[str, Mask], ...]:
     """What ISO 6336 does not cover."""
     ratio = pairs.contact_ratio
     sizes = (
@@ -85,7 +85,10 @@ def _refused(pairs: ManyPairs, loads: ManyLoadFactors, forms: ManyForms) -> tupl
         ("rim too thin for ISO 6336-3", (backup <= 0.5).any(axis=0)),
         ("no root section of ISO 6336-3", ~forms.exists.all(axis=0)),
         ("notch parameter q_s outside 1 to 8", ~forms.notch_in_range.all(axis=0)),
-        ("load factors outside ISO 6336-1", ~np.isfinite(loads.K_v * loads.K_Hbeta) | (loads.single_stiffness <= 0.0)),
+        (
+            "load factors outside ISO 6336-1",
+            ~np.isfinite(factors.K_v * factors.K_Hbeta) | (factors.single_stiffness <= 0.0),
+        ),
     )
     return tuple((words, np.asarray(mask)) for words, mask in found)
 
@@ -103,17 +106,19 @@ def _rated(
     flanks: tuple[ManyKnots, ManyKnots],
     roots: tuple[ManyKnots, ManyKnots],
 ) -> ManyRatings:
-    loads = load_factors(asked)
+    factors = load_factors(asked)
     cycles = asked.duty.cycles
-    stress_h, stress_f = contact_stresses(asked, loads), bending_stresses(asked, loads, forms)
+    stress_h, stress_f = contact_stresses(asked, factors), bending_stresses(asked, factors, forms)
     bear_h, bear_f = (np.array([line.at(n) for line, n in zip(two, cycles, strict=True)]) for two in (flanks, roots))
-    refused = _refused(asked.pairs, loads, forms)
+    refused = _refused(asked.pairs, factors, forms)
     off = ~np.isfinite(stress_h).all(axis=0) | ~np.isfinite(stress_f).all(axis=0)
     refused = (*refused, ("single pair contact below a base circle", np.asarray(off)))
     lost = np.any([mask for _, mask in refused], axis=0)
     found = [np.where(lost, np.nan, one) for one in (stress_h, bear_h, stress_f, bear_f)]
     stress_h, bear_h, stress_f, bear_f = found
-    return ManyRatings(stress_h, bear_h, bear_h / stress_h, stress_f, bear_f, bear_f / stress_f, loads, forms, refused)
+    return ManyRatings(
+        stress_h, bear_h, bear_h / stress_h, stress_f, bear_f, bear_f / stress_f, factors, forms, refused
+    )
 
 
 @dataclass(frozen=True)

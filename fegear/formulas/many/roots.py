@@ -20,9 +20,9 @@ from fegear.formulas.many.lives import ManyKnots
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
     from fegear.formulas.iso6336.rated import Edition, Strength
-    from fegear.formulas.many.conditions import ManyConditions
     from fegear.formulas.many.loads import ManyLoadFactors
     from fegear.formulas.many.pairs import ManyPairs
+    from fegear.formulas.many.shared import ManyConditions
 
 #: Newton steps of the auxiliary angle, and the step at which it has converged.
 _STEPS, _CONVERGED = 50, 1e-14
@@ -101,7 +101,7 @@ def _rims(pairs: ManyPairs) -> Array:
     return np.where(backup >= one_tooth.SOLID_RIM, 1.0, thin)
 
 
-def bending_stresses(asked: ManyConditions, loads: ManyLoadFactors, forms: ManyForms) -> Array:
+def bending_stresses(asked: ManyConditions, factors: ManyLoadFactors, forms: ManyForms) -> Array:
     """sigma_F of pinion and wheel [Pa], shape (2, N)."""
     pairs, duty = asked.pairs, asked.duty
     width = np.minimum(pairs.face_widths, pairs.face_width + 2.0 * pairs.module)
@@ -114,10 +114,10 @@ def bending_stresses(asked: ManyConditions, loads: ManyLoadFactors, forms: ManyF
     if asked.quality.grade <= 4:
         deep = np.where(ratio <= 2.05, 1.0, np.where(ratio > 2.5, 0.7, -0.666 * ratio + 2.366))
     shared = _load_distribution(ratio, overlap, asked.edition)
-    factors = forms.Y_F * shared * forms.Y_S * helix * _rims(pairs) * deep
-    nominal = duty.tangential / width / pairs.module * factors
-    applied = duty.application_factor * duty.mesh_load_factor * loads.K_v
-    return np.asarray(nominal * applied * loads.K_Fbeta * loads.K_Falpha)
+    product = forms.Y_F * shared * forms.Y_S * helix * _rims(pairs) * deep
+    nominal = duty.tangential / width / pairs.module * product
+    applied = duty.application_factor * duty.mesh_load_factor * factors.K_v
+    return np.asarray(nominal * applied * factors.K_Fbeta * factors.K_Falpha)
 
 
 def _size_factor(group: groups.Group, module: Array) -> Array:
