@@ -514,3 +514,9 @@ def test_texts_of_a_model_are_read_back_from_the_case_as_they_are():
     """JSON leaves a delete character in quotes as it is, which TOML refuses."""
     for one in ("gear \x7f", 'a "quoted" \\ name', "\t\n\x01", "größer", ""):
         assert tomllib.loads(f"title = {text(one)}")["title"] == one
+
+
+def test_an_axial_offset_has_no_digits_of_the_positions_that_it_is_the_difference_of() -> None:
+    tree = values_of(two_stages(), 12, u_coordinate_on_shaft=(17.6, "mm"))
+    tree = values_of(tree, 11, u_coordinate_on_shaft=(20.1, "mm"))
+    assert tomllib.loads(case_of(model_of(in_json(tree), HERE)))["pair"]["I"]["axial_offset"] == "-2.5 mm"

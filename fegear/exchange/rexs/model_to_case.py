@@ -326,7 +326,8 @@ def _pair(
     higher = heights.get(wheel.id, 0.0) - heights.get(driver.id, 0.0)
     higher *= -1.0 if speed < 0.0 else 1.0
     if abs(higher) > _APART:
-        keys.append(Key("axial_offset", quantity(higher, "mm"), "from the positions of both shafts"))
+        # a difference of positions: its last digits are theirs
+        keys.append(Key("axial_offset", quantity(higher, "mm", _SOLVED), "from the positions of both shafts"))
     assumed = "assumed, and calculated through the gearbox"
     where = assumed if n in flow.assumed_torque else "calculated through the gearbox from the torque of external_load"
     keys.append(Key("torque", quantity(on_driver, "N*m", _SOLVED), where))
