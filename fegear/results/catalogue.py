@@ -241,7 +241,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     "Drive train dynamics": (
         Entry("gear-train", "train.gear_train.GEAR_TRAIN", "Gear train", ("gear-train",),
               "model data of the gear train: inertias, shafts, meshes, speeds, mean mesh forces",
-              effects=PLANE_EFFECTS, internal=True),
+              effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True),
         Entry("natural-modes", "train.natural_modes.NATURAL_MODES",
               "Natural frequencies and Campbell diagram", ("natural-modes", "campbell"),
               "natural frequencies and modes, and the speeds at which the meshes excite them",

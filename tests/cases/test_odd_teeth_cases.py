@@ -13,6 +13,7 @@ from fegear.case.built.odd_teeth import odd_teeth_of
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.output.fmu import mesh_models
 from fegear.results.catalogue import STAGES
 
 CASE = Path(__file__).parents[2] / "cases" / "cracked_tooth.toml"
@@ -244,3 +245,29 @@ def test_a_gear_gets_a_crack_in_python():
         fegear.Pair(plain.with_crack(depth_ratio=0.5), wheel), torque="60 N*m", tolerance=2e-2, cache=CACHE
     )
     assert found.values["I.mesh_stiffness_loss"].si == pytest.approx(0.314, abs=5e-3)
+
+
+RIG = (
+    "effects.corner_contact=false",
+    "train.body={ a = { inertia = '0.002 kg*m^2' }, b = { inertia = '0.003 kg*m^2' } }",
+    "train.mesh={ I = { driver = 'a', driven = 'b', damping_ratio = 0.1 } }",
+    "train.torque={ a = '60 N*m' }", "train.balance='b'", "dynamics.speed='2000 rpm'", "dynamics.harmonics=8",
+)  # fmt: skip
+
+
+@pytest.mark.dear
+def test_a_train_has_the_odd_teeth_of_its_pairs():
+    """Its excitation repeats after a revolution, with sidebands; the FMU of the pair has the same springs."""
+    found = run('results=["mesh-force-spectrum", "mesh-stiffness-revolution"]', *RIG)
+    te = pitches(found)
+    assert number(found, "I.static_te_peak_to_peak") == pytest.approx(np.ptp(te), rel=1e-2)
+    assert any("repeats after 25 base pitches (odd teeth)" in said for said in found.remarks)
+    n, force = (column(found, "mesh_force_spectrum_I", name) for name in ("n", "force"))
+    mesh = {round(order * 25): line for order, line in zip(n, force, strict=True)}
+    assert 0.003 * mesh[25] < mesh[24] < mesh[25]
+    assert 0.003 * mesh[25] < mesh[26] < mesh[25]
+    (model, _) = mesh_models(read_scene(CASE, (*COARSE, *RIG)))[0]
+    (springs,) = model.excitations
+    assert {k.pitches for k in springs.stiffness} == {25}
+    x = column(found, "mesh_stiffness_revolution_I", "x").reshape(te.shape)
+    assert springs.approach(model.nominal, x / model.pair.base_pitch) == pytest.approx(te, rel=1e-5)

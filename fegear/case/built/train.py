@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.torque_ripple import torque_ripples
 from fegear.dynamics.motion.motion_spec import MotionSpec
 from fegear.dynamics.train.friction import FrictionLaw
@@ -48,11 +49,15 @@ def check_train(scene: Scene) -> None:
 
 @dataclass(frozen=True)
 class MeshTeeth:
-    """Whose teeth a mesh has: those of a loaded pair, or unmodified ones like them, so many times as wide."""
+    """Whose teeth a mesh has: those of a loaded pair, or unmodified ones like them, so many times as wide.
+
+    `odd`: whether some of them differ from the others.
+    """
 
     pair: str
     like: bool = False
     width_ratio: float = 1.0
+    odd: bool = False
 
 
 @dataclass(frozen=True)
@@ -99,7 +104,7 @@ def train_inputs(scene: Scene) -> TrainInputs:
         name: " + ".join([*(f"gear {gear}" for gear in body.gears or ()), *(["inertia"] if body.inertia else [])])
         for name, body in part.body.items()
     }
-    still = TrainInputs(spec, {name: _teeth(part, name) for name in part.mesh}, sources, assumed)
+    still = TrainInputs(spec, {name: _teeth(scene, part, name) for name in part.mesh}, sources, assumed)
     # without its effect, ripple is nothing that a result depends on
     if not scene.case.effects.torque_ripple:
         return replace(still, idle_ripple=bool(part.torque_ripple))
@@ -114,9 +119,10 @@ def _inertia(scene: Scene, part: BodyPart) -> float:
     return inertia
 
 
-def _teeth(part: TrainPart, name: str) -> MeshTeeth:
-    like = part.mesh[name].like
-    return MeshTeeth(part.loaded_pair_of(name), like is not None, like.width_ratio if like else 1.0)
+def _teeth(scene: Scene, part: TrainPart, name: str) -> MeshTeeth:
+    like, pair = part.mesh[name].like, part.loaded_pair_of(name)
+    odd = like is None and bool(odd_gears_of(scene, pair))
+    return MeshTeeth(pair, like is not None, like.width_ratio if like else 1.0, odd)
 
 
 def _shaft(name: str, part: ShaftPart) -> ShaftSpec:

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, Index
 from fegear.base.brief import Brief
 from fegear.base.tally import note
 from fegear.contact.odd_flank import OddFlank
@@ -202,6 +202,16 @@ class Engagement(Brief):
             if flanks
         )
         return math.lcm(self.compliance.cycles, *errors, *odd)
+
+    def teeth_in(self, number: Index, cycle: int) -> tuple[object, ...]:
+        """What tells a base pitch from others: how the teeth on these pairs answer, and where they stand."""
+        spacing = tuple(
+            errors[np.mod(cycle - number, errors.size)].tobytes()
+            for errors in (self.driver_spacing, self.driven_spacing)
+            if errors.size
+        )
+        flanks = () if self.odd is None else self.odd.on(number, cycle)
+        return (*self.compliance.pattern(number, cycle), *spacing, flanks)
 
     @property
     def uneven(self) -> bool:

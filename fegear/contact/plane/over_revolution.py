@@ -141,7 +141,7 @@ def _each_pitch(
 ) -> tuple[list[Array], int]:
     """What is asked of every base pitch, shape (C, ...) each, and how many of them differ from each other."""
     grid = engagement.grid(x)
-    alike = together(_teeth_and_spacing(engagement, grid.contacts.number, cycle) for cycle in range(count))
+    alike = together(engagement.teeth_in(grid.contacts.number, cycle) for cycle in range(count))
     found: list[Array] = []
     for pitches in alike:
         each = of(engagement.solve(grid, [load], int(pitches[0])))
@@ -149,17 +149,6 @@ def _each_pitch(
         for whole, one in zip(found, each, strict=True):
             whole[pitches] = one
     return found, len(alike)
-
-
-def _teeth_and_spacing(engagement: Engagement, number: Index, cycle: int) -> tuple[object, ...]:
-    """What tells a base pitch from others: how its teeth answer, and where they stand."""
-    spacing = tuple(
-        errors[np.mod(cycle - number, errors.size)].tobytes()
-        for errors in (engagement.driver_spacing, engagement.driven_spacing)
-        if errors.size
-    )
-    flanks = () if engagement.odd is None else engagement.odd.on(number, cycle)
-    return (*engagement.compliance.pattern(number, cycle), *spacing, flanks)
 
 
 @dataclass(frozen=True)
@@ -234,7 +223,7 @@ def stress_over_revolution(
     def teeth_and_fillets(cycle: int) -> tuple[object, ...]:
         ends = [compliance.tooth(member, int(row), cycle) for row in (rows[0], rows[-1])]
         fillets = known.same_as(min(ends) - reach, rows.size + 2 * reach)
-        return (*_teeth_and_spacing(engagement, number, cycle), fillets)
+        return (*engagement.teeth_in(number, cycle), fillets)
 
     stress = np.empty((count, rows.size, x.size))
     for pitches in together(teeth_and_fillets(cycle) for cycle in range(count)):

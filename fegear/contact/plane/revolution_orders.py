@@ -80,8 +80,18 @@ def condition_indicators(found: OverRevolution, teeth: Sequence[int]) -> Conditi
     teeth : sequence of int
         Numbers of teeth of the gears whose teeth differ: their shafts' orders are the first sidebands.
     """
-    cycles = found.transmission_error.shape[0]
-    te = _even(found, found.transmission_error)
+    return indicators_of(_even(found, found.transmission_error), found.transmission_error.shape[0], teeth)
+
+
+def without_mesh_harmonics(signal: Array, cycles: int) -> Array:
+    """The residual: a signal of even samples over so many base pitches without its mean and mesh harmonics."""
+    spectrum = np.fft.rfft(signal)
+    spectrum[::cycles] = 0.0
+    return np.fft.irfft(spectrum, signal.size)
+
+
+def indicators_of(te: Array, cycles: int, teeth: Sequence[int]) -> ConditionIndicators:
+    """Condition indicators of a transmission error by even samples over so many base pitches."""
     spectrum = np.fft.rfft(te)
     spectrum[0] = 0.0
     mesh = np.arange(0, spectrum.size, cycles)

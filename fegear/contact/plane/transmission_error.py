@@ -111,8 +111,9 @@ def _nearness(engagement: Engagement, grid: RollGrid, load: float, cycle: int) -
     """
     found = engagement.solve(grid, [load], cycle)
     loads, error = found.loads[:, :, 0], found.transmission_error[:, 0]
-    own = np.einsum("jkp,kp->jp", grid.matrices.at_load(found.loads)[..., 0], loads)
-    gap = np.where(grid.contacts.present, own + found.separation - error, np.inf)
+    at = found.grid  # with the teeth of this base pitch
+    own = np.einsum("jkp,kp->jp", at.matrices.at_load(found.loads)[..., 0], loads)
+    gap = np.where(at.contacts.present, own + found.separation - error, np.inf)
     deflection = np.where(loads > 0.0, own, 0.0).max(axis=0)
     return np.where(loads > 0.0, loads / load - _NO_SHARE, -np.maximum(gap, 0.0) / deflection)
 

@@ -16,6 +16,7 @@ from fegear.contact.plane.roll_grids import RollGrid
 from fegear.contact.plane.transmission_error import contact_changes
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
+from fegear.fem.teeth import together
 
 #: Accuracy of the fitted stiffness, separation and transmission error relative to their largest value.
 FIT = 1e-9
@@ -23,12 +24,15 @@ FIT = 1e-9
 FIT_SHARED = 1e-7
 #: Pieces of the fit get no shorter than this, in base pitches (a corner that starts to bear has an infinite slope).
 SHORTEST = 2e-4
+#: This near to the ends of a base pitch [base pitches].
+_INSIDE = 1e-9
 
 
 def stands_alone(engagement: Engagement, load: float) -> bool:
     """Whether every tooth pair is a spring of its own, the same one: no neighbours, no corner under the load."""
     compliance = engagement.compliance
-    return not (compliance.coupling or compliance.cycles > 1 or corners_bear(engagement, load))
+    odd = compliance.cycles > 1 or engagement.odd is not None
+    return not (compliance.coupling or odd or corners_bear(engagement, load))
 
 
 def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
@@ -36,8 +40,9 @@ def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
 
     Tooth pairs that stand alone are springs over the whole path; their contact deflection is linear about the full load
     on one pair, as in NASA TM-89901. Where teeth are coupled, or a tip corner bears under the mean load, every pair is
-    linear about what it carries of the mean load, with its own local stiffness dW_j/dzeta. With spacing errors every
-    tooth pair that meets has its own separation (and local stiffness), until the same teeth meet again.
+    linear about what it carries of the mean load, with its own local stiffness dW_j/dzeta. With spacing errors, or
+    teeth that differ, every tooth pair that meets has its own separation (and local stiffness), until the same teeth
+    meet again.
 
     Parameters
     ----------
@@ -95,17 +100,39 @@ def _separate(engagement: Engagement, load: float) -> MeshExcitation:
 
 
 def _shared(engagement: Engagement, load: float) -> MeshExcitation:
-    """Springs about the mean load, from load sharing with coupled teeth and corners, base pitch by base pitch."""
+    """Springs about the mean load, from load sharing with coupled teeth and corners, base pitch by base pitch.
+
+    Base pitches with teeth that answer and stand alike are fitted once.
+    """
     # Corners bear before the start and after the end of the path: a slot more on either side.
     pair, extra = engagement.pair, 1 if engagement.corner_contact else 0
     first = math.floor(pair.x_start / pair.base_pitch) - extra
     last = math.ceil(pair.x_end / pair.base_pitch) - 1 + extra
     grids: dict[bytes, RollGrid] = {}
-    pitches = [_one_pitch(engagement, load, p, range(first, last + 1), grids) for p in range(engagement.cycles)]
+    pairs = engagement.grid([pair.x_start]).contacts.number
+    known: dict[object, tuple[list[Periodic], list[Periodic]]] = {}
+    pitches = []
+    for p in range(engagement.cycles):
+        of = tuple(engagement.teeth_in(pairs, cycle) for cycle in _cycles_of(engagement, p))
+        if of not in known:
+            known[of] = _one_pitch(engagement, load, p, range(first, last + 1), grids)
+        pitches.append(known[of])
     stiffness, separation = (
         tuple(Periodic.joined(parts) for parts in zip(*one, strict=True)) for one in zip(*pitches, strict=True)
     )
     return MeshExcitation.about_load(stiffness, separation, first)
+
+
+def _cycles_of(engagement: Engagement, number: int) -> tuple[int, ...]:
+    """Base pitches of load sharing in which base pitch `number` from the pitch point lies.
+
+    Load sharing counts its own from the start of contact, so that they are two.
+    """
+    if engagement.cycles == 1:
+        return (number,)
+    ends = np.array([_INSIDE, 1.0 - _INSIDE]) * engagement.pair.base_pitch
+    before = np.rint((engagement.meshing.reduced(ends) - ends) / engagement.pair.base_pitch)
+    return tuple(sorted({number - int(n) for n in before}))
 
 
 def _one_pitch(
@@ -116,8 +143,7 @@ def _one_pitch(
     `grids` keeps contacts and compliances, which are the same in every base pitch with like teeth.
     """
     pitch = engagement.pair.base_pitch
-    # load sharing counts its base pitches from the start of contact, so that this one lies in two of them
-    cycles = (number,) if engagement.cycles == 1 else (number, number + 1)
+    cycles = _cycles_of(engagement, number)
     changes = [*engagement.breaks, *(x for cycle in cycles for x in contact_changes(engagement, load, cycle))]
     cuts = sorted({(b / pitch) % 1.0 for b in changes})
     known: dict[bytes, tuple[Array, Array]] = {}
@@ -126,25 +152,30 @@ def _one_pitch(
         """K_Sj [N/m] and zeta - W_j / K_Sj [m] of every slot, each of shape (slots, s)."""
         key = s.tobytes()
         if key not in known:
-            x = s * pitch
-            # one call is about one piece between breaks, the start of contact among them
-            before = round(float(np.mean(engagement.meshing.reduced(x) - x)) / pitch)
-            if key not in grids:
-                grids[key] = engagement.grid(x)
-            state = engagement.solve(grids[key], [load], number - before)
-            known[key] = _by_slot(state, s, slots, pitch)
+            solve_at_once([s])
         return known[key]
 
+    def before(s: Array) -> int:
+        """Base pitches that load sharing counts less; one call is about one piece between breaks."""
+        if engagement.cycles == 1:
+            return 0
+        x = s * pitch
+        return round(float(np.mean(engagement.meshing.reduced(x) - x)) / pitch)
+
     def solve_at_once(places: list[Array]) -> None:
-        """`solved` of many pieces, which costs little more than one; with spacing errors each is in its own cycle."""
+        """`solved` of many pieces, which costs little more than one."""
         new = [s for s in places if s.tobytes() not in known]
-        if not new or engagement.cycles > 1:
-            return
-        every = np.concatenate(new)
-        state = engagement.solve(engagement.grid(every * pitch, again=False), [load])
-        ends = np.cumsum([s.size for s in new])[:-1]
-        found = (np.split(one, ends, axis=1) for one in _by_slot(state, every, slots, pitch))
-        known.update((s.tobytes(), pair) for s, pair in zip(new, zip(*found, strict=True), strict=True))
+        for pieces in together(map(before, new)):
+            these = [new[piece] for piece in pieces]
+            every = np.concatenate(these)
+            key = every.tobytes()
+            grid = grids.get(key) or engagement.grid(every * pitch, again=False)
+            if engagement.cycles > 1:
+                grids[key] = grid
+            state = engagement.solve(grid, [load], number - before(these[0]))
+            ends = np.cumsum([s.size for s in these])[:-1]
+            found = (np.split(one, ends, axis=1) for one in _by_slot(state, every, slots, pitch))
+            known.update((s.tobytes(), pair) for s, pair in zip(these, zip(*found, strict=True), strict=True))
 
     def fit(quantity: int, slot: int, scale: float) -> Periodic:
         return Periodic.fit(
@@ -153,8 +184,9 @@ def _one_pitch(
         )  # fmt: skip
 
     # Of perfect flanks that deflect in proportion to their load no separation is left but round-off.
-    few = (np.arange(8) + 0.5) / 8
-    deflection = float(np.max([load / solved(np.array([s]))[0].sum() for s in few]))
+    few = [np.array([s]) for s in (np.arange(8) + 0.5) / 8]
+    solve_at_once(few)
+    deflection = float(np.max([load / solved(s)[0].sum() for s in few]))
     count = range(len(slots))
     return [fit(0, slot, 0.0) for slot in count], [fit(1, slot, deflection) for slot in count]
 

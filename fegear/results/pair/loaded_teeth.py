@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 from fegear.base.effects import PLANE_EFFECTS, ROOT_EFFECTS, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_remarks
+from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.contact.error_over_pitch import ErrorOverPitch
@@ -125,6 +126,8 @@ class Kind:
 
 
 PLANE = Kind("loaded-pair", (*PLANE_EFFECTS, *ROOT_EFFECTS), needs_solution, check_relief)
+#: Stage of plane pairs with odd teeth, whose results go over a revolution.
+ODD = "odd-pair"
 WIDE = Kind("loaded-flanks", WIDE_EFFECTS, needs_solid_solution)
 
 
@@ -141,6 +144,11 @@ def kind_of(scene: Scene, name: str) -> Kind:
 def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
     """The task that makes a loaded pair."""
     return (Task(kind_of(scene, name).stage, name),)
+
+
+def over_revolution_task(scene: Scene, name: str) -> Task:
+    """The task that loads a pair with the odd teeth of its gears, if they have any."""
+    return Task(ODD if odd_gears_of(scene, name) else kind_of(scene, name).stage, name)
 
 
 def needs_gears(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -168,7 +176,7 @@ teeth_stage = partial(
 
 def teeth_of(task: Task, data: Any) -> LoadedTeeth | None:
     """The loaded pair that a task computed; None where it is none of its makers."""
-    if task.stage not in (PLANE.stage, WIDE.stage):
+    if task.stage not in (PLANE.stage, WIDE.stage, ODD):
         return None
     return cast("LoadedTeeth", data)
 
@@ -182,6 +190,12 @@ def loaded_teeth(upstream: Upstream, name: str) -> LoadedTeeth:
 def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
     """A pair of plane teeth, for what is known of these alone."""
     return cast("LoadedPair", upstream[Task(PLANE.stage, name)])
+
+
+def pair_over_revolution(upstream: Mapping[Task, object], name: str) -> LoadedPair:
+    """The same with odd teeth, where its gears have any."""
+    odd = Task(ODD, name)
+    return cast("LoadedPair", upstream[odd]) if odd in upstream else loaded_pair(upstream, name)
 
 
 def gears_of(scene: Scene, name: str) -> dict[Member, str]:

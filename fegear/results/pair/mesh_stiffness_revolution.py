@@ -33,12 +33,12 @@ from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.fem.teeth import meshing_order
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.odd_gear import CRACKS
-from fegear.results.pair.loaded_teeth import check_teeth, plane_pairs
+from fegear.results.pair.loaded_teeth import check_teeth, over_revolution_task, plane_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,8 +47,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.sheet.seen import Seen
 
-#: Stages that load a pair without and with odd teeth.
-EVEN, ODD = "loaded-pair", "odd-pair"
 #: Even steps over a base pitch.
 POSITIONS = 100
 #: Seconds of a base pitch.
@@ -167,11 +165,6 @@ class RevolutionData:
     def te_residual_max(self) -> float:
         """[m]."""
         return float(np.abs(self.found.residual).max())
-
-
-def source_of(scene: Scene, name: str) -> Task:
-    """The task that loads a pair with what odd teeth it has."""
-    return Task(ODD if odd_gears_of(scene, name) else EVEN, name)
 
 
 def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
@@ -320,7 +313,7 @@ def _cites(scene: Scene, name: str) -> Iterator[Citation]:
 
 MESH_STIFFNESS_REVOLUTION = Stage(
     subjects=plane_pairs,
-    needs=lambda scene, name: (source_of(scene, name),),
+    needs=lambda scene, name: (over_revolution_task(scene, name),),
     inputs=inputs_of,
     compute=_compute,
     present=_SHEET.present,

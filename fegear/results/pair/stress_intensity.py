@@ -23,8 +23,8 @@ from fegear.fem.teeth import meshing_order
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.odd_gear import CRACKS, needs_odd_solution, odd_solution_of
-from fegear.results.pair.loaded_teeth import check_teeth, plane_pairs
-from fegear.results.pair.mesh_stiffness_revolution import ODD, POSITIONS, RevolutionInputs, inputs_of
+from fegear.results.pair.loaded_teeth import ODD, check_teeth, plane_pairs
+from fegear.results.pair.mesh_stiffness_revolution import POSITIONS, RevolutionInputs, inputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,6 +12,7 @@ from fegear.base.arrays import Array
 from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
 from fegear.case.built.members import gear_name
+from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.case.built.train import train_part
 from fegear.case.reading import Scene
@@ -23,7 +24,7 @@ from fegear.engine.sheet.chart import ALL, Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
-from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
@@ -37,7 +38,7 @@ from fegear.results.pair.root_stress_history import (
     stress_sources,
     table_names,
 )
-from fegear.results.train.gear_train import RPM, needs_one_speed, needs_plane_teeth, own_meshes
+from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, needs_plane_teeth, own_meshes
 from fegear.results.train.tooth_force import ToothForceData, others_of, over_time, rippled
 
 
@@ -76,6 +77,8 @@ class DynamicRootInputs:
     mesh, pair : str
     gears, labels : mapping of str to str
         Names of the gears, and ends of the tables' names, by member.
+    odd : bool
+        Whether some of the teeth differ from the others.
     """
 
     speed: float
@@ -86,6 +89,7 @@ class DynamicRootInputs:
     pair: str
     gears: Mapping[Member, str]
     labels: Mapping[Member, str] = field(compare=False)
+    odd: bool = field(default=False, compare=False)
 
 
 def _inputs(scene: Scene, name: str) -> DynamicRootInputs:
@@ -93,8 +97,8 @@ def _inputs(scene: Scene, name: str) -> DynamicRootInputs:
     gears = {member: gear_name(scene, pair, member) for member in MEMBERS}
     labels = {member: label.removeprefix(f"{pair}_") for member, label in table_names(scene, pair).items()}
     effects, speed = scene.case.effects, scene.case.dynamics.one_speed
-    coupled, roots = effects.neighbour_coupling, RootEffects.of(effects)
-    return DynamicRootInputs(speed, coupled, roots, stress_sources(scene, pair), name, pair, gears, labels)
+    coupled, roots, odd = effects.neighbour_coupling, RootEffects.of(effects), bool(odd_gears_of(scene, pair))
+    return DynamicRootInputs(speed, coupled, roots, stress_sources(scene, pair), name, pair, gears, labels, odd)
 
 
 def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> DynamicRootStress:
@@ -296,6 +300,7 @@ _SHEET = Sheet(
         ),
     ),
     remarks=(
+        Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
         lambda seen: formula_remarks(
             seen.asked.pair, {seen.asked.gears[member]: found for member, found in seen.data.made.notes.items()},
             coupled=seen.asked.coupled,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
+from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.train import train_part
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
@@ -28,7 +29,7 @@ from fegear.results.pair.placed_gauge import (
     comparison_values,
     placed_gauge,
 )
-from fegear.results.train.gear_train import RPM, needs_one_speed, own_meshes
+from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,6 +59,8 @@ class DynamicStrainInputs:
         Whether the forces on the teeth around count.
     effects : RootEffects
     name : str
+    odd : bool
+        Whether some of the teeth differ from the others.
     """
 
     gauge: Gauge
@@ -67,6 +70,7 @@ class DynamicStrainInputs:
     coupled: bool
     effects: RootEffects
     name: str = field(compare=False)
+    odd: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -141,6 +145,7 @@ def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
     return DynamicStrainInputs(
         gauge_of(scene, name), _mesh(scene, name), part.one_speed, part.positions,
         scene.case.effects.neighbour_coupling, RootEffects.of(scene.case.effects), name,
+        bool(odd_gears_of(scene, gauge_of(scene, name).pair)),
     )  # fmt: skip
 
 
@@ -196,7 +201,10 @@ _SHEET = Sheet(
             of="found", under=lambda seen: f"{seen.asked.speed * RPM:.6g} rpm",
         ),
     ),
-    remarks=(Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="compared"),),
+    remarks=(
+        Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
+        Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="compared"),
+    ),
     sharper_by="",
 )  # fmt: skip
 

@@ -15,7 +15,8 @@ from fegear.base.errors import InputError
 from fegear.base.notes import assuming, neglecting
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
-from fegear.case.built.pair_checks import check_relief
+from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.pair_checks import check_odd_teeth, check_relief
 from fegear.case.built.train import MeshTeeth, TrainInputs, check_train, train_inputs, train_part
 from fegear.dynamics.train.gear_train import GearTrain, a_drives
 from fegear.dynamics.train.matrices import static_forces
@@ -27,7 +28,12 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
-from fegear.results.pair.loaded_teeth import loaded_pair
+from fegear.results.pair.loaded_teeth import (
+    loaded_pair,
+    needs_teeth,
+    over_revolution_task,
+    pair_over_revolution,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,6 +49,8 @@ if TYPE_CHECKING:
 
 #: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
 _ALONE, _SHARED = 0.05, 0.6
+#: Base pitches that differ in a revolution of a gear with odd teeth.
+_PITCHES = 8
 
 
 def the_train(scene: Scene) -> tuple[str, ...]:
@@ -62,8 +70,12 @@ def gear_train(upstream: Mapping[Task, object]) -> GearTrain:
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     part = train_part(scene)
-    names = dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh)
-    return tuple(Task("loaded-flanks" if name in scene.wide_pairs else "loaded-pair", name) for name in names)
+    needed: dict[Task, None] = {}
+    for name, mesh in part.mesh.items():
+        pair = part.loaded_pair_of(name)
+        # teeth like those of another mesh are those of perfect gears
+        needed.update(dict.fromkeys(needs_teeth(scene, pair) if mesh.like else (over_revolution_task(scene, pair),)))
+    return tuple(needed)
 
 
 def _check(scene: Scene, _subject: str) -> None:
@@ -78,6 +90,8 @@ def _check(scene: Scene, _subject: str) -> None:
         _check_spacing(scene, part.loaded_pair_of(name))
     for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
         check_relief(scene, name)
+        if name not in scene.wide_pairs:
+            check_odd_teeth(scene, name)
 
 
 def _check_spacing(scene: Scene, name: str) -> None:
@@ -105,7 +119,7 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
         if Task("loaded-flanks", pair) in upstream:
             found = excitation_of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
         else:
-            loaded = loaded_pair(upstream, pair)
+            loaded = pair_over_revolution(upstream, pair) if teeth.odd else loaded_pair(upstream, pair)
             engagement = loaded.engagement.unmodified() if teeth.like else loaded.engagement
             found = mesh_excitation(
                 engagement if forward[number] else engagement.reversed(), force / width or loaded.nominal
@@ -169,7 +183,8 @@ class MeshRow:
     @shows("um", "peak to peak of the static transmission error under the mean force")
     def static_te_peak_to_peak(self) -> float:
         """[m]."""
-        return float(np.ptp(self.made.error(np.linspace(0.0, 1.0, 2001))))
+        pitches = self.made.error.pitches
+        return float(np.ptp(self.made.error(np.linspace(0.0, pitches, 2000 * pitches + 1))))
 
     @property
     def doubt(self) -> tuple[float | None, float | None]:
@@ -180,6 +195,11 @@ class MeshRow:
     def pitches(self) -> int:
         """Base pitches after which its excitation repeats; 1 for teeth like those of another mesh."""
         return self.made.error.pitches if not self.teeth.like else 1
+
+    @property
+    def why_uneven(self) -> str:
+        """What makes base pitches differ."""
+        return "odd teeth" if self.teeth.odd else "spacing errors"
 
 
 @dataclass(frozen=True)
@@ -251,7 +271,7 @@ _SHEET = Sheet(
                 when=lambda seen: not seen.one.made.excitation.slotted,
             ),
             Remark(
-                "Mesh {key}: its excitation repeats after {one.pitches} base pitches (spacing errors).",
+                "Mesh {key}: its excitation repeats after {one.pitches} base pitches ({one.why_uneven}).",
                 when=lambda seen: seen.one.pitches > 1,
             ),
             Remark(_on_axial_force, when="axial_force"),
@@ -269,7 +289,9 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     """Springs of every mesh."""
     effects, count = scene.case.effects, len(scene.case.train.mesh) if scene.case.train else 0
     each = _SHARED if effects.corner_contact or effects.neighbour_coupling else _ALONE
-    return forecasts.constant(_SPRINGS + each * count)
+    part = scene.case.train
+    odd = [odd_gears_of(scene, part.loaded_pair_of(mesh)) for mesh in part.mesh] if part else []
+    return forecasts.constant(_SPRINGS + each * count + sum(_PITCHES ** len(gears) * _SHARED for gears in odd if gears))
 
 
 #: What every result of a train rests on.
@@ -280,6 +302,11 @@ TRAIN_SOURCES = citing(
 
 
 RPM = 30.0 / math.pi
+#: Of root stress and strain in motion where teeth differ.
+ORDINARY_ROOTS = neglecting(
+    "Mesh {asked.mesh}: root stress in motion is that of ordinary teeth, under forces that follow the odd teeth; "
+    "request mesh-stiffness-revolution for the root stress of every tooth."
+)
 
 
 #: A mesh with less of the largest mean force carries none.
