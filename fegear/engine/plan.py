@@ -62,9 +62,13 @@ class Plan(Brief):
 
 
 def _straight(scene: Scene) -> str:
-    """What a case of helical gears alone should know of results that are about spur gears."""
-    alone = bool(scene.gears) and not scene.spur_gears
-    return " (possibly available for spur gears only; the gears of this case are helical)" if alone else ""
+    """What a case of helical gears or of 3D pairs only should know of results that are about plane spur gears."""
+    if scene.gears and not scene.spur_gears:
+        return " (possibly available for spur gears only; the gears of this case are helical)"
+    wide = [name for name in scene.spur_pairs if name in scene.wide_pairs]
+    if wide and not scene.plane_pairs:
+        return f' (possibly available for the plane (2D) model only: set pair.{wide[0]}.width = "plane")'
+    return ""
 
 
 def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) -> Plan:
