@@ -172,7 +172,7 @@ def test_what_only_plane_teeth_have_is_refused(key, said):
 @pytest.mark.parametrize("wanted", ['"relief", "flank-design"', '"flank-design", "robustness"'])
 def test_two_designs_of_one_pair_are_refused(wanted):
     scene = scene_of(CASE_TEXT.replace('"relief", "relief-chart", "robustness"', wanted))
-    with pytest.raises(InputError, match="same tables of pair I"):
+    with pytest.raises(InputError, match="relief-over-face of I would write the same tables"):
         make_plan(scene, STAGES)
 
 

@@ -67,17 +67,6 @@ def check_over_face(scene: Scene, name: str) -> None:
     design_range(scene, name)
 
 
-def _check(scene: Scene, name: str) -> None:
-    check_over_face(scene, name)
-    flank = scene.case.flank_design
-    if "flank-design" in scene.case.results and (flank is None or flank.pair in (None, name)):
-        wanted = next(one for one in ("relief", "robustness") if one in scene.case.results)
-        raise InputError(
-            "results", f'"{wanted}"', f"and flank-design would write the same tables of pair {name}",
-            'request flank-design only; its family "profile" is linear tip relief',
-        )  # fmt: skip
-
-
 def needs_over_face(scene: Scene, name: str) -> tuple[Task, ...]:
     """The loaded pair and both of its gears."""
     gears = tuple(gear_name(scene, name, member) for member in MEMBERS)
@@ -133,7 +122,8 @@ RELIEF_OVER_FACE = Stage(
     compute=_compute,
     present=RELIEF_OVER_FACE_SHEET.present,
     needs=needs_over_face,
-    check=_check,
+    check=check_over_face,
+    instead_of=("flank-design",),
     cites=citing(Citation("lin-townsend-oswald", "linear and parabolic tip relief"), *RING, HERTZ, INVOLUTE),
     forecast=_forecast,
 )
