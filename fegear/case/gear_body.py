@@ -179,5 +179,5 @@ class RimSupportPart(Part):
         if self.kind == "free_arc":
             return RimSupport(free_teeth=0 if self.teeth is None else self.teeth or -1)
         if self.kind == "web":
-            return RimSupport(web=(self.web_thickness or 0.0) / face_width, web_radius=self.web_radius or 0.0)
+            return RimSupport(web=(self.web_thickness or 0.0) / face_width, inner_radius=self.web_radius or 0.0)
         return RimSupport(self.pins or 0, self.width or 0.0, self.angle, self.kind == "bearing")

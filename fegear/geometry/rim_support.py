@@ -38,8 +38,8 @@ class RimSupport:
     free_teeth : int
         The bore is free below so many teeth, an odd number with the loaded tooth in the middle, and held elsewhere.
     web : float
-        Thickness of a web that fills the inside of the rim down to `web_radius`, where it is held, over the face width.
-    web_radius : float
+        Thickness of a web that fills the inside of the rim down to `inner_radius`, where it is held, over the face width.
+    inner_radius : float
         In the unit of the gear.
     """
 
@@ -49,7 +49,7 @@ class RimSupport:
     rollers: bool = False
     free_teeth: int = 0
     web: float = 0.0
-    web_radius: float = 0.0
+    inner_radius: float = 0.0
 
     @property
     def kind(self) -> Kind:
@@ -64,7 +64,7 @@ class RimSupport:
 
     def scaled(self, factor: float) -> RimSupport:
         """The same in other units."""
-        return replace(self, width=self.width * factor, web_radius=self.web_radius * factor)
+        return replace(self, width=self.width * factor, inner_radius=self.inner_radius * factor)
 
     def different_teeth(self, teeth: int) -> int:
         """How many teeth in a row stand differently to the pins before the first of them comes again."""
@@ -125,9 +125,9 @@ class RimSupport:
                 "remove rim_support for a solid disc fixed at bore_radius",
             )  # fmt: skip
         most = radius - _SHORTEST_WEB * module
-        if not 0.0 < self.web_radius <= most:
+        if not 0.0 < self.inner_radius <= most:
             raise GeometryError(
-                "rim_support.web_radius", f"{self.web_radius * 1e3:.6g} mm",
+                "rim_support.web_radius", f"{self.inner_radius * 1e3:.6g} mm",
                 f"must be between 0 and {most * 1e3:.6g} mm ({_SHORTEST_WEB:g} modules inside bore_radius, the inner "
                 "radius of the rim)", "specify the outer radius of the hub",
             )  # fmt: skip

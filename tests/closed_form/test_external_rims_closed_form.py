@@ -37,7 +37,7 @@ def root_stress(found, radius=14.2):
 
 def test_a_web_as_thick_as_the_face_is_the_disc():
     bore = SMALL.root_radius - 0.8
-    web = solved(SMALL, bore, RimSupport(web=1.0, web_radius=2.0))
+    web = solved(SMALL, bore, RimSupport(web=1.0, inner_radius=2.0))
     disc = solved(SMALL, 2.0)
     r = np.array([SMALL.pitch_radius])
     assert web.self_compliance(r, PATCH, WIDTH) == pytest.approx(disc.self_compliance(r, PATCH, WIDTH), rel=1e-4)
@@ -51,7 +51,7 @@ def test_a_web_turns_as_a_disc_between_two_circles():
     bore, share, r, shear = SMALL.root_radius - 0.8, 0.2, np.array([SMALL.pitch_radius]), 0.5 / (1.0 + NU)
 
     def together(radius):
-        found = solved(SMALL, bore, RimSupport(web=share, web_radius=radius), reach=6)
+        found = solved(SMALL, bore, RimSupport(web=share, inner_radius=radius), reach=6)
         return sum(found.neighbour(k, r, r, PATCH)[0, 0] for k in range(-6, 7))
 
     torque = SMALL.teeth * SMALL.base_radius
@@ -62,7 +62,7 @@ def test_a_web_turns_as_a_disc_between_two_circles():
 def test_thin_rims_get_more_root_stress_on_a_web_and_less_on_a_held_bore():
     held, web = (
         [root_stress(solved(NASA, NASA.root_radius - backup * DEPTH, support, "strain")) for backup in (1.0, 0.3)]
-        for support in (None, RimSupport(web=0.3, web_radius=4.0))
+        for support in (None, RimSupport(web=0.3, inner_radius=4.0))
     )
     assert held[1] < 0.92 * held[0]
     assert web[1] > 1.15 * web[0]
@@ -83,7 +83,7 @@ def test_a_free_arc_of_no_odd_tooth_is_the_ordinary_ring_and_gives_way_the_more_
     assert c[-1] > 50.0 * c[0]
 
 
-WHOLE = (RimSupport(7, 0.8, 0.1, rollers=True), RimSupport(free_teeth=5), RimSupport(web=0.25, web_radius=2.0))
+WHOLE = (RimSupport(7, 0.8, 0.1, rollers=True), RimSupport(free_teeth=5), RimSupport(web=0.25, inner_radius=2.0))
 
 
 @pytest.mark.long

@@ -56,8 +56,8 @@ def section_on(mesh: SectorMesh, settings: MeshSettings, support: RimSupport | N
     if support is None or support.kind != "web":
         return mesh
     rim = float(np.hypot(*mesh.points[:, mesh.edges["bore"][0, 0]]))
-    fewest = max(_FEWEST, math.ceil(math.log(rim / support.web_radius) / _FALL))
-    return with_body(mesh, _body(rim, support), support.web_radius, settings.rim_fraction, fewest)
+    fewest = max(_FEWEST, math.ceil(math.log(rim / support.inner_radius) / _FALL))
+    return with_body(mesh, _body(rim, support), support.inner_radius, settings.rim_fraction, fewest)
 
 
 def assemble_section(
@@ -118,6 +118,6 @@ def of_web(mesh: SectorMesh) -> Mask:
 
 def _body(rim_radius: float, support: RimSupport | None) -> GearBody:
     """Rim and web, which here has no place along the face, as sections take them."""
-    inside = 0.0 if support is None else support.web_radius
+    inside = 0.0 if support is None else support.inner_radius
     deep = rim_radius - inside
     return GearBody(rim_radius, inside, (0.0, deep), (0.0, deep))
