@@ -38,7 +38,7 @@ class RimSupport:
     free_teeth : int
         The bore is free below so many teeth, an odd number with the loaded tooth in the middle, and held elsewhere.
     web : float
-        Thickness of a web that fills the inside of the rim down to `inner_radius`, where it is held, over the face width.
+        Thickness over the face width of a web inside the rim, down to `inner_radius`, where it is held.
     inner_radius : float
         In the unit of the gear.
     """
