@@ -233,6 +233,12 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "steady-state response of a planetary gear set over speed with loss of contact (time "
               "domain)", extra="motion",
               internal=True),
+        Entry("compound-set", "planetary.compound_set.COMPOUND_SET", "Compound planetary gear set", ("compound-set",),
+              "ratios, speeds, torques, losses, phases of stepped, Ravigneaux, Simpson and any other set",
+              internal=True),
+        Entry("compound-modes", "planetary.compound_modes.COMPOUND_MODES",
+              "Natural modes of a compound planetary gear set", ("compound-modes",),
+              "natural frequencies and mode types of a compound planetary gear set", internal=True),
     ),
     "Shafts and bearings": (
         Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes", effects=WIDE_EFFECTS,
