@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from fegear.case.part import (
     Angle,
@@ -34,6 +34,13 @@ _MOST = 30
 def _several(value: Any) -> Any:
     """Let one name stand for a list of it."""
     return [value] if isinstance(value, str) else value
+
+
+def _two(names: list[str]) -> list[str]:
+    """Refuse more or fewer than two members."""
+    if len(names) != 2:
+        raise refuse(f"must be two members, not {len(names)}", 'set gears = ["sun", "planet"]')
+    return names
 
 
 Names = Annotated[
@@ -107,7 +114,7 @@ class CompoundPlanetPart(Part):
 class CompoundMeshPart(Part):
     """``[[compound.NAME.mesh]]``: two members in mesh, at every planet of a group."""
 
-    gears: Annotated[list[str], Field(min_length=2, max_length=2)] = Field(
+    gears: Annotated[list[str], AfterValidator(_two)] = Field(
         description="Two members in mesh, a planet and a shaft or another planet; MEMBER.GEAR where a member has "
         "several gears."
     )

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 #: Keys under which a pair refuses its gears.
 _OF_GEARS = (
-    "pair", "internal", "hand", "teeth", "normal_module", "helix_angle", "normal_pressure_angle", "centre_distance",
-    "axial_offset",
+    "pair", "internal", "hand", "teeth", "normal_module", "helix_angle", "normal_pressure_angle", "axial_offset",
 )  # fmt: skip
 
 
@@ -217,6 +216,9 @@ def _pair(
     try:
         return GearPair(gears[planet][wheel], gears[other][other_wheel], distance)
     except InputError as error:
+        if error.key == "centre_distance":
+            said = f"centre distance {error.value}", error.rule, error.remedy
+            error = type(error)("gears", *said)
         raise at(key, error, dict.fromkeys(_OF_GEARS, "gears")) from None
 
 

@@ -284,8 +284,8 @@ def _answer(seen: Seen) -> Iterator[str]:
         return
     fixed = f" with {' and '.join(drive.fixed)} fixed" if drive.fixed else ""
     yield (
-        f"Set {seen.name}: ratio {figures(float(drive.ratio))} from {drive.driving} to {drive.loaded}{fixed}, efficiency "
-        f"{figures(100.0 * float(drive.efficiency))} %."
+        f"Set {seen.name}: ratio {figures(float(drive.ratio))} from {drive.driving} to {drive.loaded}{fixed}, "
+        f"efficiency {figures(100.0 * float(drive.efficiency))} %."
     )
     yield (
         "Largest power through one mesh, relative to the carrier: "
