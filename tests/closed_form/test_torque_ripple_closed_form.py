@@ -206,6 +206,30 @@ def test_larger_machines_of_one_shape_answer_alike():
     assert np.max(np.abs(one / other - 1.0)) < 1e-11
 
 
+@pytest.mark.parametrize(("radius_b", "inertia_b"), [(R, 1.0), (2.0 * R, 4.0), (-R, 1.0), (-3.0 * R, 9.0)])
+def test_a_mode_in_which_damped_teeth_roll_without_force_has_no_damping(radius_b, inertia_b):
+    """Disc, shaft, gear on either side, one the other's image: they roll as one, and only the shafts are strained."""
+    turns = (R / radius_b) ** 2
+    train = Train(
+        bodies=(
+            Body("disc", 4e-2), Body("gear", 1e-2), Body("mate", 1e-2 * inertia_b), Body("other", 4e-2 * inertia_b),
+        ),
+        shafts=(Shaft("a", "disc", "gear", 1e4), Shaft("b", "mate", "other", 1e4 * inertia_b)),
+        meshes=(Mesh("m", "gear", "mate", R, radius_b, 20, round(20 * abs(radius_b) / R), 3e8, 700.0),),
+    )  # fmt: skip
+    assert turns * inertia_b == pytest.approx(1.0)
+    omega = math.sqrt(1e4 * (1.0 / 4e-2 + 1.0 / 1e-2))
+    natural = 2.0 * math.pi * modes(train).frequencies
+    assert np.abs(natural / omega - 1.0).min() < 1e-12
+    met = natural[np.abs(natural / omega - 1.0).argmin()]
+    with pytest.raises(RangeError, match="is a natural frequency of the undamped train:"):
+        torque_response(train, met, "disc")
+    assert np.isfinite(torque_response(train, 1.01 * met, "disc").forces).all()
+    # A mode that strains the teeth is damped: a resonance, but not without bound.
+    others = [one for one in natural[1:] if abs(one / omega - 1.0) > 1e-6]
+    assert np.isfinite(torque_response(train, np.array(others), "disc").forces).all()
+
+
 def test_resonance_without_damping_is_refused_and_with_it_not():
     train = branched(0.0)
     natural = 2.0 * math.pi * modes(train).frequencies[2]
