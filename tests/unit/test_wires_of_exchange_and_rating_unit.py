@@ -226,7 +226,7 @@ def test_harmonics_of_a_pair_come_from_its_own_error():
 
 
 def test_a_ring_on_pins_says_how_its_teeth_differ():
-    support = SimpleNamespace(pins=6)
+    support = SimpleNamespace(pins=6, kind="pins")
     each = {"c_self": np.array([[1.0], [2.0], [3.0]]), "root_tension": np.array([[4.0], [5.0], [9.0]])}
     asked = []
 
@@ -245,6 +245,8 @@ def test_a_ring_on_pins_says_how_its_teeth_differ():
     assert "tension side, -33 % to +50 %" in text
     influence.fine.pins = None
     assert tooth_influence.support_remarks("ring", influence) == (apart,)
+    support.kind = "web"
+    assert tooth_influence.support_remarks("ring", influence) == ()
     influence.gear.support = None
     assert tooth_influence.support_remarks("ring", influence) == ()
 
