@@ -226,7 +226,7 @@ def test_harmonics_of_a_pair_come_from_its_own_error():
 
 
 def test_a_ring_on_pins_says_how_its_teeth_differ():
-    support = SimpleNamespace(pins=6, kind="pins")
+    support = SimpleNamespace(pins=6, kind="pins", rollers=False)
     each = {"c_self": np.array([[1.0], [2.0], [3.0]]), "root_tension": np.array([[4.0], [5.0], [9.0]])}
     asked = []
 
@@ -235,7 +235,8 @@ def test_a_ring_on_pins_says_how_its_teeth_differ():
         return each
 
     influence = SimpleNamespace(
-        gear=SimpleNamespace(support=support, involute_radii=(0.1, 0.2)), fine=SimpleNamespace(pins=object()),
+        gear=SimpleNamespace(support=support, involute_radii=(0.1, 0.2), tooth=SimpleNamespace(internal=True)),
+        fine=SimpleNamespace(pins=object()),
         over_the_teeth=over_the_teeth, reference_half_width=6e-5,
     )  # fmt: skip
     text, apart = tooth_influence.support_remarks("ring", influence)
@@ -245,6 +246,8 @@ def test_a_ring_on_pins_says_how_its_teeth_differ():
     assert "tension side, -33 % to +50 %" in text
     influence.fine.pins = None
     assert tooth_influence.support_remarks("ring", influence) == (apart,)
+    influence.gear.tooth.internal = False  # a planet is in no ring
+    assert tooth_influence.support_remarks("ring", influence) == ()
     support.kind = "web"
     assert tooth_influence.support_remarks("ring", influence) == ()
     influence.gear.support = None
