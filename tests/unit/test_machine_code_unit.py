@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from fegear.contact.machine_code import machine_code
 from fegear.dynamics.motion import kernel
-from fegear.dynamics.motion.machine_code import machine_code
 from fegear.dynamics.motion.motion import propagate, static_state
 from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.prepare import prepare
@@ -97,7 +97,7 @@ def test_machine_code_of_functions_in_several_files_is_made_anew_when_one_of_the
     program = (
         "import sys, caller, helper; from pathlib import Path; sys.dont_write_bytecode = True;"
         "from fegear.dynamics.motion.kernel import source_digest;"
-        "from fegear.dynamics.motion.machine_code import machine_code;"
+        "from fegear.contact.machine_code import machine_code;"
         "digest = source_digest(Path(caller.__file__).parent); caller.part = machine_code(helper.part, digest);"
         "fast = machine_code(caller.whole, digest); print(fast(3.0), sum(fast.stats.cache_hits.values()))"
     )

@@ -83,7 +83,8 @@ def root_stress_history(
     """
     roots = RootStress.of(engagement.compliance, member, side, source)
     along = list(_along_fillets(engagement, loaded, roots, beyond))  # (P, L, points) each
-    touching = touching_radius(loaded, member, beyond)
+    radius = touching_radius(loaded, member, beyond)[:, :, None]
+    touching = np.broadcast_to(radius, (*radius.shape[:2], loaded.load.size))
     contacts = loaded.grid.contacts
     places = np.arange(-beyond, contacts.x.shape[0] + beyond)
     x = contacts.x[0] + places[:, None] * engagement.pair.base_pitch
@@ -102,9 +103,7 @@ def root_stress_history(
 
 
 def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
-    """Radii at which the teeth of a gear are pressed, infinite where they are not, shape (n + 2 beyond, P, L) [m].
-
-    A tooth on the path that carries no load is not pressed: no contact hides anything of its fillet.
+    """Radii at which the teeth of a gear are touched, infinite where they are not, shape (n + 2 beyond, P) [m].
 
     Parameters
     ----------
@@ -113,8 +112,8 @@ def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
     """
     contacts = loaded.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    found = np.where(loaded.loads > 0.0, radius[:, :, None], np.inf)
-    return np.pad(found, ((beyond, beyond), (0, 0), (0, 0)), constant_values=np.inf)
+    found = np.where(contacts.present, radius, np.inf)
+    return np.pad(found, ((beyond, beyond), (0, 0)), constant_values=np.inf)
 
 
 def superposed_stress(

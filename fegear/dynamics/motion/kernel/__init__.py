@@ -61,7 +61,7 @@ def compiled() -> Callable[..., Any]:
         If numba is not installed.
     """
     try:
-        from fegear.dynamics.motion.machine_code import machine_code
+        from fegear.contact.machine_code import machine_code
     except ImportError:
         raise MissingLibraryError(f"{install('motion')}.") from None
     digest = source_digest()
