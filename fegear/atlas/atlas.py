@@ -1,4 +1,4 @@
-"""An atlas: rows of solved gears over the regions of a family, and what it answers about any gear among them."""
+"""An atlas: tables of a family's gears as polynomials over its regions, and what it answers about any gear in them."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ import zipfile
 import zlib
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fegear.atlas.atlas_gear import AtlasGear
-from fegear.atlas.domain import KEYS, ROUND_OFF, Domain, Nodes
+from fegear.atlas.common_rows import KEPT, CommonRows
+from fegear.atlas.domain import KEYS, ROUND_OFF, Domain
 from fegear.atlas.family import Family, place_of
-from fegear.atlas.interpolation import contracted, left_out, truncation, weights
+from fegear.atlas.polynomials import products
 from fegear.atlas.tables import VERSION, Layout
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import InputError, RangeError
@@ -25,13 +26,15 @@ from fegear.fem.plane.settings import MeshSettings
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from fegear.atlas.family import Place
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Index
     from fegear.contact.plane.fe_compliance import FiniteElementCompliance
     from fegear.geometry.gear import Gear
 
-#: What rows that an atlas keeps leave out, in proportion to their largest numbers.
-KEPT = 1e-6
+#: Solved gears about a place of which the largest error counts there.
+_NEAREST = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,55 +44,90 @@ class Piece(ReadOnlyArrays):
     Parameters
     ----------
     domain : Domain
-    nodes : Nodes
-    parts : ndarray, shape (*nodes, R)
-        Parts of the atlas's basis in each solved gear's row.
-    errors : ndarray, shape (*nodes, quantities)
-        Estimated errors of the solved gears (`tables.errors_of`).
+    degrees : ndarray of int, shape (M, 4)
+        Of the products of Chebyshev polynomials.
+    coefficients : ndarray, shape (M, R)
+        Of the parts of the common rows.
+    solved : ndarray, shape (4, N)
+        Coordinates of the gears that were solved.
+    errors : ndarray, shape (N, quantities)
+        By how much the fit without each of them misses it, and the estimated error of its solution.
     """
 
     domain: Domain
-    nodes: Nodes
-    parts: Array
+    degrees: Index
+    coefficients: Array
+    solved: Array
     errors: Array
 
-    def error_of_nodes(self, at: tuple[float, ...]) -> Array:
-        """Largest errors among the solved gears around a place, (quantities,)."""
-        around = []
-        for nodes, place in zip(self.nodes.coordinates(self.domain), at, strict=True):
-            i = int(np.clip(np.searchsorted(nodes, place, side="right") - 1, 0, max(nodes.size - 2, 0)))
-            around.append(np.arange(i, min(i + 2, nodes.size)))
-        return np.asarray(self.errors[np.ix_(*around)].reshape(-1, self.errors.shape[-1]).max(axis=0))
+    def parts(self, at: Array) -> Array:
+        """Of the common rows, at coordinates of shape (4, G), shape (G, R)."""
+        return products(self.degrees, at) @ self.coefficients
+
+    def error(self, at: Array) -> Array:
+        """Largest errors among the solved gears around places, shape (G, quantities)."""
+        apart = ((at[:, :, None] - self.solved[:, None, :]) ** 2).sum(axis=0)
+        most = min(_NEAREST, apart.shape[1]) - 1
+        nearest = np.argpartition(apart, most, axis=1)[:, : most + 1]
+        return np.asarray(self.errors[nearest].max(axis=1))
+
+
+class Tables(NamedTuple):
+    """What an atlas knows of many gears.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (G, numbers)
+        Their dimensionless tables, all or the first numbers of them; NaN of gears that it does not hold.
+    errors : ndarray, shape (G, quantities)
+        Estimated, as `Layout.quantities`; infinite of those.
+    """
+
+    rows: Array
+    errors: Array
 
 
 @dataclass(frozen=True, eq=False)
-class Atlas(ReadOnlyArrays):
+class Atlas:
     """Compliance and root stress of a family of gears.
 
     Parameters
     ----------
     family : Family
     pieces : tuple of Piece
-    basis : ndarray, shape (R, numbers of a row)
+    common : CommonRows
     reach : int
         K: neighbours -K..K are known.
     settings : MeshSettings
         With which its gears were solved.
+    tolerance : float
+        Relative error that its polynomials were made for.
     version : str
         Of fegear that made it.
     """
 
     family: Family
     pieces: tuple[Piece, ...]
-    basis: Array
+    common: CommonRows
     reach: int
     settings: MeshSettings
+    tolerance: float
     version: str
 
     @cached_property
     def layout(self) -> Layout:
         """Of its rows."""
         return Layout(self.reach)
+
+    @property
+    def domains(self) -> tuple[Domain, ...]:
+        """Its regions."""
+        return tuple(piece.domain for piece in self.pieces)
+
+    @property
+    def gears(self) -> int:
+        """How many were solved."""
+        return sum(piece.solved.shape[1] for piece in self.pieces)
 
     def gear(self, gear: Gear) -> AtlasGear:
         """What the atlas answers about a gear, with its error.
@@ -102,40 +140,76 @@ class Atlas(ReadOnlyArrays):
         """
         self.family.check(gear)
         place = place_of(gear)
-        piece = self._piece(place)
-        at = tuple(piece.domain.coordinates(self.family, place).tolist())
-        nodes = piece.nodes.coordinates(piece.domain)
-        factors = [weights(one, where) for one, where in zip(nodes, at, strict=True)]
-        row = contracted(piece.parts, factors) @ self.basis
-        errors = piece.error_of_nodes(at) + self._left_out(piece, nodes, at, row) + KEPT
-        return AtlasGear(gear, self.layout, row, dict(zip(self.layout.quantities, errors.tolist(), strict=True)))
+        self._refuse_outside(place)
+        found = self.tables(np.array(place, dtype=float)[:, None])
+        errors = dict(zip(self.layout.quantities, found.errors[0].tolist(), strict=True))
+        return AtlasGear(gear, self.layout, found.rows[0], errors)
+
+    def holds(self, gear: Gear) -> bool:
+        """Whether it answers about a gear."""
+        try:
+            self.family.check(gear)
+            self._refuse_outside(place_of(gear))
+        except RangeError:
+            return False
+        return True
 
     def compliance(self, gear: Gear) -> FiniteElementCompliance:
         """The same as a source of compliance and root stress, which contact takes as it takes one of a solved gear."""
         return finite_element_compliance(self.gear(gear))
 
-    def _left_out(self, piece: Piece, nodes: tuple[Array, ...], at: tuple[float, ...], row: Array) -> Array:
-        """Estimated error of the interpolation, none at solved gears, (quantities,)."""
-        total = np.zeros(len(self.layout.quantities))
-        if all(np.any(one == where) for one, where in zip(nodes, at, strict=True)):
-            return total
-        for last in left_out(piece.parts, nodes, at):
-            total += truncation([self.layout.differences(row, one @ self.basis) for one in last])
-        return total
+    def tables(self, places: Array, *, stress: bool = True) -> Tables:
+        """Tables of many gears of the family.
 
-    def _piece(self, place: Place) -> Piece:
-        """The region that holds a gear, on its side of the undercut line."""
+        Parameters
+        ----------
+        places : ndarray, shape (4, G)
+            As `Place`.
+        stress : bool
+            Whether stresses are wanted, the most of each row.
+        """
+        count = places.shape[1]
+        piece_of, layout = self.pieces_of(places), self.layout
+        common = self.common.rows if stress else self.common.rows[:, : layout.compliances]
+        rows = np.full((count, common.shape[1]), np.nan)
+        errors = np.full((count, len(layout.quantities)), np.inf)
+        for number, piece in enumerate(self.pieces):
+            here = np.flatnonzero(piece_of == number)
+            if not here.size:
+                continue
+            at = piece.domain.coordinates(self.family, places[:, here])
+            row = piece.parts(at) @ common
+            layout.turned(row, self.family.turning(places[:, here]))
+            rows[here], errors[here] = row, piece.error(at) + KEPT
+        return Tables(rows, errors)
+
+    def ends(self, places: Array) -> Array:
+        """Roll length where the flank begins and length of a fillet [modules], shape (G, 2)."""
+        found, piece_of = np.full((places.shape[1], 2), np.nan), self.pieces_of(places)
+        for number, piece in enumerate(self.pieces):
+            here = np.flatnonzero(piece_of == number)
+            if here.size:
+                at = piece.domain.coordinates(self.family, places[:, here])
+                found[here] = piece.parts(at) @ self.layout.ends(self.common.rows)
+        return found
+
+    def pieces_of(self, places: Array) -> NDArray[np.int64]:
+        """Number of the region that holds each gear, -1 where none does, shape (G,)."""
+        found = np.full(places.shape[1], -1)
+        below = places[1] < self.family.least_shift_of(places[0]) - ROUND_OFF
+        for number, piece in reversed(list(enumerate(self.pieces))):
+            side = below == (piece.domain.side == "undercut")
+            found[side & piece.domain.holds(self.family, places)] = number
+        return found
+
+    def _refuse_outside(self, place: Place) -> None:
+        """Refuse a gear that no region holds on its side of the undercut line, by the nearest region."""
+        if self.pieces_of(np.array(place, dtype=float)[:, None])[0] >= 0:
+            return
         below = place.shift < self.family.least_shift(place.teeth) - ROUND_OFF
         side = "undercut" if below else "whole"
-        nearest: tuple[int, tuple[float, float]] | None = None
-        for piece in self.pieces:
-            if piece.domain.side != side:
-                continue
-            outside = piece.domain.outside(self.family, place)
-            if outside is None:
-                return piece
-            if nearest is None or outside[0] > nearest[0]:
-                nearest = outside
+        outside = [piece.domain.outside(self.family, place) for piece in self.pieces if piece.domain.side == side]
+        nearest = max((one for one in outside if one is not None), key=lambda one: one[0], default=None)
         if nearest is None:
             what = "has undercut" if side == "undercut" else "has no undercut"
             raise RangeError("profile_shift", f"{place.shift:.6g}", f"{what}, unlike the gears of this atlas", _REMEDY)
@@ -147,15 +221,15 @@ class Atlas(ReadOnlyArrays):
     def save(self, path: Path) -> None:
         """Write it as one file (.npz), whole or not at all."""
         head = {
-            "kind": _KIND, "rows": VERSION, "version": self.version, "reach": self.reach,
+            "kind": _KIND, "rows": VERSION, "version": self.version, "reach": self.reach, "tolerance": self.tolerance,
             "family": asdict(self.family), "settings": asdict(self.settings),
-            "pieces": [{"domain": asdict(one.domain), "teeth": one.nodes.teeth} for one in self.pieces],
+            "pieces": [asdict(one.domain) for one in self.pieces],
         }  # fmt: skip
-        arrays = {"head": np.array(json.dumps(head)), "basis": self.basis.astype(np.float32)}
+        arrays = {"head": np.array(json.dumps(head)), **self.common.kept()}
         for number, one in enumerate(self.pieces):
-            arrays[f"parts_{number}"], arrays[f"errors_{number}"] = one.parts, one.errors.astype(np.float32)
-            for axis, places in enumerate(one.nodes.others):
-                arrays[f"nodes_{number}_{axis}"] = places
+            arrays[f"degrees_{number}"] = one.degrees.astype(np.uint8)
+            for name, values in (("coefficients", one.coefficients), ("solved", one.solved), ("errors", one.errors)):
+                arrays[f"{name}_{number}"] = values.astype(np.float32)
         beside = path.with_name(f".{path.name}.{os.getpid()}")
         try:
             with beside.open("wb") as file:
@@ -186,41 +260,18 @@ def load_atlas(path: Path) -> Atlas:
                     "build it again",
                 )  # fmt: skip
             pieces = tuple(_piece_of(file, number, one) for number, one in enumerate(head["pieces"]))
-            basis = file["basis"].astype(float)
+            common = CommonRows.of(file)
     except (ValueError, KeyError, TypeError, EOFError, OSError, zipfile.BadZipFile, zlib.error) as problem:
         if isinstance(problem, FileNotFoundError):
             raise
         raise InputError("atlas", path.name, "is not an atlas of fegear", "build it again") from problem
     family, settings = Family(**head["family"]), MeshSettings(**head["settings"])
-    return Atlas(family, pieces, basis, head["reach"], settings, head["version"])
+    return Atlas(family, pieces, common, head["reach"], settings, head["tolerance"], head["version"])
 
 
 def _piece_of(file: np.lib.npyio.NpzFile, number: int, head: dict[str, Any]) -> Piece:
-    ends: dict[str, Any] = {key: tuple(one) if isinstance(one, list) else one for key, one in head["domain"].items()}
-    first, second, third = (file[f"nodes_{number}_{axis}"] for axis in range(3))
-    nodes = Nodes(tuple(head["teeth"]), (first, second, third))
-    return Piece(Domain(**ends), nodes, file[f"parts_{number}"], file[f"errors_{number}"].astype(float))
-
-
-def compressed(rows: Array, layout: Layout) -> tuple[Array, Array]:
-    """Rows as few common ones: parts, shape (N, R), and the basis, shape (R, numbers of a row).
-
-    Compliances count in proportion to the largest of their kind, and so do stresses; the basis is of single precision.
-    """
-    scale = np.empty(rows.shape[1])
-    kinds = [layout.own(scale)] + [layout.neighbour(scale, k) for k in range(1, layout.reach + 1)]
-    sizes = [np.abs(layout.own(rows)).max()] * len(kinds)
-    for kernel in layout.kernels:
-        kinds.append(layout.stress(scale, kernel))
-        sizes.append(np.abs(layout.stress(rows, (0, kernel[1]))).max())
-    for kind, size in zip(kinds, sizes, strict=True):
-        kind[...] = size
-    parts, values, basis = np.linalg.svd(rows / scale, full_matrices=False)
-    # What is left out of a row in all is no more than the root of the squares that are dropped.
-    dropped = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
-    count = max(1, int(np.sum(dropped > 0.3 * KEPT)))
-    kept = (basis[:count] * scale).astype(np.float32).astype(float)
-    # Rounded, it is no longer orthogonal: the parts are those that fit the rows best.
-    exact = np.linalg.lstsq((kept / scale).T, (rows / scale).T, rcond=None)[0].T
-    del parts
-    return np.ascontiguousarray(exact), kept
+    ends: dict[str, Any] = {key: tuple(one) if isinstance(one, list) else one for key, one in head.items()}
+    coefficients, solved, errors = (
+        file[f"{name}_{number}"].astype(float) for name in ("coefficients", "solved", "errors")
+    )
+    return Piece(Domain(**ends), file[f"degrees_{number}"].astype(int), coefficients, solved, errors)

@@ -16,7 +16,6 @@ from fegear.contact.plane.spline import Spline, spline
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import log_slope
 from fegear.fem.plane.root_stress import FilletCurve
-from fegear.geometry.curves import arc_length
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -149,7 +148,7 @@ class AtlasGear(ReadOnlyArrays):
     @cached_property
     def _fillet(self) -> float:
         """Length of a fillet [modules]."""
-        return float(arc_length(self.gear.tooth.fillet)[1][-1])
+        return float(self.layout.ends(self.row)[1])
 
     def largest_root_stress(self, k: int, side: Side, radius: ArrayLike) -> tuple[Array, Array]:
         """Largest root tension or compression per unit line load [1/m] and its arc length from the root land [m]."""

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from fegear.base.errors import RangeError
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
@@ -13,6 +15,7 @@ from fegear.geometry.rack import BasicRack
 from fegear.geometry.thickness import ToothNumbers
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
     from fegear.geometry.gear import Plane
 
 #: Proportions that differ by no more than this are the same: decimal numbers that were converted from other units.
@@ -102,6 +105,26 @@ class Family:
     def least_shift(self, teeth: float) -> float:
         """x_E from which on the rack cuts nothing off the involute: the undercut line."""
         return ToothNumbers(teeth, self.pressure_angle, 0.0).least_shift(self._rack)  # type: ignore[arg-type]
+
+    def least_shift_of(self, teeth: Array) -> Array:
+        """The same of numbers of teeth, shape (N,)."""
+        rack, alpha = self._rack, self.pressure_angle
+        reach = rack.tip_centre_depth + rack.tip_radius * math.sin(alpha)
+        return np.asarray(reach - 0.5 * teeth * math.cos(alpha) * math.sin(alpha) * math.tan(alpha))
+
+    def lowest_roll_length(self, teeth: Array, shift: Array) -> Array:
+        """Roll length where the flank of a gear without undercut begins [modules], (N,)."""
+        return np.asarray((shift - self.least_shift_of(teeth)) / math.sin(self.pressure_angle))
+
+    def turning(self, places: Array) -> Array:
+        """Deflection of all teeth by how the body turns as a ring up to the root circle, per unit load and 1/E, (N,).
+
+        It grows with the inverse square of the bore, as nothing else does.
+        """
+        teeth, shift, _, ratio = places
+        root, base = 0.5 * teeth + shift - self.dedendum, 0.5 * teeth * math.cos(self.pressure_angle)
+        shear = (1.0 + self.poisson_ratio) / (2.0 * math.pi)
+        return np.asarray(shear * (base / root) ** 2 * (1.0 / ratio**2 - 1.0))
 
     def gear(self, place: Place) -> Gear:
         """The gear of pure numbers at a place: module 1, Young's modulus 1.

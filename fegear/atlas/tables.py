@@ -2,7 +2,8 @@
 
 c_0 at the places where contact tabulates it, Chebyshev coefficients of the coupling to neighbours, and stress along
 both fillets of the loaded tooth and its neighbours. Places are shares of the flank's roll length and of the fillet's
-length, so that they mean the same on every gear. The tip's wedge is a closed form of each gear and is not among them.
+length, so that they mean the same on every gear; where the flank begins and how long the fillet is stand at the end.
+The tip's wedge is a closed form of each gear and is not among them.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.spline import spline
 from fegear.fem.plane.influence import SIDES
+from fegear.geometry.curves import arc_length
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.influence import Side
 
 #: Changes whenever a row means something else.
-VERSION = 1
+VERSION = 2
 #: Contacts over the flank for which stress along fillets is kept, crowding to the fillet, and points along these,
 #: crowding to both ends.
 _LOADS, _POINTS = 33, 40
@@ -48,7 +50,12 @@ class Layout:
     @property
     def size(self) -> int:
         """Numbers in a row."""
-        return _OWN + self.reach * _NEIGHBOUR**2 + len(self.kernels) * _LOADS * _POINTS
+        return _OWN + self.reach * _NEIGHBOUR**2 + len(self.kernels) * _LOADS * _POINTS + 2
+
+    @property
+    def compliances(self) -> int:
+        """Numbers of a row that are no stresses; the ends of flank and fillet stand behind these."""
+        return _OWN + self.reach * _NEIGHBOUR**2
 
     def own(self, row: Array) -> Array:
         """c_0 at the nominal half-width, (95,)."""
@@ -63,6 +70,16 @@ class Layout:
         """Stress by contacts and points along the fillet, (33, 40)."""
         first = _OWN + self.reach * _NEIGHBOUR**2 + self.kernels.index(kernel) * _LOADS * _POINTS
         return row[..., first : first + _LOADS * _POINTS].reshape(*row.shape[:-1], _LOADS, _POINTS)
+
+    def ends(self, row: Array) -> Array:
+        """Roll length where the flank begins and length of a fillet [modules], (2,)."""
+        return row[..., -2:]
+
+    def turned(self, row: Array, by: Array) -> None:
+        """Add to all teeth what the body turns by, in place, by of shape (...)."""
+        self.own(row)[...] += by[..., None]
+        for k in range(1, self.reach + 1):
+            self.neighbour(row, k)[..., 0, 0] += by
 
     @property
     def quantities(self) -> list[str]:
@@ -129,6 +146,7 @@ def row_of(known: SolvedTeeth) -> Array:
         touched = radii if (k, side) == (0, "tension") else math.inf
         stress = known.fillet_curve(side).along(known.fillet_stress(k, side, radii), shares_of_fillet(), touched)
         layout.stress(row, (k, side))[:] = m * stress.T
+    layout.ends(row)[:] = source.lowest / m, float(arc_length(gear.tooth.fillet)[1][-1])
     return row
 
 

@@ -34,8 +34,6 @@ class Trials:
     def value(self, left):
         return float(left)
 
-    relief = staticmethod(GroundRelief.of)
-
 
 @pytest.fixture
 def search(monkeypatch):

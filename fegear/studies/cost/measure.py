@@ -23,7 +23,7 @@ from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence, solve_influence
-from fegear.fem.plane.supported_section import supported_sector
+from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.pair import MEMBERS, Member
@@ -97,12 +97,11 @@ class Found:
 
 def _solve(gear: Gear, settings: MeshSettings, reach: int, sector_teeth: int) -> Influence:
     """Mesh and solve, past every cache."""
-    support = gear.support_in_modules
-    mesh = supported_sector(gear.tooth, gear.bore_radius / gear.module, settings, support)
+    mesh = mesh_sector(gear.tooth, gear.bore_radius / gear.module, settings)
     return solve_influence(
         gear.tooth, mesh, gear.material.poisson_ratio, gear.plane_assumption,
         order=settings.order, reach=reach, corner_distance=settings.corner_distance, sector_teeth=sector_teeth,
-        support=support, solver=settings.solver,
+        support=gear.support_in_modules, solver=settings.solver,
     )  # fmt: skip
 
 

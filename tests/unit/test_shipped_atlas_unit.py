@@ -1,0 +1,91 @@
+"""The atlas that comes with fegear: what it holds, what it states, and arrays of pairs through it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.atlas.__main__ import main
+from fegear.atlas.family import Place
+from fegear.atlas.many import ManySpurPairs, known_pairs
+from fegear.atlas.shipped import RACKS, atlas_of, domains_of, family_of, file_name, shipped_atlas
+from fegear.base.errors import InputError
+from fegear.contact.many.loaded import transmission_errors
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+
+
+def _gear(teeth: int, shift: float, module: float = 3e-3, **others: object) -> Gear:
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.38), shift)
+    return Gear(tooth, module, 0.5 * tooth.root_radius * module, face_width=0.02, **others)  # type: ignore[arg-type]
+
+
+def test_it_states_its_errors_and_is_found_by_gear():
+    atlas = shipped_atlas("A")
+    assert atlas.reach == 2
+    assert atlas.tolerance == 2e-4
+    errors = atlas.gear(_gear(31, 0.1)).errors
+    assert max(errors["c_self"], errors["c_neighbour"], errors["tension 0"]) < 2e-3
+    assert atlas_of(_gear(31, 0.1)) is atlas
+    assert atlas_of(_gear(14, 0.1)) is atlas  # undercut
+    assert atlas_of(_gear(200, 0.0)) is None
+    assert atlas_of(_gear(31, 0.1, plane="stress")) is None
+    assert atlas.domains == tuple(domains_of(atlas.family))
+    for rack in RACKS:
+        for domain in domains_of(family_of(rack)):
+            domain.check(family_of(rack))
+    with pytest.raises(InputError, match=r"python -m fegear\.atlas"):
+        shipped_atlas("B")
+    with pytest.raises(InputError, match="must be one of A, B, C, D"):
+        family_of("E")
+    assert main(["E"]) == 2
+    assert file_name("A") == "iso53_a.npz"
+
+
+@pytest.mark.dear
+def test_of_a_gear_that_is_solved_it_is_within_its_stated_error():
+    from fegear.atlas.build import solved
+
+    atlas = shipped_atlas("A")
+    for place in (Place(37, 0.21, 0.97, 0.43), Place(15, 0.33, 1.0, 0.5), Place(16, -0.1, 1.0, 0.5)):
+        gear = atlas.family.gear(place)
+        row, known = solved(gear, atlas.settings, atlas.reach)["row"], atlas.gear(gear)
+        off = dict(zip(atlas.layout.quantities, atlas.layout.differences(row, known.row - row), strict=True))
+        assert [key for key in off if off[key] > 1.5 * known.errors[key]] == []
+        assert max(off["c_self"], off["c_neighbour"], off["tension 0"]) < 1e-3
+
+
+@pytest.mark.dear
+def test_arrays_of_pairs_through_an_atlas_are_pairs_of_its_gears():
+    gears = [(_gear(17, 0.3), _gear(60, -0.1)), (_gear(15, 0.1), _gear(24, 0.2)), (_gear(31, 0.1), _gear(200, 0.0))]
+    pairs = [GearPair(*both) for both in gears]
+
+    def each(of) -> np.ndarray:
+        return np.array([[of(both[i]) for both in gears] for i in (0, 1)], dtype=float)
+
+    many = ManySpurPairs(
+        each(lambda g: g.teeth), each(lambda g: g.tooth.generating_shift), each(lambda g: g.tip_radius),
+        each(lambda g: g.bore_radius), np.full(3, 3e-3), np.array([pair.centre_distance for pair in pairs]),
+        np.full(3, 0.02), each(lambda g: g.material.young_modulus),
+    )  # fmt: skip
+    atlas = shipped_atlas("A")
+    known = known_pairs(atlas, many)
+    assert known.held.tolist() == [True, True, False]
+    assert known.error[:, :2].max() < 5e-3
+    found = transmission_errors(known.engagements, [4000.0], waves=8, samples=48, order=16)
+    assert math.isnan(found.mean[2, 0])
+    for i in (0, 1):
+        sources = [atlas.compliance(gear) for gear in gears[i]]
+        one = Engagement(PairCompliance(pairs[i], *sources), corner_contact=True)
+        alone = transmission_error(one, 4000.0, 8, order=16)
+        # where the flank of an undercut gear begins is interpolated
+        tolerance = 1e-9 if i == 0 else 1e-3
+        assert found.mean[i, 0] == pytest.approx(alone.mean, rel=tolerance)
+        assert abs(found.peak_to_peak[i, 0] - alone.peak_to_peak) < max(tolerance, 1e-6) * alone.mean
