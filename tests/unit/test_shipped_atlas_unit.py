@@ -12,7 +12,7 @@ from fegear.atlas.family import Place
 from fegear.atlas.many import ManySpurPairs, known_pairs
 from fegear.atlas.shipped import RACKS, atlas_of, domains_of, family_of, file_name, shipped_atlas
 from fegear.base.errors import InputError
-from fegear.contact.many.loaded import transmission_errors
+from fegear.contact.many.many_loaded import transmission_errors
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
