@@ -174,7 +174,8 @@ class GearPart(TeethPart):
     )
     rim_support: Table[RimSupportPart] | None = Field(
         default=None,
-        description="Support of the rim of an internal gear: pins or spline. Default: outer circle fixed.",
+        description="Support of the rim: pins, bearing, spline, a bore free over an arc, or a web (plane gears); "
+        "internal gears: pins or spline. Default: bore or outer circle fixed.",
     )
     face_width: PositiveLength | None = Field(
         default=None, description="Face width. Default: 1 mm (results per unit width do not depend on it)."
@@ -291,6 +292,8 @@ class GearPart(TeethPart):
                 key="face_width",
             )  # fmt: skip
         self._check_web()
+        if not self.internal and self.rim_support is not None:
+            self.rim_support.check_external(self)
         self._check_internal()
         self._check_odd_teeth()
         if self.is_helical:
@@ -303,7 +306,7 @@ class GearPart(TeethPart):
     def _check_internal(self) -> None:
         """Refuse keys of external gears on internal ones, and of internal gears on external ones."""
         if not self.internal:
-            for key in ("cutter", "outer_radius", "rim_support"):
+            for key in ("cutter", "outer_radius"):
                 if getattr(self, key) is not None:
                     raise refuse("applies only to internal gears", "set internal = true", key=key)
             return
@@ -387,7 +390,7 @@ class GearPart(TeethPart):
             width = 1e-3 if self.face_width is None else self.face_width
             held = self._held_radius(tooth.root_radius * m)
             body = None if self.body is None else self.body.build(tooth.root_radius * m, held, width)
-            support = None if self.rim_support is None else self.rim_support.build()
+            support = None if self.rim_support is None else self.rim_support.build(width)
             gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur", body, support)
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use

@@ -1,10 +1,10 @@
-"""``body`` and ``rim_support`` of ``[gear.NAME]``: rim, web and hub of a gear, and what carries the rim of a ring."""
+"""``body`` and ``rim_support`` of ``[gear.NAME]``: rim, web and hub of a gear, and what carries its rim."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -105,32 +105,54 @@ class GearBodyPart(Part):
         return GearBody(rim, self.hub_radius, web, part(width, self.hub_offset), lean, holes)
 
 
-class RimSupportPart(Part):
-    """``rim_support = { kind, pins, width, angle }`` of a ring gear."""
+#: Keys of `rim_support` by what they belong to: kinds, and what is said of them elsewhere.
+_OF_KINDS = {
+    ("pins", "width"): (("pins", "bearing"), "a rim on pins", 'set pins = 6, width = "12 mm"'),
+    ("angle",): (("pins", "bearing"), "a rim on pins", ""),
+    ("teeth",): (("free_arc",), "a bore that is free over an arc", "set teeth = 5"),
+    ("web_thickness", "web_radius"): (("web",), "a rim on a web", 'set web_thickness = "6 mm", web_radius = "20 mm"'),
+}
 
-    kind: Literal["held", "splined", "pins"] = Field(
-        description="`held`: outer circle fixed; `splined`: force and torque taken by uniform tractions over the "
-        "outer circle; `pins`: equally spaced arcs of it fixed on average (3D gears: at every position along the face, "
-        "and axially)."
+
+class RimSupportPart(Part):
+    """``rim_support = { kind, pins, width, angle, teeth, web_thickness, web_radius }``."""
+
+    kind: Literal["held", "splined", "pins", "bearing", "free_arc", "web"] = Field(
+        description="`held`: circle fixed; `splined`: force and torque taken by uniform tractions; `pins`: equally "
+        "spaced arcs fixed on average (3D: also axially). External: `bearing` (radial pins), `free_arc`, `web`."
     )
-    pins: int | None = Field(default=None, description="Number of pins, bolts or lugs, 2 to the number of teeth.")
+    pins: int | None = Field(
+        default=None, description="Number of pins, bolts, lugs or rollers, 2 (rollers: 3) to the number of teeth."
+    )
     width: PositiveLength | None = Field(
-        default=None, description="Width of each pin along the outer circle (mean displacement zero over it)."
+        default=None,
+        description="Width of each pin along the outer circle or bore (mean displacement zero over it).",
     )
     angle: Angle = Field(
         default=0.0,
         description="Angle from the centre line of tooth 0 (mid-face) to the first pin, positive in the direction "
         "its loaded flank faces.",
     )
+    teeth: int | None = Field(
+        default=None,
+        description="Number of teeth above the free arc of the bore (odd, loaded tooth in the middle); the bore is "
+        "fixed below all other teeth.",
+    )
+    web_thickness: PositiveLength | None = Field(
+        default=None, description="Thickness of the web inside `bore_radius`, at most the face width."
+    )
+    web_radius: PositiveLength | None = Field(
+        default=None, description="Radius at which the web is fixed (outer radius of the hub)."
+    )
 
     @model_validator(mode="after")
     def _pins(self) -> Self:
-        for key in ("pins", "width"):
-            if self.kind == "pins" and getattr(self, key) is None:
-                raise refuse("is required for a rim on pins", 'set pins = 6, width = "12 mm"', key=key)
-        for key in ("pins", "width", "angle"):
-            if self.kind != "pins" and key in self.given:
-                raise refuse("applies only to a rim on pins", 'set kind = "pins"', key=key)
+        for keys, (kinds, rim, remedy) in _OF_KINDS.items():
+            for key in keys:
+                if remedy and self.kind in kinds and getattr(self, key) is None:
+                    raise refuse(f"is required for {rim}", remedy, key=key)
+                if self.kind not in kinds and key in self.given:
+                    raise refuse(f"applies only to {rim}", f'set kind = "{kinds[0]}"', key=key)
         if self.pins is not None and self.pins < 2:
             raise refuse(
                 "must be at least 2 (a ring on one pin could rotate about it)", "specify the number of pins",
@@ -138,6 +160,24 @@ class RimSupportPart(Part):
             )  # fmt: skip
         return self
 
-    def build(self) -> RimSupport | None:
-        """Make the support; None of a held rim."""
-        return None if self.kind == "held" else RimSupport(self.pins or 0, self.width or 0.0, self.angle)
+    def check_external(self, gear: Any) -> None:
+        """Refuse the rim of an external gear that is carried in two ways, or without its inside."""
+        if self.kind == "held":
+            return
+        if gear.body is not None:
+            raise refuse("contradicts body", "specify either body (3D) or rim_support (2D)", key="rim_support")
+        if gear.tooth_mesh is not None:
+            raise refuse("requires the generated mesh", "remove tooth_mesh", key="rim_support")
+        for key in ("bore_radius", "face_width") if self.kind == "web" else ("bore_radius",):
+            if getattr(gear, key) is None:
+                raise refuse("is required for a gear with rim_support", f'set {key} = "20 mm"', key=key)
+
+    def build(self, face_width: float) -> RimSupport | None:
+        """Make the support of a gear of some face width [m]; None of a held rim."""
+        if self.kind == "held":
+            return None
+        if self.kind == "free_arc":
+            return RimSupport(free_teeth=0 if self.teeth is None else self.teeth or -1)
+        if self.kind == "web":
+            return RimSupport(web=(self.web_thickness or 0.0) / face_width, inner_radius=self.web_radius or 0.0)
+        return RimSupport(self.pins or 0, self.width or 0.0, self.angle, self.kind == "bearing")

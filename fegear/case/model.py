@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from fegear.case.accuracy import AccuracyPart
+from fegear.case.compound import CompoundPart
 from fegear.case.design import DesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
@@ -80,6 +81,10 @@ class Case(Part):
     )
     planetary: dict[str, Table[PlanetaryPart]] = Field(
         default_factory=dict, description="Planetary gear sets, by name."
+    )
+    compound: dict[str, Table[CompoundPart]] = Field(
+        default_factory=dict,
+        description="Planetary gear sets of any shafts, planets and meshes (stepped, Ravigneaux, Simpson), by name.",
     )
     shaft: dict[str, Table[ShaftInSpacePart]] = Field(
         default_factory=dict,

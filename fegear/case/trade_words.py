@@ -64,7 +64,7 @@ _LETTERS = str.maketrans({
     "-": "", " ": "", "_": "", "'": "",
 })  # fmt: skip
 _RACK = "racks are not supported; use a gear with 1000 teeth as an approximation"
-_STEPPED = "stepped planets are not supported: each planet is one gear meshing with sun and ring"
+_STEPPED = "stepped planets are groups with two gears in compound.NAME.planet"
 _DOUBLE = "double-helical gears are not supported: model one half with half the face width and torque"
 _GROWN = "growth of cracks is not computed; see stress-intensity"
 _BROKEN = "broken and missing teeth are not supported; cracked ones are (gear.NAME.odd_tooth)"
@@ -210,6 +210,8 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("shafts wellen", ("shaft.NAME",), "a table for each: [shaft.in]"),
     ("bearings lager", ("bearing.NAME",), "a table for each: [bearing.ball]"),
     ("planets planetary_set planet_set planetengetriebe epicyclic", ("planetary.NAME",), "a table: [planetary.P]"),
+    (("ravigneaux simpson wolfrom wolfrom_set compound_set compound_planetary coupled_sets plusgetriebe "
+      "koppelgetriebe"), ("compound.NAME",), "tables of shafts, planets and meshes: [compound.R]"),
     ("outputs output result wanted ergebnisse", ("results",), ""),
     ("tolerance mesh_size element_size elements refinement netz", ("accuracy.tolerance", "accuracy"), ""),
     ("headline titel", ("title",), ""),
@@ -219,7 +221,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     # what is not there
     ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", (), _RACK),
     ("herringbone double_helical double_helix pfeilverzahnung gap_width", (), _DOUBLE),
-    ("stepped_planet compound_planet stufenplanet", (), _STEPPED),
+    ("stepped_planet compound_planet stufenplanet", ("compound.NAME",), _STEPPED),
     ("crack cracks tooth_crack cracked_tooth crack_length riss", ("gear.NAME.odd_tooth",),
      "[[gear.NAME.odd_tooth]], one table for each tooth"),
     ("broken_tooth missing_tooth", (), _BROKEN),

@@ -193,9 +193,7 @@ def relief_chart(
     if (a < 0.0).any():
         raise InputError("relief.amounts", float(a.min()), "must not be negative")
     pair = engagement.pair
-    unit = pair.path_length - pair.base_pitch * (
-        1.0 if pair.contact_ratio < 2.0 else np.floor(pair.contact_ratio) - 0.5
-    )
+    unit = unit_length(pair)
     table = bench(engagement)
     contacts = table.grid.contacts
     removal: Array = np.zeros((*contacts.x.shape, b.size))
@@ -211,6 +209,12 @@ def relief_chart(
     return ReliefChart(
         a, b, w, unit, metrics.effective_error.reshape(shape3), metrics.peak_to_peak.reshape(shape3), counts
     )  # fmt: skip
+
+
+def unit_length(pair: GearPair) -> float:
+    """Length 1 of charts, on the line of action [m]: see `relief_chart`."""
+    inner = 1.0 if pair.contact_ratio < 2.0 else math.floor(pair.contact_ratio) - 0.5
+    return pair.path_length - pair.base_pitch * inner
 
 
 def meaning_of_unit(pair: GearPair) -> str:

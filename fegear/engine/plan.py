@@ -62,9 +62,13 @@ class Plan(Brief):
 
 
 def _straight(scene: Scene) -> str:
-    """What a case of helical gears alone should know of results that are about spur gears."""
-    alone = bool(scene.gears) and not scene.spur_gears
-    return " (possibly available for spur gears only; the gears of this case are helical)" if alone else ""
+    """What a case of helical gears or of 3D pairs only should know of results that are about plane spur gears."""
+    if scene.gears and not scene.spur_gears:
+        return " (possibly available for spur gears only; the gears of this case are helical)"
+    wide = [name for name in scene.spur_pairs if name in scene.wide_pairs]
+    if wide and not scene.plane_pairs:
+        return f' (possibly available for the plane (2D) model only: set pair.{wide[0]}.width = "plane")'
+    return ""
 
 
 def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) -> Plan:
@@ -132,6 +136,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         require(task, ON_REQUEST)
 
     refuse_joined(task.subject for task in order)
+    _refuse_same_tables(known, order)
     on = scene.case.effects.on()
     stages_of = {task: known.called(task.stage) for task in order}
     steps = tuple(
@@ -203,6 +208,17 @@ def _refuse_twice(stage: Stage, results: Sequence[str]) -> None:
                 "results", f'"{other}"', f"and {stage.name} would write the same tables",
                 f"request {stage.name} only; it includes {other}",
             )  # fmt: skip
+
+
+def _refuse_same_tables(known: Catalogue, tasks: Collection[Task]) -> None:
+    """Refuse two stages that would write the same tables of one subject."""
+    for task in tasks:
+        for other in known.called(task.stage).instead_of:
+            if Task(other, task.subject) in tasks:
+                raise InputError(
+                    "results", f'"{other}"', f"and {task} would write the same tables",
+                    "request one of them, or compute them in two runs",
+                )  # fmt: skip
 
 
 #: Stages that draw and measure gears, which need not run.

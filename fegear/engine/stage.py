@@ -179,6 +179,8 @@ class Stage:
         Why it does not.
     holds : tuple of str
         Results whose tables and numbers it has, too, so that a plan refuses both.
+    instead_of : tuple of str
+        Stages that would write the same tables of the same subject, so that a plan refuses both.
     answers : tuple of str
         Answers of loaded pairs that the result stands on (`fegear.contact.loaded_teeth.Answer`): for these, the pairs
         under it estimate what they neglect.
@@ -208,6 +210,7 @@ class Stage:
     internal: bool = False
     why_external: str = ""
     holds: tuple[str, ...] = ()
+    instead_of: tuple[str, ...] = ()
     answers: tuple[str, ...] = ()
     every_load: bool = False
     for_readers: Callable[[Any, Sequence[Stage]], Any] | None = None

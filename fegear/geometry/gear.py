@@ -75,7 +75,7 @@ class Gear:
     body : GearBody, optional
         Rim, web and hub in the place of a disc as wide as the face [m].
     support : RimSupport, optional
-        Pins or a spline that carry the rim of a ring gear [m]; by default its whole outer circle is held.
+        What carries the rim [m]; by default the whole bore, or outer circle of a ring gear, is held.
 
     Raises
     ------
@@ -117,9 +117,12 @@ class Gear:
         if self.body is not None:
             self.body.check(self.module, self.face_width, self.bore_radius, self.root_radius, self.teeth)
         if self.support is not None:
-            if not self.tooth.internal:
-                raise GeometryError("rim_support", "of an external gear", "applies only to internal gears")
-            self.support.check(self.module, self.bore_radius, self.teeth)
+            if self.body is not None:
+                raise GeometryError(
+                    "rim_support", "of a gear with a body", "contradicts body",
+                    "specify either body (3D) or rim_support (2D)",
+                )  # fmt: skip
+            self.support.check(self.module, self.bore_radius, self.teeth, internal=self.tooth.internal)
         if self.plane not in ("strain", "stress", "auto"):
             raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
         if self.plane == "auto":
@@ -312,7 +315,7 @@ class Gear:
 
     @property
     def support_in_modules(self) -> RimSupport | None:
-        """What carries the rim of a ring gear, in normal modules."""
+        """What carries the rim, in normal modules; None of a held one."""
         return None if self.support is None else self.support.scaled(1.0 / self.module)
 
     @property

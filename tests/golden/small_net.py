@@ -101,6 +101,7 @@ RUNS = {
     "rating_helical": ("rating_helical", {}),
     "rating_options": ("small/rating_options", {}),
     "rating_spur": ("rating_spur", {}),
+    "ravigneaux_set": ("ravigneaux_set", {}),
     "relief_chart": (
         "lin_tip_relief",
         {"results": ["relief-chart", "relief-curves"], "design.chart": {"lengths": [0.7]}, "pair.I.loads": ["4445 N"]},

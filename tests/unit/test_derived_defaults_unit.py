@@ -89,6 +89,7 @@ OF_PAIR = joined(PAIR, {"results": ["loading-spectrum"], "effects": {}, "loading
 RATING = shipped("rating_spur", "rating")
 ROUGH = joined(RATING, {"gear.pinion.roughness": {"flank": "0.8 um", "root": "3 um"}})
 SET = shipped("planetary_set", "planet-set", "planet-modes")
+COMPOUND = shipped("ravigneaux_set", "compound-set")
 SURFACE = joined(
     shipped("surface_and_loss", "flank-surface"), {"pair.I.compliance": {"source": "weber-banaschek"}, "effects": {}}
 )
@@ -171,6 +172,19 @@ ROWS = {
     "PairPart.friction": (LOSS, "pair.I.friction", {"law": "schlenk"}),
     "StrengthPart.hardness": (joined(RATING, {"gear.wheel.strength.hardness": None}), "gear.wheel.strength.hardness",
                               "730 HV"),
+    "CompoundShaftPart.gears": (COMPOUND, "compound.R.shaft.ring.gears", "ring"),
+    "CompoundPlanetPart.gears": (COMPOUND, "compound.R.planet.long.gears", ["long"]),
+    "CompoundPlanetPart.centre_distance": (COMPOUND, "compound.R.planet.short.centre_distance", "35.25 mm"),
+    "CompoundPlanetPart.first_angle": (
+        COMPOUND, "compound.R.planet.long.first_angle",
+        f"{math.acos((35.25**2 + 40.5**2 - 30.75**2) / (2.0 * 35.25 * 40.5))!r} rad"),
+    "CompoundPart.output": (
+        {"results": ["compound-set"], "gear": {name: {"teeth": teeth, "module": "2 mm"} for name, teeth in (
+            ("one", 25), ("two", 27), ("first", 30), ("second", 28))}, "compound": {"S": {
+                "fixed": "two", "input": "one", "torque": "1 N*m", "shaft": {"one": {}, "two": {}, "carrier": {}},
+                "planet": {"step": {"carrier": "carrier", "gears": ["first", "second"], "planets": 1}},
+                "mesh": [{"gears": ["one", "step.first"]}, {"gears": ["two", "step.second"]}]}}},
+        "compound.S.output", "carrier"),
     "PlanetaryPart.centre_distance": (SET, "planetary.P.centre_distance", "54 mm"),
     "PlanetaryPart.harmonics": (SET, "planetary.P.harmonics", 12),
     "MeshStiffnessPart.mu": (
@@ -237,10 +251,13 @@ def off(one, other):
 
 #: Where a page derives what no row writes: what is not there (a rigid bearing, no film), or has no value of its own ...
 NOT_THERE = {
-    "AccuracyPart.corner_distance", "BearingPlacePart.around", "Case.neglected", "CostPart.quantities", "DamperPart.b",
+    "AccuracyPart.corner_distance", "BearingPlacePart.around", "Case.neglected",
+    "CompoundPart.input", "CompoundPlanetPart.pin", "CompoundShaftPart.bearing", "CompoundShaftPart.turning",
+    "CostPart.quantities", "DamperPart.b",
     "DesignPart.film", "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
     "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh", "GearPart.web_thickness",
-    "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.loads", "SetBodiesPart.carrier",
+    "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.loads", "PitPart.depth",
+    "SetBodiesPart.carrier",
     "SetStiffnessPart.carrier", "SetStiffnessPart.pin", "SetStiffnessPart.ring", "SetStiffnessPart.sun",
     "SetStiffnessPart.turning", "ShaftInSpacePart.coupling", "StiffnessPart.face_positions", "StiffnessPart.gear",
     "ToothContactPart.load", "TrainPart.balance", "WebHolesPart.tooth", "fegear__case__shaft__BearingPart.axial",
@@ -256,6 +273,7 @@ NOT_WRITTEN = {
     *(f"CataloguePart.{key}" for key in (
         "kind", "bore", "outside_diameter", "width", "contact_angle", "dynamic_rating")),
     "BiasPart.end_radius", "BiasPart.start_radius", "ChartPart.amounts_over_delta", "ChartPart.lengths",
+    "CompoundPlanetPart.body", "CompoundShaftPart.body",
     "CostPart.gear", "CostPart.pair", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
     "DesignPart.peak",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",

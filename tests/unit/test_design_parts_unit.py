@@ -10,7 +10,8 @@ from fegear.design.flanks.search import _Straight
 from fegear.engine.stage import Task
 from fegear.results.helical.pair_forced_response import _harmonics
 from fegear.results.relief import tolerance_benches
-from fegear.results.relief.relief_chart import ReliefChartData, RobustnessInputs, _compute_robustness
+from fegear.results.relief.relief_chart import ReliefChartData
+from fegear.results.relief.relief_robustness import RobustnessInputs, _compute_robustness
 
 
 # ---- charts ----------------------------------------------------------------------------------------------------------
@@ -18,13 +19,19 @@ def test_a_chart_is_shown_at_each_load_the_nominal_one_first_and_no_best_length_
     lengths = np.array([0.2, 0.6, 1.0])
     best = np.array([[0.2, 0.6, 0.7], [0.5, 1.0, 0.9]])
     chart = SimpleNamespace(
-        lengths=lengths, loads=np.array([100.0, 300.0, 200.0]), optimum_lengths=lambda: best,
-        effective_error=np.arange(18.0).reshape(2, 3, 3),
+        lengths=lengths, loads=np.array([100.0, 300.0, 200.0]), effective_error=np.arange(18.0).reshape(2, 3, 3),
+        lowest=lambda values: best[:, [int(values[0, 0, 0])]], worst=lambda: np.full((2, 3), 1.0),
     )  # fmt: skip
-    data = ReliefChartData(SimpleNamespace(nominal=200.0), chart, None, 1e-6)
+    data = ReliefChartData(SimpleNamespace(nominal=200.0), chart, None, None, 1e-6)
+    data.__dict__["marked"] = "marked"  # no finer chart here
     found = data.loads
-    assert [one.label for one in found] == ["200 N (nominal)", "100 N", "300 N"]
-    for one, k in zip(found, (2, 0, 1), strict=True):
+    assert [one.label for one in found] == [
+        "200 N (nominal)", "100 N", "300 N", "all loads, worst in proportion",
+    ]  # fmt: skip
+    assert {one.marked for one in found} == {"marked"}
+    np.testing.assert_array_equal(found[3].effective_error, np.full((2, 3), 1.0))
+    np.testing.assert_array_equal(found[3].best_lengths, [0.6, np.nan])
+    for one, k in zip(found, (2, 0, 1), strict=False):
         assert one.chart is chart
         np.testing.assert_array_equal(one.effective_error, chart.effective_error[:, :, k])
     np.testing.assert_array_equal(found[0].best_lengths, [0.7, 0.9])

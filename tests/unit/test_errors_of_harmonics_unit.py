@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fegear.contact.plane.shifted_loads import _no_less_than_beside, _of_effective
+from fegear.contact.fourier import panels
+from fegear.contact.plane.shifted_loads import _between_two_places, _no_less_than_beside, _of_effective
 
 
 def test_a_harmonic_in_which_changes_cancel_has_an_error_as_those_beside_it():
@@ -27,3 +28,15 @@ def test_the_effective_errors_error_is_that_of_its_harmonics():
     assert _of_effective(a, off) == pytest.approx(np.sqrt(np.sum(np.square(changes))), rel=1e-5)
     assert a[0] > 0.0  # amplitudes are left as they are
     assert _of_effective(np.zeros(20), off) == pytest.approx(off[0])
+
+
+def test_a_peak_to_peak_value_errs_as_two_places_of_the_change_differ():
+    """Of a straight change half of all places are 0.29 of it apart; a spike over a tenth of the pitch counts little."""
+    points = panels(-1.0, 8.0, [2.0])
+    place = (points.x - points.breaks[0]) / 8.0
+    straight = 4e-6 * place
+    assert _between_two_places(points, straight) == pytest.approx(4e-6 * (1.0 - np.sqrt(0.5)), rel=0.04)
+    spike = np.where(np.abs(place - 0.4) < 0.05, 1e-3, 0.0)
+    assert _between_two_places(points, spike) == 0.0
+    assert _between_two_places(points, straight + spike) < 1.5 * _between_two_places(points, straight)
+    assert _between_two_places(points, np.full(points.x.size, 7.0)) == 0.0

@@ -34,6 +34,8 @@ class Trials:
     def value(self, left):
         return float(left)
 
+    relief = staticmethod(GroundRelief.of)
+
 
 @pytest.fixture
 def search(monkeypatch):

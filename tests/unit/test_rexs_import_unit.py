@@ -517,6 +517,6 @@ def test_texts_of_a_model_are_read_back_from_the_case_as_they_are():
 
 
 def test_an_axial_offset_has_no_digits_of_the_positions_that_it_is_the_difference_of() -> None:
-    tree = values_of(two_stages(), 12, u_coordinate_on_shaft=(17.6, "mm"))
-    tree = values_of(tree, 11, u_coordinate_on_shaft=(20.1, "mm"))
+    tree = values_of(two_stages(), 12, u_coordinate_on_shaft=(66.7, "mm"))
+    tree = values_of(tree, 11, u_coordinate_on_shaft=(69.2, "mm"))
     assert tomllib.loads(case_of(model_of(in_json(tree), HERE)))["pair"]["I"]["axial_offset"] == "-2.5 mm"

@@ -269,12 +269,62 @@ def test_supports_that_hold_no_ring_are_refused_in_words(tmp_path, support, word
     assert "gear.r.rim_support" in str(refused.value)
 
 
-def test_external_gears_have_no_rim_support(tmp_path):
+EXTERNAL = """
+results = ["stiffness"]
+[gear.a]
+teeth = 30
+module = "2 mm"
+bore_radius = "24 mm"
+face_width = "10 mm"
+rim_support = SUPPORT
+"""
+
+
+@pytest.mark.parametrize(
+    ("support", "words"),
+    [
+        ('{ kind = "free_arc" }', "is required for a bore that is free over an arc; set teeth = 5"),
+        ('{ kind = "free_arc", teeth = 4 }', "must be an odd number between 1 and 29"),
+        ('{ kind = "free_arc", teeth = 0 }', "must be an odd number between 1 and 29"),
+        ('{ kind = "free_arc", teeth = 31 }', "must be an odd number between 1 and 29"),
+        ('{ kind = "web", web_thickness = "3 mm" }', r"web_radius.*is required for a rim on a web"),
+        ('{ kind = "web", web_thickness = "11 mm", web_radius = "9 mm" }', "1.1 of the face width: must be between"),
+        ('{ kind = "web", web_thickness = "3 mm", web_radius = "24 mm" }', r"must be between 0 and 23\.9 mm"),
+        ('{ kind = "bearing", pins = 2, width = "1 mm" }', "must be between 3 and the number of teeth, 30"),
+        ('{ kind = "pins", pins = 6, width = "60 mm" }', r"and 25\.1327 mm \(pin spacing on the bore\)"),
+        ('{ kind = "splined", teeth = 3 }', "applies only to a bore that is free over an arc"),
+    ],
+)
+def test_supports_that_carry_no_external_rim_are_refused_in_words(tmp_path, support, words):
     path = tmp_path / "gear.toml"
-    path.write_text(
-        'results = ["stiffness"]\n[gear.a]\nteeth = 30\nmodule = "2 mm"\nrim_support = { kind = "splined" }'
-    )
-    with pytest.raises(FegearError, match="internal"):
+    path.write_text(EXTERNAL.replace("SUPPORT", support))
+    with pytest.raises(FegearError, match=words) as refused:
+        read_scene(path)
+    assert "gear.a.rim_support" in str(refused.value)
+
+
+def test_an_external_rim_needs_its_inside_and_no_second_body(tmp_path):
+    path, given = tmp_path / "gear.toml", EXTERNAL.replace("SUPPORT", '{ kind = "splined" }')
+    for text, words in (
+        (given.replace('bore_radius = "24 mm"', ""), "bore_radius.*is required for a gear with rim_support"),
+        (given + 'body = { rim_thickness = "3 mm", web_thickness = "3 mm" }', "rim_support.*contradicts body"),
+    ):
+        path.write_text(text)
+        with pytest.raises(FegearError, match=words):
+            read_scene(path)
+    path.write_text(given)
+    assert read_scene(path).gears["a"].support == RimSupport()
+
+
+@pytest.mark.parametrize("kind", ["free_arc", "web", "bearing"])
+def test_rings_have_no_support_of_external_rims(tmp_path, kind):
+    keys = {
+        "free_arc": "teeth = 3", "web": 'web_thickness = "1 um", web_radius = "9 mm"',
+        "bearing": 'pins = 6, width = "6 mm"',
+    }  # fmt: skip
+    path = tmp_path / "ring.toml"
+    path.write_text(CASE.replace("SUPPORT", f'{{ kind = "{kind}", {keys[kind]} }}'))
+    with pytest.raises(FegearError, match="applies only to external gears"):
         read_scene(path)
 
 

@@ -1,5 +1,7 @@
 """Root stress of a tooth on its way through the mesh: the largest of the curve along its fillet, between any points."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,8 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.root_stress import RootStress
+from fegear.contact.plane.root_stress_history import root_stress_history, superposed_stress, touching_radius
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
@@ -58,6 +61,25 @@ def test_it_is_smooth_over_the_roll_where_a_tooth_bears_alone(engagement, member
     for one in stress[feel]:
         bend = np.diff(one, 2) / np.abs(one).max()
         assert np.abs(np.diff(bend)).max() < 5e-7
+
+
+@pytest.mark.parametrize("member", ["driver", "driven"])
+def test_a_tooth_on_the_path_without_load_has_its_neighbours_stress_as_beyond_the_path(engagement, member):
+    """Spaced so far back that it does not touch: no contact hides a part of its fillet, and no jump ends the path."""
+    pair = engagement.pair
+    e = replace(engagement, driver_spacing=np.array([0.0, 3e-4] * 20))  # every other tooth bears all
+    x = pair.x_start + pair.base_pitch * (np.arange(40) + 0.5) / 40
+    state = e.solve(e.grid(x), [LOAD])
+    history = root_stress_history(e, state, member, "tension", 1)
+    idle = np.pad(state.loads[:, :, 0], ((1, 1), (0, 0))) == 0.0
+    on_path = np.pad(state.grid.contacts.present, ((1, 1), (0, 0)))
+    assert (idle & on_path).sum() > 20
+    assert np.isinf(touching_radius(state, member, 1)[:, :, 0][idle]).all()
+    assert np.isfinite(touching_radius(state, member, 1)[:, :, 0][~idle]).all()
+    roots = RootStress.of(e.compliance, member, "tension")
+    for along, found, free in zip(superposed_stress(e, state, member, "tension", 1), history.stress, idle, strict=True):
+        if free.any():
+            assert found[free, 0] == pytest.approx(roots.largest(0, along[free, 0]), rel=1e-12)
 
 
 @pytest.mark.dear

@@ -203,7 +203,7 @@ def test_no_word_hides_a_key_of_its_own_table():
          "double-helical gears are not supported: model one half with half the face width and torque"),
         ({"gear": {"a": {"teeth": 1001, "module": "1 mm"}}}, "model a rack as a gear with many teeth"),
         ({"planetary": {"P": {"sun": "a", "planet": ["a", "b"], "torque": "1 N m"}}},
-         "stepped planets are not supported: each planet is one gear meshing with sun and ring"),
+         "stepped planets are groups with two gears in compound.NAME.planet"),
     ],
     ids=["herringbone", "rack", "stepped planet"],
 )  # fmt: skip

@@ -223,7 +223,7 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
         )
         return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
     if part.bore_radius is not None:
-        return thin_rim_remarks(gear, scene.gears[gear])
+        return () if scene.gears[gear].support is not None else thin_rim_remarks(gear, scene.gears[gear])
     held = f"fixed at half the root radius, {bore:.6g} mm"
     return (assuming(f"Gear {gear}: bore_radius not specified; gear body {held}."),)
 
@@ -237,8 +237,8 @@ def thin_rim_remarks(gear: str, made: Gear) -> tuple[str, ...]:
         return ()
     said = neglecting(
         f"Gear {gear}: rim of {backup:.2g} tooth depths (below {LEAST_RIM:g}) fixed around the bore; root stress and "
-        "deflection are underestimated. Specify rim and web in body (rim_thickness, web_thickness) and set width = "
-        '"solid" for its pairs.'
+        "deflection are underestimated. Specify rim_support (plane gears: web, pins, free arc), or rim and web in body "
+        '(rim_thickness, web_thickness) and set width = "solid" for its pairs.'
     )
     return (said,)
 

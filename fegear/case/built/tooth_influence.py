@@ -175,23 +175,34 @@ def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> t
 
 
 def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
-    """How the teeth of a ring on pins differ, and what a ring that is not held all round leaves out."""
+    """How the teeth of a rim on pins differ, and what a rim that is not held all round leaves out."""
     support = influence.gear.support
-    if support is None:
+    if support is None or support.kind == "web":
         return ()
-    apart = planets_taken_alone(name)
+    if support.kind == "free_arc":
+        return (always_above_the_arc(name, support.free_teeth),)
+    apart = (planets_taken_alone(name),) if influence.gear.tooth.internal else ()
     if influence.fine.pins is None:
-        return (apart,)
+        return apart
     low, high = influence.gear.involute_radii
     each = influence.over_the_teeth([0.5 * (low + high)], [influence.reference_half_width])
     c, tension = each["c_self"][:, 0], each["root_tension"][:, 0]
-    return teeth_on_pins_differ(name, support.pins, "at half tooth height", c, tension), apart
+    what = "rollers" if support.rollers else "pins"
+    return teeth_on_pins_differ(name, support.pins, "at half tooth height", c, tension, what), *apart
 
 
-def teeth_on_pins_differ(name: str, pins: int, where: str, c: Array, tension: Array) -> str:
+def always_above_the_arc(name: str, teeth: int) -> str:
+    """That every tooth is taken for the one in the middle of a free arc."""
+    return neglecting(
+        f"Gear {name}: bore free below {teeth} {'tooth' if teeth == 1 else 'teeth'}. Each loaded tooth is computed as "
+        "the one in the middle of the free arc; teeth beside it are stiffer."
+    )
+
+
+def teeth_on_pins_differ(name: str, pins: int, where: str, c: Array, tension: Array, what: str = "pins") -> str:
     """How far c_self and root tension of teeth on pins, shape (T,), depart from their means."""
     return (
-        f"Gear {name}: compliance varies over {c.size} consecutive teeth because of its {pins} pins. Load {where}: "
+        f"Gear {name}: compliance varies over {c.size} consecutive teeth because of its {pins} {what}. Load {where}: "
         f"c_self {percent(c.min() / c.mean() - 1.0, signed=True)} to "
         f"{percent(c.max() / c.mean() - 1.0, signed=True)} from the mean, root stress, tension side, "
         f"{percent(tension.min() / tension.mean() - 1.0, signed=True)} to "

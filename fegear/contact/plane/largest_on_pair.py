@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 _DIGITS = 1e-9
 #: Of a share: the whole load is one.
 _ROUND_OFF = 1e-13
-#: Peaks of each curve that are followed, and positions beside one between which the shifted solutions' are.
-_FOLLOWED, _CELLS = 3, (-2, -1, 0, 1, 2)
+#: Peaks of each curve that are followed.
+_FOLLOWED = 3
+#: Where the shifted solutions are looked at beside a peak, in distances of two positions, and how often what brackets
+#: theirs is narrowed: a kink moves with the shift, and is found to some per cent of its way however short that is.
+_BESIDE, _NARROWED = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 2.0), 2
 
 
 def largest_on_pair(
@@ -59,8 +62,10 @@ def largest_on_pair(
     error = np.full(2, np.nan)
     if shifted:
         error = _own_errors(e, shifted, load, where) * value
-        beside = np.unique([np.clip(np.searchsorted(x, one) + step, 0, x.size - 1) for one in where for step in _CELLS])
-        changes = [refined_peaks(partial(_curves, other, load), x[beside], LACKS, _FOLLOWED)[1] for other in shifted]
+        beside = _beside(x, where)
+        changes = [
+            refined_peaks(partial(_curves, other, load), beside, LACKS, _FOLLOWED, _NARROWED)[1] for other in shifted
+        ]
         error = np.maximum(error, np.abs(np.array(changes) - value).sum(axis=0))
         error += [_left_of_kink(x, curve, *peak) for curve, *peak in zip(sampled, where, value, strict=True)]
         # a whole load is exact; of a pressure digits are always left
@@ -79,6 +84,13 @@ def _curves(e: Engagement, load: float, x: Array) -> Array:
 
 def _smooth(e: Engagement, x: Array, pressure: Array) -> Array:
     return np.where((x < e.pair.x_start) | (x > e.pair.x_end), 0.0, pressure)
+
+
+def _beside(x: Array, peaks: Array) -> Array:
+    """Positions about peaks, ever denser towards them, ascending."""
+    cell = float(np.diff(x).max())
+    steps = cell * np.array([-step for step in _BESIDE[:0:-1]] + list(_BESIDE))
+    return np.unique(np.clip(peaks[:, None] + steps, x[0], x[-1]))
 
 
 def _left_of_kink(x: Array, samples: Array, at: float, value: float) -> float:

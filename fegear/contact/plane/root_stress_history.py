@@ -83,8 +83,7 @@ def root_stress_history(
     """
     roots = RootStress.of(engagement.compliance, member, side, source)
     along = list(_along_fillets(engagement, loaded, roots, beyond))  # (P, L, points) each
-    radius = touching_radius(loaded, member, beyond)[:, :, None]
-    touching = np.broadcast_to(radius, (*radius.shape[:2], loaded.load.size))
+    touching = touching_radius(loaded, member, beyond)
     contacts = loaded.grid.contacts
     places = np.arange(-beyond, contacts.x.shape[0] + beyond)
     x = contacts.x[0] + places[:, None] * engagement.pair.base_pitch
@@ -103,7 +102,9 @@ def root_stress_history(
 
 
 def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
-    """Radii at which the teeth of a gear are touched, infinite where they are not, shape (n + 2 beyond, P) [m].
+    """Radii at which the teeth of a gear are pressed, infinite where they are not, shape (n + 2 beyond, P, L) [m].
+
+    A tooth on the path that carries no load is not pressed: no contact hides anything of its fillet.
 
     Parameters
     ----------
@@ -112,8 +113,8 @@ def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
     """
     contacts = loaded.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    found = np.where(contacts.present, radius, np.inf)
-    return np.pad(found, ((beyond, beyond), (0, 0)), constant_values=np.inf)
+    found = np.where(loaded.loads > 0.0, radius[:, :, None], np.inf)
+    return np.pad(found, ((beyond, beyond), (0, 0), (0, 0)), constant_values=np.inf)
 
 
 def superposed_stress(

@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
+    from fegear.contact.fourier import Panels
     from fegear.contact.plane.pair_history import PairHistory
+
+#: Places over the base pitch at which a change is compared with itself.
+_PLACES = 60
 
 
 def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement]) -> TransmissionErrorShift | None:
@@ -37,7 +41,7 @@ def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement
     pair = shifted[0].pair
     uneven = independent_errors(te.loaded, shifted, (pair.x_start, pair.x_end)).transmission_error
     amplitude = np.zeros_like(te.series.amplitude)
-    mean = peak_to_peak = effective = stiffness = 0.0
+    mean = peak_to_peak = usual = effective = stiffness = 0.0
     for engagement, along in zip(shifted, uneven, strict=True):
         other = solve_again(engagement, te.loaded)
         again = replace(te, loaded=other, series=_series(te, other.transmission_error[:, 0]))
@@ -45,6 +49,8 @@ def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement
         mean += abs(again.mean - te.mean) + float(abs(bent.mean - te.mean))
         peak_to_peak += abs(again.peak_to_peak - te.peak_to_peak)
         peak_to_peak += abs(float(np.ptp(values + along[:, 0])) - te.peak_to_peak)
+        for change in (other.transmission_error[:, 0] - values, along[:, 0]):
+            usual += _between_two_places(te.points, change)
         effective += abs(again.effective_error - te.effective_error)
         effective += abs(float(effective_error(bent)) - te.effective_error)
         stiffness += abs(mean_secant_stiffness(again) - mean_secant_stiffness(te))
@@ -53,6 +59,7 @@ def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement
             amplitude += 2.0 * np.abs(series.coefficients - te.series.coefficients)[1:]
     amplitude = _no_less_than_beside(amplitude)
     effective = max(effective, _of_effective(te.series.amplitude, amplitude))
+    peak_to_peak = max(peak_to_peak, usual)
     return TransmissionErrorShift(mean, peak_to_peak, effective, amplitude, stiffness)
 
 
@@ -72,6 +79,17 @@ def _of_effective(amplitude: Array, error: Array) -> float:
     slope = a / size if size > 0.0 else np.zeros_like(a)
     slope[:1] += 1.0
     return float(np.sqrt(np.sum((slope * off) ** 2)))
+
+
+def _between_two_places(points: Panels, change: Array) -> float:
+    """By how much a change differs between two places of the base pitch: the median over all of both.
+
+    Where it happens to be the same at the highest and at the lowest place it is not known any better there. What a
+    contact at a tip leaves open concerns few places.
+    """
+    even = points.breaks[0] + points.period * (np.arange(_PLACES) + 0.5) / _PLACES
+    there = np.interp(even, points.x, change, period=points.period)
+    return float(np.median(np.abs(there[:, None] - there)))
 
 
 def _series(te: TransmissionError, values: Array) -> FourierSeries:

@@ -158,7 +158,7 @@ def best_of_family(
     reached = [descend(trials, numbers[i], value, (low, high), most_factor, _SCOUTED) for value, i in seen]
     value, at = min(reached, key=lambda found: found[0])
     best = FamilyBest(
-        family, GroundRelief.of(numbers[on_grid[1]]), GroundRelief.of(at), value, len(numbers), exact, on_grid[0],
+        family, trials.relief(numbers[on_grid[1]]), trials.relief(at), value, len(numbers), exact, on_grid[0],
         error, proven,
     )  # fmt: skip
     for start in starts:
@@ -176,7 +176,7 @@ def led_on(
     if not _keeps(tried, most_factor):
         return best
     value, at = descend(trials, at, trials.value(tried.peak_to_peak), (low, high), most_factor)
-    return replace(best, relief=GroundRelief.of(at), value=value) if value < best.value else best
+    return replace(best, relief=trials.relief(at), value=value) if value < best.value else best
 
 
 def settled(

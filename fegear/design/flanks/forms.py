@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.shown import shown
-from fegear.geometry.pair import GearPair
+from fegear.contact.wide.lines import ContactLines
+from fegear.geometry.pair import MEMBERS, GearPair
 
 
 @dataclass(frozen=True, slots=True)
 class GroundRelief:
     """Modification of both flanks together, the same along the face or along the profile but for the bias.
 
-    Tip reliefs are straight lines, the driver's to the end of the path of contact and the driven gear's to its start.
-    The crowning of the lead is a parabola, nothing in the middle of the face; the end relief grows as a straight line.
-    Of the bias (twist of the flank) a quarter is taken from the driver's tip at +b/2 and from its root at -b/2, and
-    left at the two other corners.
+    Tip reliefs are straight lines, or parabolas where `tip_power` is 2, the driver's to the end of the path of contact
+    and the driven gear's to its start. The crowning of the lead is a parabola, nothing in the middle of the face; the
+    end relief grows as a straight line. Of the bias (twist of the flank) a quarter is taken from the driver's tip at
+    +b/2 and from its root at -b/2, and left at the two other corners.
     """
 
     driver_tip: float = shown("um", "tip relief of the driver", default=0.0)
@@ -31,6 +32,7 @@ class GroundRelief:
     end_relief_length: float = shown("mm", "length of the end relief along the face width", default=0.0)
     slope: float = shown("um", "helix slope modification, value at +b/2 minus value at -b/2", default=0.0)
     bias: float = shown("um", "flank twist of the driver: profile slope at +b/2 minus that at -b/2", default=0.0)
+    tip_power: float = 1.0
 
     @property
     def numbers(self) -> Array:
@@ -38,18 +40,18 @@ class GroundRelief:
         return np.array([getattr(self, name) for name in NUMBERS])
 
     @classmethod
-    def of(cls, numbers: Array) -> GroundRelief:
+    def of(cls, numbers: Array, tip_power: float = 1.0) -> GroundRelief:
         """From numbers in the order of `NUMBERS`; a relief of no amount has no length."""
         given = dict(zip(NUMBERS, (float(v) for v in numbers), strict=True))
         for amount, length in LENGTHS.items():
             if given[amount] == 0.0:
                 given[length] = 0.0
-        return cls(**given)
+        return cls(**given, tip_power=tip_power)
 
     def removal(self, pair: GearPair, x: ArrayLike, z: ArrayLike) -> Array:
         """Removal at points of the plane of action, not negative on the flank [m]."""
         base = 0.5 * abs(self.slope) + 0.25 * abs(self.bias)
-        return np.asarray(FormsAt.over(pair, x, z).removed(self.numbers) + base)
+        return np.asarray(FormsAt.over(pair, x, z, self.tip_power).removed(self.numbers) + base)
 
 
 LENGTHS = {
@@ -69,6 +71,8 @@ class FormsAt(ReadOnlyArrays):
         Distance from the nearer end of the face [m].
     across, along : ndarray
         -1 to 1 from the driver's root to its tip, and from one end of the face to the other.
+    tip_power : float
+        1 for straight tip reliefs, 2 for parabolas.
     """
 
     driver_depth: Array
@@ -76,41 +80,56 @@ class FormsAt(ReadOnlyArrays):
     end_depth: Array
     across: Array
     along: Array
+    tip_power: float = 1.0
 
     @classmethod
-    def over(cls, pair: GearPair, x: ArrayLike, z: ArrayLike) -> FormsAt:
+    def over(cls, pair: GearPair, x: ArrayLike, z: ArrayLike, tip_power: float = 1.0) -> FormsAt:
         """Places of a pair."""
         first, second = np.asarray(x, dtype=float), np.asarray(z, dtype=float)
         half = 0.5 * pair.face_width
         middle = 0.5 * (pair.x_start + pair.x_end)
         return cls(
             pair.x_end - first, first - pair.x_start, half - np.abs(second),
-            2.0 * (first - middle) / pair.path_length, second / half,
+            2.0 * (first - middle) / pair.path_length, second / half, tip_power,
         )  # fmt: skip
+
+    @classmethod
+    def on(cls, pair: GearPair, lines: ContactLines, tip_power: float = 1.0) -> FormsAt:
+        """Stations of contact lines; where these go on along tip edges, the points of both flanks that touch there."""
+        found = cls.over(pair, lines.x, lines.z, tip_power)
+        if lines.edges is None:
+            return found
+        driver, driven = (
+            np.asarray(pair.flank_curvature_radius(tip, member) - lines.roll_length(pair, member))
+            for member, tip in zip(MEMBERS, (pair.x_end, pair.x_start), strict=True)
+        )
+        return replace(found, driver_depth=driver, driven_depth=driven)
 
     def removed(self, numbers: Array) -> Array:
         """Removal by nine numbers, without the constant that keeps it from being negative, shape of the places [m]."""
         tip, tip_length, foot, foot_length, crowning, end, end_length, slope, bias = numbers.tolist()
         total = crowning * self.along**2 + 0.5 * slope * self.along + 0.25 * bias * self.across * self.along
-        ends = ((tip, tip_length, self.driver_depth), (foot, foot_length, self.driven_depth),
-                (end, end_length, self.end_depth))  # fmt: skip
-        for amount, length, depth in ends:
+        power = self.tip_power
+        ends = ((tip, tip_length, self.driver_depth, power), (foot, foot_length, self.driven_depth, power),
+                (end, end_length, self.end_depth, 1.0))  # fmt: skip
+        for amount, length, depth, of in ends:
             if amount != 0.0:
-                total = total + amount * np.maximum(1.0 - depth / length, 0.0)
+                total = total + amount * np.maximum(1.0 - depth / length, 0.0) ** of
         return np.asarray(total)
 
     def slopes(self, numbers: Array) -> Array:
         """Derivative by each of the nine numbers, shape (9, ...)."""
         found = np.zeros((len(NUMBERS), *self.across.shape))
-        for i, depth in ((0, self.driver_depth), (2, self.driven_depth), (5, self.end_depth)):
+        power = self.tip_power
+        for i, depth, of in ((0, self.driver_depth, power), (2, self.driven_depth, power), (5, self.end_depth, 1.0)):
             amount, length = numbers[i], numbers[i + 1]
             if length > 0.0:
-                inside = depth < length
-                found[i] = np.where(inside, 1.0 - depth / length, 0.0)
-                found[i + 1] = np.where(inside, amount * depth / length**2, 0.0)
+                share = np.maximum(1.0 - depth / length, 0.0)
+                found[i] = share**of
+                found[i + 1] = np.where(share > 0.0, amount * of * share ** (of - 1.0) * depth / length**2, 0.0)
         found[4], found[7], found[8] = self.along**2, 0.5 * self.along, 0.25 * self.across * self.along
         return found
 
 
 #: The nine numbers, and the amounts that go with a length.
-NUMBERS: tuple[str, ...] = tuple(f.name for f in fields(GroundRelief))
+NUMBERS: tuple[str, ...] = tuple(f.name for f in fields(GroundRelief) if f.name != "tip_power")

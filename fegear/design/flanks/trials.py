@@ -17,7 +17,7 @@ from fegear.contact.wide.complementarity import (
 )
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.loaded import LoadedFlanks
-from fegear.design.flanks.forms import FormsAt
+from fegear.design.flanks.forms import FormsAt, GroundRelief
 from fegear.design.flanks.scatter import NOMINAL, Scatter
 from fegear.design.load_range import proportions
 from fegear.geometry.pair import GearPair
@@ -103,6 +103,8 @@ class FlankTrials:
     scatter : Scatter
     weights : tuple of float, optional
         What each load counts; all the same by default.
+    tip_power : float
+        1 for straight tip reliefs, 2 for parabolas.
     """
 
     pair: GearPair
@@ -111,11 +113,16 @@ class FlankTrials:
     loads: Array
     scatter: Scatter = NOMINAL
     weights: tuple[float, ...] | None = None
+    tip_power: float = 1.0
 
     @cached_property
     def forms(self) -> FormsAt:
         """The stations, as modifications count them."""
-        return FormsAt.over(self.pair, self.known.lines.x, self.known.lines.z)
+        return FormsAt.on(self.pair, self.known.lines, self.tip_power)
+
+    def relief(self, numbers: Array) -> GroundRelief:
+        """A ground relief by its nine numbers."""
+        return GroundRelief.of(numbers, self.tip_power)
 
     def apart_under(self, load: int) -> Array:
         """The gap under a load, by its number, shape (P, M) [m]."""

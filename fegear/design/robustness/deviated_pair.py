@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from fegear.base.arrays import Array, Mask
+from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
 from fegear.contact.fourier import Panels, panels
 from fegear.contact.plane.compliance import RootStressInfluence
@@ -242,13 +242,13 @@ def _extremes(bench: Bench, engagement: Engagement, state: State) -> Array:
     pressure = engagement.compliance.pressure(own, c.relative_radius)
     line_load = state.loads / engagement.compliance.face_width
     roots = [
-        _root_tension(of_gear, radius, c.present, line_load)
+        _root_tension(of_gear, radius, line_load)
         for of_gear, radius in zip(bench.roots, (c.radius_driver, c.radius_driven), strict=True)
     ]
     return np.array([te.max(), -te.min(), *roots, pressure.max(), own.max()])
 
 
-def _root_tension(roots: RootStress, radius: Array, present: Mask, line_load: Array) -> float:
+def _root_tension(roots: RootStress, radius: Array, line_load: Array) -> float:
     """Largest root tension of tooth 0 over its way through the mesh, its neighbours' loads included [Pa]."""
     unloaded = np.zeros((1, roots.known_row(0, 0, radius[0, :1]).shape[1]))
     along, touching = [unloaded], [np.array([np.inf])]
@@ -261,7 +261,7 @@ def _root_tension(roots: RootStress, radius: Array, present: Mask, line_load: Ar
                 felt.append(Felt(loads[other], roots.known_row(k, 0, radius[other])))
         if felt:
             along.append(roots.superposed(felt, felt[0].row.shape))
-            touching.append(np.where(present[row], radius[row], np.inf))
+            touching.append(np.where(loads[row] > 0.0, radius[row], np.inf))
     return float(roots.largest(0, np.concatenate(along), np.concatenate(touching)).max())
 
 

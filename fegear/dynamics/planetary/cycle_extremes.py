@@ -26,6 +26,9 @@ _TO_LEGENDRE = np.linalg.inv(np.polynomial.legendre.legvander(_POINTS, _POINTS.s
 #: Places at which the polynomial of a part is looked at, and then again between those beside the highest.
 _LOOKED_AT = np.linspace(-1.0, 1.0, 33)
 _COARSE = np.polynomial.legendre.legvander(_LOOKED_AT, _POINTS.size - 1) @ _TO_LEGENDRE
+#: By how much of what a force ranges over its highest place in a part may lie above those looked at: these stand a 64th
+#: of half a wave to either side of it.
+_BETWEEN = 2e-3
 #: Half-waves of the fastest mode in a piece up to which it is not asked which modes still ring.
 _FEW = 8
 #: Ringing that is forgotten, relative to the forces.
@@ -116,22 +119,27 @@ def cycle_extremes(modes: SteadyModes, natural: Array, forces: CycleForces) -> C
 def _highest(values: Array) -> tuple[Array, Array, Array]:
     """Largest values over parts known at `_POINTS`, shape (F, parts, points): value, part, and place in it."""
     coarse = values @ _COARSE.T
-    flat = coarse.reshape(values.shape[0], -1).argmax(axis=1)
-    part, k = np.divmod(flat, _LOOKED_AT.size)
+    tops = coarse.max(axis=2)
+    high, low = tops.max(axis=1, keepdims=True), coarse.min(axis=(1, 2))[:, None]
+    # Of several parts as high as each other the highest may look lower: each is looked at again.
+    row, part = np.nonzero(tops >= high - _BETWEEN * (high - low))
     step = _LOOKED_AT[1] - _LOOKED_AT[0]
-    middle = np.clip(_LOOKED_AT[k], -1.0 + step, 1.0 - step)
+    middle = np.clip(_LOOKED_AT[coarse[row, part].argmax(axis=1)], -1.0 + step, 1.0 - step)
     fine = middle[:, None] + step * _LOOKED_AT
-    own = values[np.arange(part.size), part] @ _TO_LEGENDRE.T
-    found = np.einsum("fqn,fn->fq", np.polynomial.legendre.legvander(fine, _POINTS.size - 1), own)
+    own = values[row, part] @ _TO_LEGENDRE.T
+    found = np.einsum("cqn,cn->cq", np.polynomial.legendre.legvander(fine, _POINTS.size - 1), own)
     best = found.argmax(axis=1)
     at = np.clip(best, 1, _LOOKED_AT.size - 2)
-    rows = np.arange(best.size)
-    before, here, after = (found[rows, at + k] for k in (-1, 0, 1))
+    each = np.arange(best.size)
+    before, here, after = (found[each, at + k] for k in (-1, 0, 1))
     bend = before - 2.0 * here + after
     inside = (best == at) & (bend < 0.0)
     shift = np.where(inside, 0.5 * (before - after) / np.where(inside, bend, -1.0), 0.0)
-    value = np.where(inside, here - 0.25 * (before - after) * shift, found[rows, best])
-    return value, part, fine[rows, best] + shift * step * step
+    value = np.where(inside, here - 0.25 * (before - after) * shift, found[each, best])
+    place = fine[each, best] + shift * step * step
+    order = np.lexsort((-part, value, row))  # of equal ones the first
+    last = order[np.append(np.diff(row[order]) > 0, True)]
+    return value[last], part[last], place[last]
 
 
 def _parts(modes: SteadyModes, natural: Array, loud: Array, silent: float) -> tuple[Array, Array, Array]:

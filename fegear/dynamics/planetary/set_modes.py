@@ -62,31 +62,75 @@ def set_modes(model: SetModel, sun_mesh: float, ring_mesh: float) -> SetModes:
     sun_mesh, ring_mesh : float
         Mean mesh stiffness of each planet's meshes [N/m].
     """
-    free, masses = model.free, model.masses
-    root = cholesky((free.T * masses) @ free, lower=True)
-    reduced = free.T @ model.stiffness(sun_mesh, ring_mesh) @ free
-    half = solve_triangular(root, reduced, lower=True)
-    squared, vectors = np.linalg.eigh(solve_triangular(root, half.T, lower=True))
-    shapes = free @ solve_triangular(root.T, vectors)
-    squared = np.where(squared <= RIGID * squared[-1], 0.0, squared)
-    central = np.arange(3 * len(CENTRALS))
+    masses, central = model.masses, np.arange(3 * len(CENTRALS))
     turns = central % 3 == 2
-    shapes = _sorted_out(shapes, squared, masses, central[turns], central[~turns])
-    energy = masses[:, None] * shapes**2
-    turning, moving = energy[central[turns]].sum(axis=0), energy[central[~turns]].sum(axis=0)
-    turning, moving = (np.where(share < _STILL, 0.0, share) for share in (turning, moving))
-    words = {(True, False): "rotation", (False, True): "translation", (False, False): "planets"}
-    kind = tuple(
-        words.get((t > _STILL, m > _STILL), "mixed") if w > 0.0 else "rotation"
-        for t, m, w in zip(turning, moving, squared, strict=True)
-    )
+    found = modes_by_kind(model.free, masses, model.stiffness(sun_mesh, ring_mesh), central[turns], central[~turns])
+    shapes, squared = found.shapes, found.squared
     strain = [
         np.divide(
             k * ((rows @ shapes) ** 2).sum(axis=0), squared, out=np.zeros_like(squared), where=squared > 0.0
         )
         for k, rows in zip((sun_mesh, ring_mesh), model.mesh_rows, strict=True)
     ]  # fmt: skip
-    return SetModes(shapes, np.sqrt(squared) / (2.0 * math.pi), kind, turning, moving, *strain)
+    return SetModes(shapes, found.frequency, found.kind, found.turning, found.moving, *strain)
+
+
+@dataclass(frozen=True)
+class ModesByKind:
+    """Modes of bodies about one axis and of planets, by rising frequency.
+
+    Parameters
+    ----------
+    shapes : ndarray, shape (size, modes)
+        For unit modal mass.
+    squared : ndarray, shape (modes,)
+        Squares of the frequencies [rad^2/s^2].
+    turning, moving : ndarray, shape (modes,)
+        As those of `SetModes`.
+    kind : tuple of str
+        As that of `SetModes`.
+    """
+
+    shapes: Array
+    squared: Array
+    turning: Array
+    moving: Array
+    kind: tuple[str, ...]
+
+    @property
+    def frequency(self) -> Array:
+        """[Hz]."""
+        return np.asarray(np.sqrt(self.squared) / (2.0 * math.pi))
+
+
+def modes_by_kind(free: Array, masses: Array, stiffness: Array, turns: Array, moves: Array) -> ModesByKind:
+    """Modes and their kinds.
+
+    Parameters
+    ----------
+    free : ndarray, shape (size, free)
+        Coordinates as functions of those that are free.
+    masses : ndarray, shape (size,)
+    stiffness : ndarray, shape (size, size)
+    turns, moves : ndarray of int
+        Coordinates of the bodies about the axis: rotations, and motions across the axis.
+    """
+    root = cholesky((free.T * masses) @ free, lower=True)
+    reduced = free.T @ stiffness @ free
+    half = solve_triangular(root, reduced, lower=True)
+    squared, vectors = np.linalg.eigh(solve_triangular(root, half.T, lower=True))
+    shapes = free @ solve_triangular(root.T, vectors)
+    squared = np.where(squared <= RIGID * squared[-1], 0.0, squared)
+    shapes = _sorted_out(shapes, squared, masses, turns, moves)
+    energy = masses[:, None] * shapes**2
+    turning, moving = energy[turns].sum(axis=0), energy[moves].sum(axis=0)
+    turning, moving = (np.where(share < _STILL, 0.0, share) for share in (turning, moving))
+    words = {(True, False): "rotation", (False, True): "translation", (False, False): "planets"}
+    kind = tuple(
+        words.get((t > _STILL, m > _STILL), "mixed") if w > 0.0 else "rotation"
+        for t, m, w in zip(turning, moving, squared, strict=True)
+    )
+    return ModesByKind(shapes, squared, turning, moving, kind)
 
 
 def _sorted_out(shapes: Array, squared: Array, masses: Array, turns: Array, moves: Array) -> Array:

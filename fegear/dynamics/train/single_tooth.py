@@ -210,7 +210,9 @@ def tooth_root_stress(
     """
     roots = RootStress(source, member, effects=effects or RootEffects())
     rows, width = rows_around(roots, pair, around), pair.face_width
-    touched = pair.radius(np.clip(around[0].x, pair.x_start, pair.x_end), member)
+    # No contact hides anything of the fillet of a tooth that carries no load.
+    radius = pair.radius(np.clip(around[0].x, pair.x_start, pair.x_end), member)
+    touched = np.where((around[0].static != 0.0) | (around[0].with_others != 0.0), radius, np.inf)
     felt = {
         part: [Felt(getattr(force, part) / width, rows[k]) for k, force in around.items()]
         for part in ("with_others", "total", "static")

@@ -121,7 +121,7 @@ def _drawn_inward(mesh: SectorMesh, radii: Array, ring: tuple[float, float] | No
             bends[name] = np.concatenate([bends[name], np.zeros((2, 2, layers))], axis=2)
     return SectorMesh(
         np.hstack([vertices, mesh.points[:, count:], *between]), np.hstack([known, upper, lower]), edges, mesh.teeth,
-        mesh.origin, mesh.seconds, bends,
+        mesh.origin, mesh.seconds, bends, mesh.tip,
     )  # fmt: skip
 
 

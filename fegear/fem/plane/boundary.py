@@ -152,7 +152,11 @@ def _mirrored(chain: Chain, name: str) -> Chain:
 
 
 def sector_boundary(
-    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+    tooth: InvoluteSide,
+    bore_radius: float,
+    settings: MeshSettings,
+    contacts: Sequence[tuple[float, float]] = (),
+    bore_end: float = 0.0,
 ) -> list[Chain]:
     """Discretise the closed boundary of one sector, counterclockwise from the bore on side A.
 
@@ -166,6 +170,9 @@ def sector_boundary(
     contacts : sequence of (float, float)
         Place (arc length from the start of the flank) and half-width of pressures that the loaded flank's edges are to
         resolve [modules].
+    bore_end : float
+        Edges are so short where the bore meets the sides: between a held and a free bore stress has no bound
+        [modules]; 0 for those of the body.
 
     Returns
     -------
@@ -212,16 +219,22 @@ def sector_boundary(
     def body_size(depth: Array) -> Array:
         width = settings.body_fraction * pitch_angle * (outer - side * depth)
         rim = settings.rim_fraction * side * (outer - bore_radius)
-        return np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
+        found = np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
+        if not bore_end:
+            return found
+        return np.minimum(found, bore_end + settings.growth * np.abs(side * (outer - bore_radius) - depth))
 
-    side_b = _side(top[:, 0], bore_radius, body_size, first)
+    side_b = _side(top[:, 0], bore_radius, body_size, first, bore_end)
     vertices, middles, tangents = (
         turned(part, -pitch_angle)[:, ::-1] for part in (side_b.vertices, side_b.middles, -side_b.tangents)
     )
     side_a = Chain("side_a", vertices, middles, tangents)
-    by_size = round(pitch_angle * bore_radius / float(body_size(np.array(side * (outer - bore_radius)))))
-    bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
-    bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
+    if bore_end:
+        bore = _graded_bore(side_b.vertices[:, 0], bore_radius, bore_end, settings, pitch_angle)
+    else:
+        by_size = round(pitch_angle * bore_radius / float(body_size(np.array(side * (outer - bore_radius)))))
+        bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
+        bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     chains = [bore, side_b, *land, *front, *back, side_a]
     # Round the sector of a ring gear, which lies outside its outline, this runs clockwise.
     return chains if side > 0 else [_reversed(chain) for chain in reversed(chains)]
@@ -362,8 +375,8 @@ def front_sizes(
     }
 
 
-def _side(top: Array, bore_radius: float, size: Law, first: float) -> Chain:
-    """Nodes from bore to outline, where the edges are as long as the `first` along it."""
+def _side(top: Array, bore_radius: float, size: Law, first: float, last: float = 0.0) -> Chain:
+    """Nodes from bore to outline, where the edges are as long as the `first` along it, or the `last` at the bore."""
     outer = float(np.hypot(*top))
     side = 1.0 if outer > bore_radius else -1.0
     total = side * (outer - bore_radius)
@@ -373,6 +386,8 @@ def _side(top: Array, bore_radius: float, size: Law, first: float) -> Chain:
     at = np.union1d(np.linspace(0.0, total, 513), np.clip(depths, 0.0, total))
     if at[1] > first:  # short edges at the outline of a deep body: sampled evenly they would go on below
         at = np.union1d(at, np.geomspace(0.1 * first, at[1], 65))
+    if last:
+        at = np.union1d(at, total - np.geomspace(0.1 * last, 0.5 * total, 129))
     radii = outer - side * graded(total, size, at=at)[::-1]
     direction = top / outer
     middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))
@@ -382,7 +397,22 @@ def _side(top: Array, bore_radius: float, size: Law, first: float) -> Chain:
 
 def _bore(right: Array, bore_radius: float, edges: int, pitch_angle: float) -> Chain:
     half = math.atan2(right[0], right[1])
-    angle = np.linspace(-half, half, 2 * edges + 1)
+    return _along_bore(right, bore_radius, np.linspace(-half, half, 2 * edges + 1), pitch_angle)
+
+
+def _graded_bore(right: Array, bore_radius: float, end: float, settings: MeshSettings, pitch_angle: float) -> Chain:
+    """Edges along the bore, the shorter the nearer to its ends."""
+    half = 0.5 * pitch_angle * bore_radius
+    longest = min(_WIDEST_BORE_EDGE * bore_radius, settings.body_fraction * half)
+    at = np.union1d(np.linspace(0.0, half, 257), np.geomspace(0.1 * end, half, 129))
+    nodes = graded(half, lambda s: np.minimum(end + settings.growth * s, longest), fewest=2, at=at) / half
+    vertices = math.atan2(right[0], right[1]) * np.concatenate([nodes - 1.0, 1.0 - nodes[-2::-1]])
+    angle = np.sort(np.concatenate([vertices, 0.5 * (vertices[1:] + vertices[:-1])]))
+    return _along_bore(right, bore_radius, angle, pitch_angle)
+
+
+def _along_bore(right: Array, bore_radius: float, angle: Array, pitch_angle: float) -> Chain:
+    """Edges along the bore with vertices and middle nodes at angles."""
     points = bore_radius * np.stack([np.sin(angle), np.cos(angle)])
     points[:, -1] = right
     points[:, 0] = turned(right, -pitch_angle)

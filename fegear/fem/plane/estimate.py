@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from fegear.base.arrays import Array
 from fegear.base.plain import read_only
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.plane.edge_curves import beyond_the_fillet, moved_by_edges
 from fegear.fem.plane.influence import MOSTLY_TURNED, SIDES, Influence, Side
 
 #: What errors are estimated of.
@@ -91,12 +93,12 @@ class Estimate:
         """c_0, its error, and how much less a true contact gives way (`Influence.contact`), shape (P,) each."""
         value, shift = self.fine.contact(radius, self.patch, half_width)
         difference = self._self_difference(value, radius, half_width)
-        return value, self._self_estimate(difference), shift
+        return value, self._self_estimate(difference, radius), shift
 
     def self_error(self, radius: Array, half_width: Array) -> Array:
         """Error of c_0, shape (P,)."""
         value = self.fine.self_compliance(radius, self.patch, half_width)
-        return self._self_estimate(self._self_difference(value, radius, half_width))
+        return self._self_estimate(self._self_difference(value, radius, half_width), radius)
 
     def neighbour(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         """c_k(p, q) and its error, shape (P, Q) each."""
@@ -118,7 +120,7 @@ class Estimate:
         Of contacts .02 modules wide to either side.
         """
         own, difference = self._self_at_samples
-        errors = {"c_self": self._self_estimate(difference) / own}
+        errors = {"c_self": self._self_estimate(difference, self._samples) / own}
         if self.fine.reach:
             difference = np.diagonal(self._neighbour_at_samples(1))
             errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
@@ -158,9 +160,14 @@ class Estimate:
         value = self.fine.self_compliance(r, self.patch, b)
         return value, self._self_difference(value, r, b)
 
-    def _self_estimate(self, difference: Array) -> Array:
-        usual = _root_mean_square(self._self_at_samples[1][:_SAMPLES])
-        return self._self_share * np.maximum(difference, _USUAL * usual) + self.common_errors[0]
+    def _self_estimate(self, difference: Array, radius: Array) -> Array:
+        samples, known = self._samples, self._self_at_samples[1]
+        usual = _USUAL * _root_mean_square(known[:_SAMPLES])
+        # A difference that changes its sign along the flank vanishes on its way from one place to the next.
+        order = np.argsort(samples)
+        beside = maximum_filter1d(known[order], 3)
+        floor = np.maximum(usual, np.interp(radius, samples[order], beside, left=0.0, right=0.0))
+        return np.asarray(self._self_share * np.maximum(difference, floor) + self.common_errors[0])
 
     def place_error(self, value: Array, other: Array) -> Array:
         """Error of the stress at places of a fillet under loads at several positions, shape (places, P).
@@ -186,7 +193,16 @@ class Estimate:
         value = self.fine.neighbour(k, p, q, self.patch)
         of_width = np.abs(value - self.fine.neighbour(k, p, q, 0.5 * self.patch))
         of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch) - self._turned)
-        return value, _WIDTH_SHARE * of_width + self._neighbour_share * of_order
+        return value, _WIDTH_SHARE * of_width + self._neighbour_share * of_order + self._of_edges(k, p, q)
+
+    def _of_edges(self, k: int, p: Array, q: Array) -> Array:
+        """What both solutions have in common: fillets' edges that leave the exact curves."""
+        at_p, at_q = (self.fine.remote(one, self.patch) for one in (p, q))
+        return np.abs(moved_by_edges(self.fine, k, at_p, at_q, self._outside))
+
+    @cached_property
+    def _outside(self) -> dict[Side, Array]:
+        return {side: beyond_the_fillet(self.fine, side) for side in SIDES}
 
     @property
     def _neighbour_share(self) -> float:

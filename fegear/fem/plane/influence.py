@@ -13,10 +13,11 @@ import numpy as np
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
-from fegear.fem.plane.elasticity import SectorElasticity, assemble, assemble_two_orders
+from fegear.fem.plane.free_arc import free_arc_response
 from fegear.fem.plane.rim import PinForces, supported_response
 from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
+from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 
 if TYPE_CHECKING:
@@ -26,7 +27,10 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from fegear.base.arrays import Array
+    from fegear.fem.plane.elasticity import SectorElasticity
+    from fegear.fem.plane.free_arc import Free
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.plane.ring_closure import Ring
     from fegear.fem.plane.settings import Solver
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_side import InvoluteSide
@@ -100,7 +104,7 @@ class Influence:
     pins : PinForces, optional
         Of a ring on pins what differs from tooth to tooth (`tooth_on_pins`); `compliance` and `stress` are means.
     support : RimSupport, optional
-        What carries the rim of a ring gear; by default its whole outer circle is held.
+        What carries the rim; by default the whole bore, or outer circle of a ring gear, is held.
     """
 
     tooth: InvoluteSide
@@ -424,7 +428,7 @@ def solve_influence(
     two_orders : bool
         Whether to solve with elements one order lower as well (`Influence.lower`), which takes .4 of the time again.
     support : RimSupport, optional
-        Of a ring gear's rim [modules]; by default its whole outer circle is held.
+        Of the rim [modules]; by default the whole bore, or outer circle of a ring gear, is held.
     solver : {"condensed", "scikit-fem"}
         What assembles a sector and eliminates its inner unknowns.
 
@@ -436,8 +440,8 @@ def solve_influence(
     with one_thread():
         started = time.perf_counter()
         if not two_orders:
-            return _solve(what, assemble(mesh, poisson_ratio, plane, order, solver), started)
-        elasticity, lower = assemble_two_orders(mesh, poisson_ratio, plane, order, solver)
+            return _solve(what, assemble_section(mesh, poisson_ratio, plane, order, solver, support), started)
+        elasticity, lower = assemble_section_two_orders(mesh, poisson_ratio, plane, order, solver, support)
         return replace(_solve(what, elasticity, started), lower=_solve(what, lower, time.perf_counter()))
 
 
@@ -468,10 +472,13 @@ def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influe
     response: Mapping[int, Array]
     pins: PinForces | None = None
     closed = time.perf_counter()
-    if support is None:
+    ring: Ring | Free
+    if support is None or support.kind == "web":
         ring = close_ring(mesh, elasticity, watch, reach, sector_teeth=sector_teeth)
         closed = time.perf_counter()
         response = ring.respond(flank.dofs, watch)
+    elif support.kind == "free_arc":
+        response, ring = free_arc_response(mesh, elasticity, support.free_teeth, watch, flank.dofs.size, reach)
     else:
         response, pins, ring = supported_response(mesh, elasticity, support, watch, flank.dofs.size, reach)
     n, t = flank.dofs.size, fillets["tension"].dofs.size
@@ -483,12 +490,7 @@ def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influe
         stress[k, "tension"] = modulus * (fillets["tension"].strain @ u[n : n + t])
         stress[k, "compression"] = modulus * (fillets["compression"].strain @ u[n + t :])
     solved = time.perf_counter()
-    seconds = {
-        "mesh": mesh.seconds,
-        "assembly": assembled - started,
-        **ring.seconds,
-        "influence": solved - closed,
-    }
+    seconds = {"mesh": mesh.seconds, "assembly": assembled - started, **ring.seconds, "influence": solved - closed}
     return Influence(
         tooth, poisson_ratio, plane, mesh, flank, compliance, fillets, stress,
         corner_distance, reach, ring.size, seconds, pins=pins, support=support,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,12 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
 from fegear.base.one_thread import one_thread
-from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.free_arc import free_arc_response
 from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.rim import supported_response
 from fegear.fem.plane.ring_closure import close_ring
+from fegear.fem.plane.supported_section import assemble_section
 
 #: Boundaries of a sector that are no outline of a tooth.
 _INNER = ("side_a", "side_b", "bore")
@@ -135,15 +137,20 @@ def outline_motion(influence: Influence, reach: int) -> OutlineMotion:
     mesh = influence.mesh
     chain = _outline(mesh)
     with one_thread():
-        elasticity = assemble(mesh, influence.poisson_ratio, influence.plane, influence.flank.order)
+        support, order = influence.support, influence.flank.order
+        elasticity = assemble_section(mesh, influence.poisson_ratio, influence.plane, order, "condensed", support)
         watch = elasticity.node_dofs[:, chain].reshape(-1)
         reach = min(reach, (mesh.teeth - 1) // 2)
         flank = influence.flank.dofs
-        if influence.support is None:
+        if support is None or support.kind == "web":
             response = close_ring(mesh, elasticity, np.union1d(flank, watch), reach).respond(flank, watch)
         else:
             ports = np.append(flank, watch)
-            moved, _, _ = supported_response(mesh, elasticity, influence.support, ports, flank.size, reach)
+            moved: Mapping[int, Array]
+            if support.kind == "free_arc":
+                moved, _ = free_arc_response(mesh, elasticity, support.free_teeth, ports, flank.size, reach)
+            else:
+                moved, _, _ = supported_response(mesh, elasticity, support, ports, flank.size, reach)
             response = {k: u[flank.size :] for k, u in moved.items()}
     stacked = np.stack([response[k].T for k in range(-reach, reach + 1)], axis=1).astype(np.float32)
     return OutlineMotion(influence, *_between(mesh, chain), stacked, reach)

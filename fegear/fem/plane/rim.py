@@ -1,4 +1,6 @@
-"""A ring gear on pins or in a spline: the ring that nothing holds, and the forces that its supports put on it.
+"""A rim on pins or in a spline: the ring that nothing holds, and the forces that its supports put on it.
+
+The circle is the outer one of a ring gear, the bore of an external one.
 
 Sectors' sides close to a ring as ever (`ring_closure`); only its rigid motions, harmonics 0 and 1, are left without a
 stiffness. They get one, which gives a generalised inverse G of the whole ring's stiffness K. With R the rigid motions
@@ -9,9 +11,11 @@ and W the tractions that are as even as these motions over the outer circle,
 is the compliance of a ring whose force and torque leave by even tractions, and whose outer circle does not move on
 average: a spline. It does not depend on the stiffness that was lent.
 
-Pins hold the mean motion of parts of the outer circle, E' u = 0. Their forces x and the motion a of the ring as a body
+Pins hold the mean motion of parts of the circle, E' u = 0. Their forces x and the motion a of the ring as a body
 follow from E' (C (f + E x) + R a) = 0 and R' (f + E x) = 0 (the force method), however teeth and pins stand to each
-other. All sums over the sectors are convolutions, and are made by Fourier transforms.
+other. Rollers of a bearing hold that along the radius, and let the ring turn: of a and R' (f + E x) = 0 only the
+shifts are left, and torque leaves by even tractions. All sums over the sectors are convolutions, and are made by
+Fourier transforms.
 """
 
 from __future__ import annotations
@@ -45,7 +49,8 @@ class PinForces(ReadOnlyArrays):
     ----------
     by_tooth : ndarray, shape (T, d, ports)
         Motion of the pins and resultants under unit loads on the ports of tooth after tooth, from tooth -reach on, as
-        many as stand differently to the pins and as many more; d is two for each pin and three.
+        many as stand differently to the pins and as many more; d is two for each pin and three (one for each roller and
+        two).
     inverse : ndarray, shape (d, d)
         From these to forces and rigid motion.
     teeth, reach : int
@@ -82,7 +87,10 @@ class _Outer:
     order: int
 
     def held(self, teeth: int, support: RimSupport, radius: float) -> Array:
-        """Weights of the unknowns of every sector in the mean motion of each pin, shape (z, n, 2 pins)."""
+        """Weights of the unknowns of every sector in the mean motion of each pin, shape (z, n, 2 pins).
+
+        Of rollers, shape (z, n, pins).
+        """
         pitch, half = 2.0 * math.pi / teeth, 0.5 * support.width / radius
         found = np.zeros((teeth, self.dofs.size, 2 * support.pins))
         ends = np.arctan2(*self.places[:, [0, -1]])  # clockwise from the tooth's centre line, (2, edges)
@@ -101,7 +109,7 @@ class _Outer:
                     for c in range(2):
                         rows = np.searchsorted(self.dofs, dofs[c])
                         found[sector % teeth, rows, 2 * pin : 2 * pin + 2] += weight[:, None] * outward[:, c]
-        return found
+        return found[:, :, ::2] if support.rollers else found
 
 
 def _outer(elasticity: SectorElasticity) -> _Outer:
@@ -191,10 +199,11 @@ def supported_response(
     answer = np.fft.fft(np.stack([free(k, lent[k], rim, slice(None)) for k in range(z)]), axis=0)
     work = held.conj().transpose(0, 2, 1) @ answer
     pins = np.real(work[:, :, watch.size :] @ held).sum(axis=0) / z
-    rigid = np.einsum("kon,oa,kab->nb", np.real(np.fft.ifft(held, axis=0)), outer.motion, turn, optimize=True)
-    saddle = np.block([[0.5 * (pins + pins.T), rigid], [rigid.T, np.zeros((3, 3))]])
+    ways = 2 if support.rollers else 3
+    rigid = np.einsum("kon,oa,kab->nb", np.real(np.fft.ifft(held, axis=0)), outer.motion, turn, optimize=True)[:, :ways]
+    saddle = np.block([[0.5 * (pins + pins.T), rigid], [rigid.T, np.zeros((ways, ways))]])
     by_pins = np.real(np.fft.fft(work[:, :, : watch.size], axis=0)) / z
-    resultants = (motion[seen] @ turn).transpose(0, 2, 1)
+    resultants = (motion[seen] @ turn).transpose(0, 2, 1)[:, :ways]
     teeth = support.different_teeth(z)
     row = np.arange(-reach, teeth + reach) % z
     found = PinForces(np.concatenate([by_pins, resultants], axis=1)[row], np.linalg.inv(saddle), teeth, reach)

@@ -30,13 +30,14 @@ from skfem import (
 from skfem.helpers import dot
 from skfem.models.elasticity import linear_elasticity  # the equation is not fegear's either
 
-from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array, Index, Mask
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.root_stress import CLEARANCE, search_end
 from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.fem.plane.supported_section import bore_end, of_web, section_on
 from fegear.fem.plane.tooth_meshing import mesh_inside, mesh_sector
 from fegear.geometry.gear import Plane
 from fegear.geometry.involute_side import InvoluteSide
@@ -102,18 +103,26 @@ def solve_alone(
     half_width : float
         [modules].
     support : RimSupport, optional
-        Of the outer circle of an internal gear [modules]; without one it is held, as a bore is.
+        Of the rim [modules]; without one the bore, or outer circle of an internal gear, is held.
     """
     arc = _flank_arc(tooth, radius)
-    mesh = _whole_gear(tooth, bore_radius, settings.refined(_FINER), [(s, half_width) for s in arc])
-    ring = _Ring(mesh, tooth.side)
-    lam, mu = lame(poisson_ratio, plane)
-    stiffness = asm(linear_elasticity(lam, mu), ring.bases())
+    mesh = _whole_gear(tooth, bore_radius, settings.refined(_FINER), [(s, half_width) for s in arc], support)
+    ring, kind = _Ring(mesh, tooth.side), "held" if support is None else support.kind
+    constants = lame(poisson_ratio, plane)
+    if support is None or kind != "web":
+        stiffness = asm(linear_elasticity(*constants), ring.bases())
+    else:
+        web, thin = of_web(mesh), lame(poisson_ratio, "stress")
+        stiffness = asm(linear_elasticity(*constants), ring.bases(~web))
+        stiffness = stiffness + support.web * asm(linear_elasticity(*thin), ring.bases(web))
     own = [ring.pressure(tooth, s, half_width) for s in arc]
     at = {k: [ring.at_flank(k, r) for r in radius] for k in (-1, 0, 1)}
     loads = np.stack([*own, *at[0]], axis=1)
-    if support is None:
-        held = ring.dofs.get_facet_dofs(np.unique(ring.facets("bore"))).all()
+    if support is None or kind in ("web", "free_arc"):
+        half = -1 if support is None or kind == "web" else support.free_teeth // 2
+        first, last = -((tooth.teeth - 1) // 2), tooth.teeth // 2
+        bores = [ring.facets(f"bore:{k}") for k in range(first, last + 1) if abs(k) > half]
+        held = ring.dofs.get_facet_dofs(np.unique(np.concatenate(bores))).all()
         moved = solve(*condense(stiffness, loads, x=np.zeros_like(loads), D=held), solver=_factored)
     else:
         moved = _on_average(stiffness, ring.on_average(support), loads)
@@ -122,10 +131,13 @@ def solve_alone(
     place, tension = ring.along("fillet:0", by_pressure, modulus)
     _, compression = ring.along("back_fillet:0", by_pressure, modulus)
     ends = search_end(place[-1], arc, half_width, CLEARANCE)
+    beside = [np.einsum("pi,ip->p", np.stack(at[k]), by_point) for k in (1, -1)]
+    if kind == "free_arc":  # the middle tooth loaded, or watched: see `free_arc`
+        beside = [0.5 * (beside[0] + beside[1])] * 2
     return WholeGearAlone(
         c_self=np.einsum("pi,ip->p", np.stack(own), by_pressure) + 0.5 / (np.pi * modulus),
-        c_next=np.einsum("pi,ip->p", np.stack(at[1]), by_point),
-        c_prev=np.einsum("pi,ip->p", np.stack(at[-1]), by_point),
+        c_next=beside[0],
+        c_prev=beside[1],
         root_tension=np.where(place[:, None] <= ends, tension, -np.inf).max(axis=0),
         root_compression=compression.min(axis=0),
         unknowns=int(ring.dofs.N),
@@ -156,14 +168,21 @@ def _flank_arc(tooth: InvoluteSide, radius: Array) -> Array:
 
 
 def _whole_gear(
-    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
+    tooth: InvoluteSide,
+    bore_radius: float,
+    settings: MeshSettings,
+    contacts: Sequence[tuple[float, float]],
+    support: RimSupport | None = None,
 ) -> SectorMesh:
     """All sectors joined, boundaries by name and tooth: ``flank:1`` is that of the tooth clockwise of tooth 0."""
     coarse = min(settings_at(_BODY), settings.refined(_FINER**-2), key=lambda s: s.root_edge_length)
-    plain = mesh_sector(tooth, bore_radius, coarse)
-    body = {c.name: c for c in sector_boundary(tooth, bore_radius, coarse) if c.name in ("bore", "side_a", "side_b")}
+    end = _FINER * bore_end(settings, support)
+    plain = mesh_sector(tooth, bore_radius, coarse, bore_end=end)
+    outline = sector_boundary(tooth, bore_radius, coarse, bore_end=end)
+    body = {c.name: c for c in outline if c.name in ("bore", "side_a", "side_b")}
     chains = [body.get(c.name, c) for c in sector_boundary(tooth, bore_radius, settings, contacts)]
-    loaded = mesh_inside(chains, tooth.teeth, growth=settings.side_growth)
+    loaded = section_on(mesh_inside(chains, tooth.teeth, growth=settings.side_growth), settings, support)
+    plain = section_on(plain, settings, support)
     z = tooth.teeth
     sectors = [loaded] + [plain] * (z - 1)
     points: list[Array] = []
@@ -254,12 +273,13 @@ class _Ring:
     def _basis(self, mapping: Any, chosen: Index, **at: Any) -> Any:
         return Basis(self._grid, self._vector, mapping, elements=chosen, dofs=self.dofs, disable_doflocs=True, **at)
 
-    def bases(self) -> list[Any]:
-        """Functions on all elements, curved and straight."""
+    def bases(self, of: Mask | None = None) -> list[Any]:
+        """Functions on all elements, or on some, curved and straight."""
         curved = self._elements.curved
+        some = np.ones_like(curved) if of is None else of
         return [
-            self._basis(self._curves, np.flatnonzero(curved), intorder=_CURVED_DEGREE),
-            self._basis(MappingAffine(self._grid), np.flatnonzero(~curved), intorder=_STRAIGHT_DEGREE),
+            self._basis(self._curves, np.flatnonzero(curved & some), intorder=_CURVED_DEGREE),
+            self._basis(MappingAffine(self._grid), np.flatnonzero(~curved & some), intorder=_STRAIGHT_DEGREE),
         ]
 
     def facets(self, name: str) -> Index:
@@ -301,7 +321,10 @@ class _Ring:
         return forces
 
     def on_average(self, support: RimSupport) -> Array:
-        """Weights of the means that a rim's support holds, shape (N, C): over each pin, or over the whole circle."""
+        """Weights of the means that a rim's support holds, shape (N, C): over each pin, or over the whole circle.
+
+        Rollers hold them along the radius, and the turn over the whole circle.
+        """
         facets = self.facets("bore")
         if not support.pins:  # neither shift nor turn on average
             held = np.zeros((self.dofs.N, 3))
@@ -330,7 +353,11 @@ class _Ring:
                         way = np.zeros((2, 1, angle.size))
                         way[c] = 1.0
                         held[:, 2 * pin + c] += edges.along(way, share[None])
-        return held
+        if not support.rollers:
+            return held
+        clockwise = support.angle + 2.0 * np.pi * np.arange(support.pins) / support.pins
+        radial = held[:, ::2] * np.sin(clockwise) + held[:, 1::2] * np.cos(clockwise)
+        return np.column_stack([radial, self.on_average(RimSupport())[:, 2]])
 
     def at_flank(self, number: int, radius: float) -> Array:
         """Nodal forces of a unit point load on the flank of a tooth: they read its deflection there, too."""

@@ -21,14 +21,15 @@ if TYPE_CHECKING:
 _AT_ONCE = 64
 
 
-def assembled(elements: SectorElements, lam: float, mu: float) -> Any:
-    """Stiffness of the whole sector, E = 1.
+def assembled(elements: SectorElements, lam: float, mu: float, chosen: Index | None = None) -> Any:
+    """Stiffness of the whole sector, or of some of its elements, E = 1.
 
     Parameters
     ----------
     elements : SectorElements
     lam, mu : float
         Lame's constants.
+    chosen : ndarray of int, optional
 
     Returns
     -------
@@ -39,7 +40,7 @@ def assembled(elements: SectorElements, lam: float, mu: float) -> Any:
 
     from fegear.fem.forms import plane_elasticity
 
-    return asm(plane_elasticity, elements.vector_basis(), lam=lam, mu=mu)
+    return asm(plane_elasticity, elements.vector_basis(chosen=chosen), lam=lam, mu=mu)
 
 
 def between_kept(stiffness: Any, kept: Index, held: Index, *, motions: bool = False) -> tuple[Array, Array | None]:

@@ -11,7 +11,7 @@ from typing import cast
 
 import numpy as np
 
-from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array, Index, Mask
 from fegear.base.errors import InputError
 from fegear.fem.plane.chain import factored
 from fegear.fem.plane.condensation import Condensed, condense
@@ -98,6 +98,12 @@ def condensed_sector(
     turn = np.zeros((n, n))
     turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / mesh.teeth)
     return sector, m, turn, radius
+
+
+def bore_of_side(mesh: SectorMesh, elasticity: SectorElasticity) -> Mask:
+    """Which unknowns of a side, in the order of a condensed sector whose bore is free, are on the bore."""
+    side_a = _matching_sides(mesh, elasticity)[0]
+    return np.isin(side_a, np.unique(elasticity.edge_dofs["bore"]))
 
 
 def between_sides(sector: Condensed, side: int, turn: Array | None) -> BetweenSides:

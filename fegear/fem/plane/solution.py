@@ -31,7 +31,7 @@ from fegear.fem.plane.settings import (
     level_for,
     settings_at,
 )
-from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.fem.plane.supported_section import supported_sector
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane
 from fegear.geometry.involute_side import InvoluteSide
@@ -79,7 +79,7 @@ def _solve_shape(
 ) -> Influence:
     return solve_influence(
         tooth,
-        mesh_sector(tooth, bore_radius, settings),
+        supported_sector(tooth, bore_radius, settings, support),
         poisson_ratio,
         plane,
         order=settings.order,

@@ -133,7 +133,7 @@ def _forget_the_last_model(gmsh: Any) -> None:
 
 
 def mesh_sector(
-    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, *, frontal: bool = False
+    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, *, frontal: bool = False, bore_end: float = 0.0
 ) -> SectorMesh:
     """Mesh the sector of one tooth.
 
@@ -147,6 +147,8 @@ def mesh_sector(
         taken.
     frontal : bool
         Whether to fill evenly from the boundary inward, which suits meshes of so few elements as solid teeth have.
+    bore_end : float
+        As of `sector_boundary`.
 
     Returns
     -------
@@ -163,7 +165,7 @@ def mesh_sector(
     started = time.perf_counter()
     for _ in range(_MOST_REFINEMENTS):
         try:
-            return _mesh(tooth, bore_radius, settings, started, frontal)
+            return _mesh(tooth, bore_radius, settings, started, frontal, bore_end)
         except InputError as problem:
             if problem.key != "mesh":
                 raise
@@ -177,9 +179,12 @@ def mesh_sector(
     ) from refused
 
 
-def _mesh(tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, started: float, frontal: bool) -> SectorMesh:
+def _mesh(
+    tooth: InvoluteSide, bore_radius: float, settings: MeshSettings, started: float, frontal: bool, bore_end: float
+) -> SectorMesh:
     growth = None if frontal else settings.side_growth
-    mesh = mesh_inside(sector_boundary(tooth, bore_radius, settings), tooth.teeth, started, growth)
+    chains = sector_boundary(tooth, bore_radius, settings, bore_end=bore_end)
+    mesh = mesh_inside(chains, tooth.teeth, started, growth)
     if settings.order > 2:
         check_cubic_edges(mesh)
     return mesh

@@ -417,10 +417,11 @@ def _half_height(
 
 def _check_support(support: RimSupport, tooth: InvoluteTooth, *, alone: bool) -> None:
     if not (tooth.internal and alone):
-        kind = '"pins"' if support.pins else '"splined"'
         raise RangeError(
-            "rim_support.kind", kind, "is available for complete internal rings only, without a body or a fixed part"
-        )
+            "rim_support.kind", f'"{support.kind}"',
+            "is available for complete internal rings only, without a body or a fixed part",
+            "specify rim and web of a 3D external gear in body",
+        )  # fmt: skip
 
 
 def _mirrored(section: Section, face: FaceFunctions | JoinedFunctions) -> Mask:

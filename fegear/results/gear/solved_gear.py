@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, cast
 
+from fegear.base.errors import RangeError
 from fegear.case.built.rated_duty import thin_rim_remarks
 from fegear.case.built.solid_influence import (
     SolidGearToSolve,
@@ -104,6 +105,11 @@ def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcom
 
 def _forecast_solid(scene: Scene, name: str) -> Forecast:
     settings, gear = solid_settings_of(scene, name), scene.gears[name]
+    if gear.support is not None and not gear.tooth.internal:
+        raise RangeError(
+            f"gear.{name}.rim_support.kind", f'"{gear.support.kind}"',
+            "is available for plane (2D) gears and internal gears only", "specify rim and web in body",
+        )  # fmt: skip
     body, width = gear.body, gear.face_width / gear.module
     apart = gear.flank_twist == 0.0 and (body is None or body.even)
     seconds = seconds_of_solid_gear(

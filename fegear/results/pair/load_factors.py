@@ -23,7 +23,7 @@ from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.pair.loaded_teeth import gears_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
@@ -81,19 +81,26 @@ class FlankLoadFactorsData:
     @property
     def members(self) -> dict[Member, ComparedRoot]:
         """Root factors of both gears at the nominal load."""
-        return {member: ComparedRoot(root, self.coarse[member]) for member, root in self.root.items()}
+        return {member: ComparedRoot(root, self.off) for member, root in self.root.items()}
+
+    def off(self, factor: str) -> float | None:
+        """How far a factor of both solutions is apart: of both gears the farther, for both feel the same loads.
+
+        One of them may agree by chance, for a factor is the ratio of two largest values.
+        """
+        apart = [
+            abs(getattr(coarse, factor) - getattr(self.root[member], factor))
+            for member, coarse in self.coarse.items() if coarse is not None
+        ]  # fmt: skip
+        return max(apart, default=None)
 
 
 @dataclass(frozen=True)
 class ComparedRoot:
-    """Root factors of one gear at the nominal load, and those of the coarser solution, where there is one."""
+    """Root factors of one gear at the nominal load, and the error of each."""
 
     fine: RootFactors
-    coarse: RootFactors | None
-
-    def off(self, factor: str) -> float | None:
-        """How far a factor of both is apart."""
-        return None if self.coarse is None else abs(getattr(self.coarse, factor) - getattr(self.fine, factor))
+    off: Callable[[str], float | None]
 
 
 def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFactorsData:

@@ -146,7 +146,7 @@ def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshD
             places[side] = np.stack([placed_in_mesh(pair, member, own, j) for j in pairs.tolist()])
             stress[side] = np.stack(teeth, axis=1)
         gears[member] = FilletStress(places, stress)
-    touched = {member: touching_radius(state, member, 1).T for member in MEMBERS}
+    touched = {member: touching_radius(state, member, 1)[:, :, 0].T for member in MEMBERS}
     roots = {member: RootStress.of(e.compliance, member, "tension", source) for member, source in sources.items()}
     largest = _largest(state.x, pairs, gears, solved, asked, roots, touched)
     few = picture_positions(state.x, pair.base_pitch, largest.roll)

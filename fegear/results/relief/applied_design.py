@@ -221,7 +221,7 @@ def _pair(tables: Mapping[str, Table], source: str, wanted: str) -> str:
     if not names:
         raise InputError(
             "RESULTS", shown(source), "has no relief design",
-            'request the result "relief" (spur), "flank-design" (helical) or "lead-correction" (pairs on shafts)',
+            'request the result "relief", "flank-design" (3D pairs) or "lead-correction" (pairs on shafts)',
         )  # fmt: skip
     if wanted and wanted not in names:
         raise InputError("--pair", shown(wanted), f"has no relief design in {source}", nearest(wanted, names))

@@ -30,12 +30,13 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -
         ("driven", relief.driven_tip, pair.x_start, pair.x_start + relief.driven_tip_length),
     )
     by_gear: dict[str, list[str]] = {gear: [] for gear in gears.values()}
+    shape = "" if relief.tip_power == 1.0 else ', shape = "parabolic"'
     for member, amount, end, start in tips:
         if amount:
             radii = [float(pair.radius(at, member)) for at in (start, end)]
             by_gear[gears[member]].append(
                 f'relief = {{ tip = {{ amount = "{_um(amount)}", start_radius = "{_mm(radii[0])}", '
-                f'at_radius = "{_mm(radii[1])}" }} }}'
+                f'at_radius = "{_mm(radii[1])}"{shape} }} }}'
             )
     lead = [
         f'{key} = "{_um(value)}"' for key, value in (("crowning", relief.crowning), ("slope", relief.slope)) if value
@@ -61,12 +62,13 @@ def ground_rows(
 ) -> list[Grinding]:  # fmt: skip
     """The relief as rows of the grinding table; lead and twist are those of the gear that `keys_of` gives them to."""
     bearer: Member = next((m for m in MEMBERS if _is_common(pair, m)), "driver")
+    shape = "linear" if relief.tip_power == 1.0 else "parabolic"
 
     def tip(member: Member, amount: float, end: float, start: float) -> Grinding:
         allowed, length = tolerances[MEMBERS.index(member)], abs(end - start)
         top, foot = (2.0 * float(pair.radius(at, member)) for at in (end, start))
         return Grinding(
-            gears[member], member, design, TIP, "linear", amount, amount_tolerance=allowed.amount,
+            gears[member], member, design, TIP, shape, amount, amount_tolerance=allowed.amount,
             start_diameter=foot, end_diameter=top, start_roll_angle=float(pair.roll_angle(start, member)),
             length=length, length_tolerance=_OF_LENGTH * length if allowed.length is None else allowed.length,
         )  # fmt: skip

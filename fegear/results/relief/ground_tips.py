@@ -145,9 +145,13 @@ def tip_numbers(tips: Where, head: str) -> Each:
 
 
 def _tip_number(head: str, what: str, words: str, number: int) -> Number:
+    def meaning(seen: Seen) -> str:
+        equal = getattr(seen.one, f"equal_{what}s")
+        return f"{words}; equally good: {equal}" if equal else words
+
     return Number(
         f"relief.{what}", lambda seen: seen.one.error[number], owner="{name}.{one.member}", name=f"{head}{what}",
-        meaning=f"{words}; equally good: {{one.equal_{what}s}}",
+        meaning=meaning,
     )  # fmt: skip
 
 

@@ -35,13 +35,13 @@ def design_part(scene: Scene) -> DesignPart:
 
 
 def design_pairs(scene: Scene) -> tuple[str, ...]:
-    """The pair that ``[design]`` names, or the only pair of spur gears."""
-    named = design_part(scene).pair
+    """The plane pair that ``[design]`` names, or the only one."""
+    named, plane = design_part(scene).pair, tuple(scene.plane_pairs)
     if named is not None:
-        return (named,)
-    if len(scene.spur_pairs) > 1:
+        return () if named in scene.wide_pairs else (named,)
+    if len(plane) > 1:
         raise InputError("design.pair", "(not given)", "is required with several pairs", "specify one of them")
-    return tuple(scene.spur_pairs)
+    return plane
 
 
 #: Stage of a result about the reliefs that a case asks to design.

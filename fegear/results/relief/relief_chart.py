@@ -1,43 +1,46 @@
-"""Stages ``relief-chart`` and ``robustness``: many candidate reliefs, and how one holds up off its nominal state."""
+"""Stage ``relief-chart``: many candidate reliefs."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.case.built.design_range import design_range
 from fegear.design.load_range import NEAR
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
-from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Map, Over
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Chart, Line, Map, Over
 from fegear.engine.sheet.number import Number, exact
-from fegear.engine.sheet.rows import Cell, Every, Rows
+from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Sheet
-from fegear.engine.stage import Forecast, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Upstream, Work
 from fegear.geometry.relief import CombinedRelief, EndRelief, roll_of_radius
 from fegear.results import forecasts
+from fegear.results.relief.grinding import NOTHING
 from fegear.results.relief.ground_tips import GroundTip, tip_numbers, tips_of
-from fegear.results.relief.relief import design_pairs, design_part, relief_stage
+from fegear.results.relief.relief import design_part, relief_stage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from fegear.base.arrays import Array
-    from fegear.case.design import ChartPart, RobustnessPart
+    from fegear.case.design import ChartPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.design.charts import Metric, ReliefChart
-    from fegear.design.held_relief import Robustness
+    from fegear.design.flanks.families import FamilyBest
     from fegear.design.load_range import LoadRange
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
-    from fegear.results.relief.relief_data import ReliefData
+    from fegear.geometry.relief import Relief
+    from fegear.results.relief.relief_over_face_data import Tip
 
 
 #: How the single best of a chart is found.
@@ -98,9 +101,9 @@ class ReliefChartData:
 
     Parameters
     ----------
-    pair : LoadedPair
+    pair : LoadedPair or LoadedWidePair
     chart : ReliefChart
-    best : TipReliefPair
+    best : TipReliefPair or FamilyBest
         Found by the optimiser over the chart's loads, each gear on its own.
     finer : ReliefChart
         Around the optimum.
@@ -108,16 +111,40 @@ class ReliefChartData:
         Unit of the amounts in the picture: transmission error of the unmodified pair at its largest.
     """
 
-    pair: LoadedPair
+    pair: LoadedPair | LoadedWidePair
     chart: ReliefChart
-    best: TipReliefPair
+    best: TipReliefPair | FamilyBest
     finer: ReliefChart
     delta: float = shown("um", "unit of the amounts")
 
     @property
-    def tips(self) -> tuple[GroundTip, ...]:
+    def tips(self) -> tuple[GroundTip | Tip, ...]:
         """The best reliefs, a gear each."""
-        return tips_of(self.best, self.pair.pair)
+        return tips_of(cast("TipReliefPair", self.best), self.pair.pair)
+
+    def left(self, metric: Metric) -> float:
+        """What the best reliefs leave at the largest load [m]."""
+        return float(getattr(self.best, metric)[-1])
+
+    @property
+    def unit_words(self) -> str:
+        """What the unit of the amounts is."""
+        from fegear.design.charts import meaning_of_unit
+
+        return meaning_of_unit(self.pair.pair)
+
+    @property
+    def searched(self) -> Mapping[str, object]:
+        """How the best reliefs were searched for."""
+        best = cast("TipReliefPair", self.best)
+        apart = f"difference between two independent searches {best.least_error * 1e6:.1g} um"
+        return {"candidates": best.candidates, "starts": best.starts, "apart": apart}
+
+    @property
+    def reliefs(self) -> tuple[Relief, Relief]:
+        """Of driver and driven gear in the case."""
+        engagement = cast("LoadedPair", self.pair).engagement
+        return engagement.driver_relief, engagement.driven_relief
 
     @property
     def drawable(self) -> bool:
@@ -167,8 +194,8 @@ class ReliefChartData:
     @property
     def _present(self) -> Iterator[tuple[float, float]]:
         """Amount and length of each tip relief of the case."""
-        pair, engagement = self.pair.pair, self.pair.engagement
-        for gear, relief in ((pair.driver, engagement.driver_relief), (pair.driven, engagement.driven_relief)):
+        pair = self.pair.pair
+        for gear, relief in zip((pair.driver, pair.driven), self.reliefs, strict=True):
             tip = float(roll_of_radius(gear, gear.involute_tip_radius))
             for part in relief.parts if isinstance(relief, CombinedRelief) else (relief,):
                 if isinstance(part, EndRelief) and (part.end - part.start) * (tip - part.start) > 0.0:
@@ -189,7 +216,8 @@ class ChartInputs:
     name: str = field(compare=False)
 
 
-def _chart_inputs(scene: Scene, name: str) -> ChartInputs:
+def chart_inputs(scene: Scene, name: str) -> ChartInputs:
+    """Collect what a case says of the chart of a pair."""
     part = design_part(scene)
     over = None if part.chart.loads else design_range(scene, name)
     return ChartInputs(part.chart, part.metric, over, name)
@@ -223,7 +251,25 @@ def unit_in_words(seen: Seen) -> str:
     return meaning_of_unit(seen.data.pair.pair)
 
 
-_CHART_SHEET = Sheet(
+def _optimum_in_words(seen: Seen) -> Iterator[str]:
+    """The optimum of each gear on its own for all loads, and the best equal reliefs of the chart."""
+    chart, ground = seen.data.chart, [tip for tip in seen.data.tips if tip.relief.amount > NOTHING]
+    amounts = " and ".join(
+        f"{figures(tip.relief.amount * 1e6, 2)} µm on the {tip.member} gear" for tip in ground
+    )  # fmt: skip
+    amount, length = chart.best()
+    equal = f"{figures(amount * 1e6, 2)} µm over {figures(length * chart.unit_length * 1e3, 2)} mm"
+    if not ground:
+        yield f"Pair {seen.name}: no tip relief reduces the excitation."
+    else:
+        yield (
+            f"Pair {seen.name}: optimum for all loads: {amounts} ({figures(seen.data.left(seen.asked.metric) * 1e6, 2)}"
+            f" µm remain at the maximum load); equal on both gears: {equal}."
+        )
+
+
+CHART_SHEET = Sheet(
+    answer=Answer(_optimum_in_words, figure="relief_chart_{name}"),
     tables=(
         Rows(
             "relief_chart_{name}", "Excitation of {name} over amount, length and load", (Every("chart"),), of="chart",
@@ -235,13 +281,13 @@ _CHART_SHEET = Sheet(
         ),
     ),
     values=(
-        Number("delta", meaning=unit_in_words),
+        Number("delta", meaning="{d.unit_words}"),
         Number("unit_length", exact, "chart"),
         Number("amounts", of="chart", si=lambda seen: seen.data.chart.best()[0], name="best_amount", meaning=_BEST),
         Number("lengths", of="chart", si=lambda seen: seen.data.chart.best()[1], name="best_length", meaning=_BEST),
         tip_numbers("tips", "optimum_"),
         Number(
-            "{asked.metric}", of="chart", si=lambda seen: getattr(seen.data.best, seen.asked.metric)[-1],
+            "{asked.metric}", of="chart", si=lambda seen: seen.data.left(seen.asked.metric),
             name="optimum_{asked.metric}", meaning="remaining at the maximum load",
         ),
     ),
@@ -252,7 +298,7 @@ _CHART_SHEET = Sheet(
                 "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
                 "with minimum A_e for each amount; star: optimum for all loads, each in proportion, and dashed: within "
                 "10 % of it; diamonds: tip reliefs of the case. Dotted: "
-            ) + f"{unit_in_words(seen)} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
+            ) + f"{seen.data.unit_words} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
             (
                 Over(
                     "chart.lengths",
@@ -287,120 +333,7 @@ _CHART_SHEET = Sheet(
             when="drawable", views="loads", view="{one.label}",
         ),
     ),
-    settings={
-        "shape": lambda seen: seen.asked.part.shape,
-        "metric": lambda seen: seen.asked.metric,
-        "candidates": "best.candidates",
-        "starts": "best.starts",
-        "apart": lambda seen: f"difference between two independent searches {seen.data.best.least_error * 1e6:.1g} um",
-    },
-)  # fmt: skip
-
-
-@dataclass(frozen=True)
-class RobustnessData:
-    """How each candidate holds up, by its name."""
-
-    candidates: Mapping[str, Robustness]
-    candidate: str = shown("", "relief", default="")
-
-
-@dataclass(frozen=True)
-class RobustnessInputs:
-    """What the robustness of a pair's reliefs depends on.
-
-    Parameters
-    ----------
-    part : RobustnessPart
-    metric : str
-    own_relief : bool
-        Whether the relief of the case is a candidate too.
-    name : str
-        Of the pair.
-    """
-
-    part: RobustnessPart
-    metric: Metric
-    own_relief: bool
-    name: str = field(compare=False)
-
-
-def _robustness_inputs(scene: Scene, name: str) -> RobustnessInputs:
-    part = design_part(scene)
-    return RobustnessInputs(part.robustness, part.metric, scene.case.effects.relief, name)
-
-
-def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work) -> RobustnessData:
-    from fegear.design.held_relief import robustness
-
-    designed: ReliefData = next(found for task, found in upstream.items() if task.stage == "relief")
-    asked, design = inputs.part, designed.design
-    factors = asked.load_factors
-    if design.task.over is not None and "load_factors" not in asked.given:
-        factors = [load / design.task.load for load in design.task.over.loads]
-    states = {"designed": design.designed}
-    states |= {f"{shape} tip relief": g.applied(design.designed) for shape, g in design.ground.items()}
-    if inputs.own_relief:
-        own = designed.pair.engagement
-        states["relief of the case"] = replace(own, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
-    found: dict[str, Robustness] = {}
-    for label, state in states.items():
-        found[label] = robustness(
-            state, design.task.load, factors, asked.spacing_errors, asked.relief_errors, inputs.metric
-        )
-        work.progress(len(found) / len(states))
-    return RobustnessData(found)
-
-
-def _worst_combination(seen: Seen) -> str:
-    """Which combination is worst, in words."""
-    factor, spacing, depth = seen.one.worst_case
-    where = f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} um, relief {percent(depth, signed=True)}"
-    return f"{seen.key}, maximum of the {seen.one.values.size} combinations: {where}"
-
-
-def _over_load(extreme: Callable[..., Array], width: float) -> Line:
-    """The extreme of all combinations at each load, over the loads in their order."""
-    return Line(
-        "values", "{key}", si=lambda seen: extreme(seen.one.values, axis=(1, 2))[np.argsort(seen.one.load_factors)],
-        x_si=lambda seen: np.sort(seen.one.load_factors), look={"width": width, "markers": width > 1.0},
-    )  # fmt: skip
-
-
-_EXCITATION = {"peak_to_peak": "peak-to-peak", "effective_error": "effective"}
-_ROBUSTNESS_SHEET = Sheet(
-    tables=(
-        Rows(
-            "robustness_{name}", "Robustness of the reliefs of {name}",
-            (
-                Cell("candidate", lambda seen: seen.key, lambda _: RobustnessData),
-                Cell("values", name="{asked.metric}"),
-            ),
-            stacked="candidates", on=("load_factors", "spacing_errors", "relief_errors"),
-        ),
-    ),
-    values=(
-        Number(
-            "values", si="worst", each="candidates", meaning=_worst_combination,
-            name=lambda seen: f"worst_{seen.asked.metric}.{seen.key.replace(' ', '_')}",
-        ),
-    ),
-    figures=(
-        Chart(
-            "robustness_{name}", "Robustness of the reliefs of pair {name}",
-            "Pair {name}: maximum (marked) and minimum (thin) over all combinations of pitch deviation and relief "
-            "tolerance.",
-            (
-                Over(
-                    "load_factors",
-                    (Bundle(Family("candidates", role="{key}"), (_over_load(np.max, 1.8), _over_load(np.min, 0.8))),),
-                    lambda seen: Axis(f"{_EXCITATION[seen.asked.metric]} transmission error", "um", zero=True),
-                ),
-            ),
-            of=lambda seen: next(iter(seen.data.candidates.values())),
-        ),
-    ),
-    settings={"metric": lambda seen: seen.asked.metric},
+    settings=lambda seen: {"shape": seen.asked.part.shape, "metric": seen.asked.metric, **seen.data.searched},
 )  # fmt: skip
 
 
@@ -416,19 +349,7 @@ def _chart_forecast(scene: Scene, name: str) -> Forecast:
     )
 
 
-def _robustness_pairs(scene: Scene) -> tuple[str, ...]:
-    """Those of the design, unless the case asks for draws inside tolerances alone."""
-    return () if scene.case.robustness is not None and scene.case.design is None else design_pairs(scene)
-
-
-def _robustness_forecast(scene: Scene, _name: str) -> Forecast:
-    """Every deviation with every other, for each candidate."""
-    part = scene.case.design.robustness if scene.case.design else None
-    count = len(part.load_factors) * len(part.spacing_errors) * len(part.relief_errors) if part else 15
-    return Forecast({"deviations": count}, 0.005 + 5e-4 * count)
-
-
-_CITES = citing(
+CITES = citing(
     Citation("lin-townsend-oswald", "charts of tip relief, normalised length and amount, effective error A_e")
 )
 
@@ -436,20 +357,9 @@ _CITES = citing(
 RELIEF_CHART = relief_stage(
     answers=("transmission error",),
     every_load=True,
-    inputs=_chart_inputs,
+    inputs=chart_inputs,
     compute=_compute_chart,
-    present=_CHART_SHEET.present,
-    cites=_CITES,
+    present=CHART_SHEET.present,
+    cites=CITES,
     forecast=_chart_forecast,
-)
-
-
-ROBUSTNESS = relief_stage(
-    subjects=_robustness_pairs,
-    needs=lambda _scene, name: (Task("relief", name),),
-    inputs=_robustness_inputs,
-    compute=_compute_robustness,
-    present=_ROBUSTNESS_SHEET.present,
-    cites=_CITES,
-    forecast=_robustness_forecast,
 )

@@ -30,8 +30,8 @@ class LeftOverRange:
 
     Parameters
     ----------
-    error : float or None
-        Of each peak-to-peak value [m].
+    error : float or ndarray, shape (L,), or None
+        Of the peak-to-peak values [m].
     """
 
     torque: Array = shown("N.m", "torque on the driver", label="torque on the driver")
@@ -43,12 +43,12 @@ class LeftOverRange:
         "um", "maximum peak-to-peak transmission error within the tolerances of amount and length",
         name="te_peak_to_peak_max", default=None,
     )  # fmt: skip
-    error: float | None = None
+    error: float | Array | None = None
 
     @property
     def errors(self) -> Array | None:
         """Of the peak-to-peak values [m]."""
-        return None if self.error is None else np.full(self.torque.size, self.error)
+        return None if self.error is None else np.broadcast_to(self.error, self.torque.shape)
 
 
 def left_over_range(design: ReliefDesign, pair: GearPair) -> dict[str, LeftOverRange]:
@@ -72,26 +72,28 @@ def left_over_range(design: ReliefDesign, pair: GearPair) -> dict[str, LeftOverR
 
 def said_of_range(seen: Seen) -> Iterator[str]:
     """What to grind and what it leaves from the largest to the smallest torque; what one load only would do."""
+    if seen.data.for_range:
+        yield from said_at(seen, (-1, 0))
+
+
+def said_at(seen: Seen, ends: tuple[int, ...]) -> Iterator[str]:
+    """The same at torques of the table, by their numbers in it."""
     d = seen.data
-    if not d.for_range:
-        return
     shape = d.grinding[0].shape
-    none, best, single = (
-        d.over_range[label] for label in ("no relief", f"{shape} tip relief", f"{shape} tip relief for one load")
-    )
+    none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
     ground = [row.words for row in d.grinding if row.shape == shape and row.words]
-    ends = dict.fromkeys((best.torque.size - 1, 0))
     left = ", ".join(
         f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} µm at "
         f"{figures(best.torque[i], 4)} N m"
-        for i in ends
+        for i in dict.fromkeys(i % best.torque.size for i in ends)
     )
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
-    worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak)
-    if worse.size:
+    single = d.over_range.get(f"{shape} tip relief for one load")
+    worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
+    if single and worse.size:
         i = int(worse[np.argmax((single.peak_to_peak / none.peak_to_peak)[worse])])
-        nominal = d.load * d.data.pair.pair.driver.base_radius
+        nominal = d.load * single.torque[i] / single.load[i]
         yield (
             f"Pair {seen.name}: tip relief designed for {figures(nominal, 4)} N m only gives "
             f"{figures(single.peak_to_peak[i] * 1e6)} µm peak-to-peak at {figures(single.torque[i], 4)} N m, "

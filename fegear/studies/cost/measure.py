@@ -23,7 +23,7 @@ from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence, solve_influence
-from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.fem.plane.supported_section import supported_sector
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.pair import MEMBERS, Member
@@ -97,11 +97,12 @@ class Found:
 
 def _solve(gear: Gear, settings: MeshSettings, reach: int, sector_teeth: int) -> Influence:
     """Mesh and solve, past every cache."""
-    mesh = mesh_sector(gear.tooth, gear.bore_radius / gear.module, settings)
+    support = gear.support_in_modules
+    mesh = supported_sector(gear.tooth, gear.bore_radius / gear.module, settings, support)
     return solve_influence(
         gear.tooth, mesh, gear.material.poisson_ratio, gear.plane_assumption,
         order=settings.order, reach=reach, corner_distance=settings.corner_distance, sector_teeth=sector_teeth,
-        support=gear.support_in_modules, solver=settings.solver,
+        support=support, solver=settings.solver,
     )  # fmt: skip
 
 

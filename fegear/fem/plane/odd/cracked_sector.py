@@ -24,8 +24,10 @@ from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.odd.crack import SHORTEST, Crack, fillet_length
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.supported_section import bore_end, section_on
 from fegear.fem.plane.tooth_meshing import Slit, by_name, fill, named_runs, refuse_flat
 from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rim_support import RimSupport
 
 #: Names of the crack's faces, left and right as seen from its mouth.
 FACES = ("crack_left", "crack_right")
@@ -67,7 +69,9 @@ class CrackedSector:
     back: bool
 
 
-def cracked_sector(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, crack: Crack) -> CrackedSector:
+def cracked_sector(
+    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, crack: Crack, support: RimSupport | None = None
+) -> CrackedSector:
     """Mesh the sector of a cracked tooth.
 
     Parameters
@@ -78,6 +82,8 @@ def cracked_sector(tooth: InvoluteTooth, bore_radius: float, settings: MeshSetti
     settings : MeshSettings
         Those of the gear's ordinary sectors.
     crack : Crack
+    support : RimSupport, optional
+        Of the rim [modules].
 
     Raises
     ------
@@ -87,7 +93,7 @@ def cracked_sector(tooth: InvoluteTooth, bore_radius: float, settings: MeshSetti
         If gmsh fails, or no finer mesh along the crack is sound.
     """
     started = time.perf_counter()
-    chains = sector_boundary(tooth, bore_radius, settings)
+    chains = sector_boundary(tooth, bore_radius, settings, bore_end=bore_end(settings, support))
     path, room = _checked(tooth, crack, np.hstack([chain.vertices[:, :-1] for chain in chains]))
     scale = 1.0
     for _ in range(_MOST_REFINEMENTS):
@@ -100,7 +106,9 @@ def cracked_sector(tooth: InvoluteTooth, bore_radius: float, settings: MeshSetti
             scale *= _FINER
             continue
         way = path[:, -1] - path[:, -2]
-        return CrackedSector(mesh, path[:, -1], way / np.hypot(*way), room, crack.mouth, crack.back)
+        return CrackedSector(
+            section_on(mesh, settings, support), path[:, -1], way / np.hypot(*way), room, crack.mouth, crack.back
+        )
     raise FegearError(
         f"No valid mesh of the cracked tooth: it still {refused.rule}; change depth or angle of the crack a little."
     ) from refused

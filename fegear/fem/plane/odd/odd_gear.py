@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.root_stress import FilletCurve
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear
+    from fegear.geometry.rim_support import RimSupport
 
     Oddity = Crack | OtherTip | Missing
 
@@ -314,8 +315,8 @@ def solve_cracked_gear(
     Raises
     ------
     InputError
-        If all teeth are ordinary; if a crack or a tip does not fit its tooth; of a gear with a mesh of its own or a
-        supported rim.
+        If all teeth are ordinary; if a crack or a tip does not fit its tooth; of a gear with a mesh of its own, or a
+        rim on pins.
     """
     started, gear = time.perf_counter(), ordinary.gear
     known = SolutionCache() if cache is None else cache
@@ -349,8 +350,12 @@ def _refuse(ordinary: GearInfluence, cracks: Mapping[int, Oddity]) -> None:
     z = ordinary.gear.teeth
     if len({number % z for number in cracks}) < len(cracks):
         raise InputError("cracks", sorted(cracks), f"name one of {z} teeth twice")
-    if ordinary.fine.support is not None:
-        raise InputError("rim_support", "of a gear with odd teeth", "is not possible", "hold the whole circle")
+    support = ordinary.fine.support
+    if support is not None and support.kind not in ("free_arc", "web"):
+        raise InputError(
+            "rim_support.kind", f'"{support.kind}"', "is not available for a gear with odd teeth",
+            'set kind = "free_arc" or "web"',
+        )  # fmt: skip
     if ordinary.fine.mesh.origin != GENERATED:
         raise InputError("mesh", ordinary.fine.mesh.origin, "of a gear with odd teeth must be a generated one")
 
@@ -377,16 +382,24 @@ def _solve(
     if not isinstance(tooth, InvoluteTooth):
         raise TypeError("odd teeth are placed on gears with equal flanks only")
     odd = {
-        number: _odd_tooth(tooth, bore_radius, settings, one) for number, one in cracks if not isinstance(one, Missing)
+        number: _odd_tooth(tooth, fine.support, bore_radius, settings, one)
+        for number, one in cracks
+        if not isinstance(one, Missing)
     }
-    missing = {number: empty_sector(tooth, bore_radius, settings) for number, one in cracks if isinstance(one, Missing)}
+    missing = {
+        number: empty_sector(tooth, bore_radius, settings, fine.support)
+        for number, one in cracks
+        if isinstance(one, Missing)
+    }
     return solve_odd_influence(
         tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
-        missing=missing,
+        missing=missing, support=fine.support,
     )  # fmt: skip
 
 
-def _odd_tooth(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, one: Crack | OtherTip) -> OddTooth:
+def _odd_tooth(
+    tooth: InvoluteTooth, support: RimSupport | None, bore_radius: float, settings: MeshSettings, one: Crack | OtherTip
+) -> OddTooth:
     if isinstance(one, OtherTip):
-        return OddTooth(*shorter_sector(tooth, bore_radius, settings, one))
-    return OddTooth(tooth, cracked_sector(tooth, bore_radius, settings, one))
+        return OddTooth(*shorter_sector(tooth, bore_radius, settings, one, support))
+    return OddTooth(tooth, cracked_sector(tooth, bore_radius, settings, one, support))

@@ -19,23 +19,32 @@ from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
-from fegear.fem.plane.elasticity import SectorElasticity, assemble, assemble_two_orders
+from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.influence import SIDES, Influence, Side
 from fegear.fem.plane.odd.cracked_sector import CrackedSector
-from fegear.fem.plane.odd.odd_ring import OddRing, odd_ring
+from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring
 from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
+from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, fillet_strain
-from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector, ports_of
+from fegear.fem.plane.sector_sides import (
+    BetweenSides,
+    between_sides,
+    bore_of_side,
+    condensed_sector,
+    ports_of,
+)
+from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.rim_support import RimSupport
 
 #: How far below the flank a patch may reach into the fillet [modules], and how near to a crack's mouth, as a share of
 #: the way there.
@@ -147,6 +156,9 @@ class OddInfluence:
         The same on the same meshes with elements one order lower, which shows the error.
     missing : tuple of int
         Sectors without a tooth, -reach to reach.
+    held : ToothKind, optional
+        Ordinary teeth beyond the free arc of a bore, which `half` teeth on either side of tooth 0 are above.
+    half : int
     """
 
     poisson_ratio: float
@@ -158,6 +170,8 @@ class OddInfluence:
     seconds: Mapping[str, float] = field(compare=False)
     lower: OddInfluence | None = None
     missing: tuple[int, ...] = ()
+    held: ToothKind | None = None
+    half: int = 0
 
     @property
     def unlike(self) -> tuple[int, ...]:
@@ -179,7 +193,8 @@ class OddInfluence:
         """
         if i in self.missing:
             raise InputError("tooth", i, "is missing")
-        return self.odd.get(i, self.ordinary)
+        usual = self.ordinary if self.held is None or abs(i) <= self.half else self.held
+        return self.odd.get(i, usual)
 
     @cached_property
     def _teeth(self) -> dict[int, Influence]:
@@ -295,6 +310,7 @@ def solve_odd_influence(
     reach: int = 2,
     two_orders: bool = False,
     missing: Mapping[int, SectorMesh] | None = None,
+    support: RimSupport | None = None,
 ) -> OddInfluence:
     """Solve one ring with odd teeth for all that can be asked of its teeth.
 
@@ -316,6 +332,8 @@ def solve_odd_influence(
         Whether to solve with elements one order lower as well (`OddInfluence.lower`).
     missing : mapping of int to SectorMesh, optional
         Meshes of the sectors without a tooth, by number.
+    support : RimSupport, optional
+        A free arc of the bore, whose middle is below tooth 0, or a web [modules]; by default the bore is held.
 
     Raises
     ------
@@ -327,43 +345,66 @@ def solve_odd_influence(
     ordinary = OddTooth(tooth, mesh)
     every, bare = [ordinary, *odd.values()], missing or {}
     meshes = [*(one.mesh for one in every), *bare.values()]
+    half = support.free_teeth // 2 if support is not None and support.kind == "free_arc" else None
     with one_thread():
         order, solver = settings.order, settings.solver
         if two_orders:
-            pairs = [assemble_two_orders(mesh, poisson_ratio, plane, order, solver) for mesh in meshes]
+            pairs = [assemble_section_two_orders(one, poisson_ratio, plane, order, solver, support) for one in meshes]
             orders = [list(each) for each in zip(*pairs, strict=True)]
         else:
-            orders = [[assemble(mesh, poisson_ratio, plane, order, solver) for mesh in meshes]]
+            orders = [[assemble_section(one, poisson_ratio, plane, order, solver, support) for one in meshes]]
         found = []
         for elasticity in orders:
             started = time.perf_counter()
-            (usual, part), *others = (
-                _kind(one, each, poisson_ratio, plane) for one, each in zip(every, elasticity, strict=False)
-            )
+            usual, part = _kind(ordinary, elasticity[0], poisson_ratio, plane, free=half is not None)
+            far, held, bore = None, None, None
+            if half is not None:
+                bore = bore_of_side(mesh, elasticity[0])
+                far, beyond = _kind(ordinary, elasticity[0], poisson_ratio, plane, bore=bore)
+                held = Held(half, ~bore, beyond)
+            others = []
+            for number, one, each in zip(odd, odd.values(), elasticity[1 : len(every)], strict=True):
+                free = half is not None and abs(number) <= half
+                others.append(_kind(one, each, poisson_ratio, plane, free=free, bore=None if free else bore))
             kinds = {number: kind for number, (kind, _) in zip(odd, others, strict=True)}
             parts = {number: each for number, (_, each) in zip(odd, others, strict=True)}
-            for number, mesh, each in zip(bare, bare.values(), elasticity[len(every) :], strict=True):
-                condensed_bare, side_size, turn, _ = condensed_sector(mesh, each, np.zeros(0, dtype=np.intp))
-                parts[number] = between_sides(condensed_bare, side_size, turn)
+            for number, empty, each in zip(bare, bare.values(), elasticity[len(every) :], strict=True):
+                free = half is not None and abs(number) <= half
+                motions = rigid_motions(each) if free else None
+                condensed_bare, side_size, turn, _ = condensed_sector(
+                    empty, each, np.zeros(0, dtype=np.intp), motions=motions
+                )
+                gap = between_sides(condensed_bare, side_size, turn)
+                parts[number] = gap if free or bore is None else held_sectors(0, bore, gap).part
             condensed = time.perf_counter()
-            ring = odd_ring(part, parts, tooth.teeth, reach)
+            ring = odd_ring(part, parts, tooth.teeth, reach, held)
             seconds = {
                 "mesh": sum(mesh.seconds for mesh in meshes),
                 "condensation": condensed - started,
                 "ring": time.perf_counter() - condensed,
             }
+            distance, empty_sectors = settings.corner_distance, tuple(bare)
             found.append(
                 OddInfluence(
-                    poisson_ratio, plane, settings.corner_distance, usual, kinds, ring, seconds, None, tuple(bare)
+                    poisson_ratio, plane, distance, usual, kinds, ring, seconds, None, empty_sectors, far, half or 0
                 )
             )
     return replace(found[0], lower=found[1]) if two_orders else found[0]
 
 
 def _kind(
-    odd: OddTooth, elasticity: SectorElasticity, poisson_ratio: float, plane: Plane
+    odd: OddTooth,
+    elasticity: SectorElasticity,
+    poisson_ratio: float,
+    plane: Plane,
+    *,
+    free: bool = False,
+    bore: Mask | None = None,
 ) -> tuple[ToothKind, BetweenSides]:
-    """Condense a sector, and gather what of it is loaded and looked at; its condensed part for the ring."""
+    """Condense a sector, and gather what of it is loaded and looked at; its condensed part for the ring.
+
+    Its bore may be `free`; or it is held, in terms of free sectors, of whose sides `bore` says what is on it.
+    """
     tooth, mesh, cracked = odd.tooth, odd.mesh, isinstance(odd.sector, CrackedSector)
     fillets = {side: fillet_strain(mesh, elasticity, name, tooth.side) for side, name in _FILLETS.items()}
     margin, mouth, back = _MARGIN, 0.0, False
@@ -372,8 +413,11 @@ def _kind(
         margin = margin if back else min(margin, _ABOVE_MOUTH * (fillets["tension"].length - mouth))
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     ports = np.unique(np.concatenate([flank.dofs, *(fillets[side].dofs for side in SIDES)]))
-    condensed, side_size, turn, _ = condensed_sector(mesh, elasticity, ports, expandable=cracked)
+    motions = rigid_motions(elasticity) if free else None
+    condensed, side_size, turn, _ = condensed_sector(mesh, elasticity, ports, expandable=cracked, motions=motions)
     part = between_sides(condensed, side_size, turn)
+    if bore is not None:
+        part = held_sectors(0, bore, part).part
     follow = np.hstack([part.follow_a, part.follow_b])
     run = ports_of(condensed, flank.dofs)
     modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0

@@ -7,16 +7,20 @@ between the 2 R + 2 sides of the former. With H its inverse and A, B, G those of
 
 An odd sector needs the ordinary one's nodes on its sides, nothing else; any pattern of them fits, and nothing is found
 as a difference of two rings. Without one this is the ordinary ring to round-off.
+
+Where the bore is free below some teeth and held below the others (`Held`), sides between two free sectors have all
+their unknowns, and those of a held one only what its bore leaves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, Mask
 from fegear.base.errors import InputError
 from fegear.fem.plane.chain import chain_of, factored
 from fegear.fem.plane.ring_closure import closed_stiffness
@@ -44,7 +48,59 @@ class OddRing:
         return self.motion[i : i + 2, :, j : j + 2].reshape(2 * m, 2 * m)
 
 
-def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int, reach: int) -> OddRing:
+@dataclass(frozen=True)
+class Held:
+    """Ordinary sectors whose bore is held, in a ring whose other sectors' bores are free.
+
+    Parameters
+    ----------
+    half : int
+        Sectors -half..half are free, all others held.
+    free : ndarray of bool, shape (m,)
+        Unknowns of a free sector's side that are not on the bore.
+    part : BetweenSides
+        With the unknowns of a free sector's sides, those on the bore unmoved.
+    """
+
+    half: int
+    free: Mask
+    part: BetweenSides
+
+    def of(self, k: int) -> bool:
+        """Whether a sector's bore is held."""
+        return abs(k) > self.half
+
+    def chain(self, count: int) -> Array | None:
+        """A row of them as one, shape (2 m, 2 m)."""
+        twice = np.flatnonzero(np.tile(self.free, 2))
+        found = np.zeros_like(self.part.held)
+        found[np.ix_(twice, twice)] = chain_of(self.part.held[np.ix_(twice, twice)], count)
+        return found
+
+
+def held_sectors(half: int, bore: Mask, part: BetweenSides) -> Held:
+    """Held sectors in terms of the sides of free ones.
+
+    Parameters
+    ----------
+    half : int
+        As of `Held`.
+    bore : ndarray of bool, shape (m,)
+        Which unknowns of a free sector's side are on the bore.
+    part : BetweenSides
+        Of a held one.
+    """
+    free, twice = ~bore, np.flatnonzero(np.tile(~bore, 2))
+    held = np.zeros((2 * bore.size, 2 * bore.size))
+    held[np.ix_(twice, twice)] = part.held
+    follow_a, follow_b = (np.zeros((one.shape[0], bore.size)) for one in (part.follow_a, part.follow_b))
+    follow_a[:, free], follow_b[:, free] = part.follow_a, part.follow_b
+    return Held(half, free, replace(part, follow_a=follow_a, follow_b=follow_b, held=held))
+
+
+def odd_ring(
+    ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int, reach: int, held: Held | None = None
+) -> OddRing:
     """Close a ring of sectors of several kinds.
 
     Parameters
@@ -54,6 +110,8 @@ def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int
         By the number of the sector, -reach to reach.
     teeth, reach : int
         z, and R as of `OddRing`.
+    held : Held, optional
+        Which sectors of a ring whose ordinary ones' bores are free are held.
 
     Raises
     ------
@@ -69,21 +127,44 @@ def odd_ring(ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int
     m, sides = ordinary.follow_a.shape[1], 2 * reach + 2
     if any(part.follow_a.shape[1] != m for part in odd.values()):
         raise InputError("mesh", "side_a", "of an odd sector has other nodes than the ordinary sector's")
+
+    def part_of(k: int) -> BetweenSides:
+        return odd.get(k, ordinary if held is None or not held.of(k) else held.part)
+
     chains: list[tuple[Array | None, int, int]] = [
-        (odd.get(k, ordinary).held, k + reach, k + reach + 1) for k in range(-reach, reach + 1)
+        (part_of(k).held, k + reach, k + reach + 1) for k in range(-reach, reach + 1)
     ]
-    rest = teeth - 2 * reach - 1
-    if rest:
-        chains.append((chain_of(ordinary.held, rest), sides - 1, 0))
-        whole = closed_stiffness(chains, sides, m)
-        motion = _inverse(whole.reshape(sides * m, -1))
-    else:  # side R + 1 is side -R
+    fixed = {side for k in range(-reach, reach + 1) if held and held.of(k) for side in (k + reach, k + reach + 1)}
+    others = [k if 2 * k < teeth else k - teeth for k in range(reach + 1, teeth - reach)]
+    if not others:  # side R + 1 is side -R
         chains[-1] = (chains[-1][0], sides - 2, 0)
-        n = (sides - 1) * m
-        once = _inverse(closed_stiffness(chains, sides - 1, m).reshape(n, -1))
-        twice = np.r_[np.arange(n), np.arange(m)]
-        motion = once[np.ix_(twice, twice)]
-    return OddRing(reach, motion.reshape(sides, m, sides, m))
+        fixed = {side % (sides - 1) for side in fixed}
+    runs = [(kind, len(list(run))) for kind, run in groupby(others, lambda k: held is not None and held.of(k))]
+    first, count = sides - 1, sides if others else sides - 1
+    for n, (kind, members) in enumerate(runs):
+        last = 0 if n == len(runs) - 1 else count
+        row = held.chain(members) if held is not None and kind else chain_of(ordinary.held, members)
+        chains.append((row, first, last))
+        if kind:
+            fixed |= {first, last}
+        first, count = last, max(count, last + 1)
+    motion = _motion(closed_stiffness(chains, count, m), fixed, held)
+    twice = np.arange(sides * m) if others else np.r_[np.arange((sides - 1) * m), np.arange(m)]
+    return OddRing(reach, motion[np.ix_(twice, twice)].reshape(sides, m, sides, m))
+
+
+def _motion(whole: Array, fixed: set[int], held: Held | None) -> Array:
+    """Motions of all sides under forces on them; bores of the sides `fixed` do not move."""
+    sides, m = whole.shape[:2]
+    square = whole.reshape(sides * m, -1)
+    if held is None:
+        return _inverse(square)
+    moves = np.ones((sides, m), dtype=bool)
+    moves[sorted(fixed)] = held.free
+    at = np.flatnonzero(moves)
+    found = np.zeros_like(square)
+    found[np.ix_(at, at)] = _inverse(square[np.ix_(at, at)])
+    return found
 
 
 def _inverse(stiffness: Array) -> Array:

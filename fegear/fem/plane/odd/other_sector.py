@@ -10,7 +10,8 @@ import numpy as np
 
 from fegear.fem.plane.boundary import Chain, front_sizes, graded, sector_boundary
 from fegear.fem.plane.elements import check_cubic_edges
-from fegear.fem.plane.tooth_meshing import mesh_inside, mesh_sector
+from fegear.fem.plane.supported_section import bore_end, section_on, supported_sector
+from fegear.fem.plane.tooth_meshing import mesh_inside
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -18,23 +19,31 @@ if TYPE_CHECKING:
     from fegear.fem.plane.odd.other_outline import OtherTip
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.rim_support import RimSupport
 
 #: Parts of the outline of a sector that a missing tooth leaves.
 _LEFT = ("bore", "side_b", "root_land", "side_a")
 
 
 def shorter_sector(
-    ordinary: InvoluteTooth, bore_radius: float, settings: MeshSettings, one: OtherTip
+    ordinary: InvoluteTooth,
+    bore_radius: float,
+    settings: MeshSettings,
+    one: OtherTip,
+    support: RimSupport | None = None,
 ) -> tuple[InvoluteTooth, SectorMesh]:
     """A tooth with another tip circle, and the mesh of its sector; lengths in modules."""
     tooth = one.tooth(ordinary)
-    return tooth, mesh_sector(tooth, bore_radius, settings)
+    return tooth, supported_sector(tooth, bore_radius, settings, support)
 
 
-def empty_sector(ordinary: InvoluteTooth, bore_radius: float, settings: MeshSettings) -> SectorMesh:
+def empty_sector(
+    ordinary: InvoluteTooth, bore_radius: float, settings: MeshSettings, support: RimSupport | None = None
+) -> SectorMesh:
     """Mesh of a sector that ends at the root circle; lengths in modules."""
     started = time.perf_counter()
-    chains = [chain for chain in sector_boundary(ordinary, bore_radius, settings) if chain.name in _LEFT]
+    outline = sector_boundary(ordinary, bore_radius, settings, bore_end=bore_end(settings, support))
+    chains = [chain for chain in outline if chain.name in _LEFT]
     place = next(i for i, chain in enumerate(chains) if chain.name == "side_b") + 1
     place += chains[place].name == "root_land"
     start, end = chains[place - 1].vertices[:, -1], chains[place].vertices[:, 0]
@@ -49,7 +58,7 @@ def empty_sector(ordinary: InvoluteTooth, bore_radius: float, settings: MeshSett
     mesh = mesh_inside(chains, ordinary.teeth, started, settings.side_growth)
     if settings.order > 2:
         check_cubic_edges(mesh)
-    return mesh
+    return section_on(mesh, settings, support)
 
 
 def _arc(start: Array, end: Array, shares: Array) -> Chain:

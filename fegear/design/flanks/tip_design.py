@@ -1,0 +1,215 @@
+"""Tip reliefs of teeth with a width that a shop can grind, for one load or a range, and what each leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.contact.fourier import Panels
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair
+from fegear.design.flanks.families import FamilyBest, best_of_family, settled
+from fegear.design.flanks.grid import ReliefGrid
+from fegear.design.flanks.tip_bench import Read, TipTrials, tip_reader, tip_trials, without_tips
+from fegear.design.flanks.trials import FlankTrials
+from fegear.design.load_range import LoadRange
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.fem.solid.flank_body import FlankBody
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.relief import EndRelief, Shape
+
+#: Exponents of the shapes.
+POWERS: Mapping[Shape, float] = {"linear": 1.0, "parabolic": 2.0}
+#: Amounts that are tried, over the mean transmission error, and lengths over the path of contact.
+_AMOUNTS, _LENGTHS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0), (0.1, 0.25, 0.45, 0.7, 1.0)
+#: What a tip may lose at most [modules].
+_DEEPEST = 0.1
+
+
+@dataclass(frozen=True)
+class TipDesignTask:
+    """What tip reliefs are designed for.
+
+    Parameters
+    ----------
+    load : float
+        Design load [N].
+    over : LoadRange or None
+        Loads that they are designed for together in place of this one.
+    grind : tuple of str
+        Shapes.
+    tolerances : tuple of TipTolerance
+        Of driver and driven gear.
+    map_loads : tuple of float
+        Under which what is left is wanted besides [N].
+    """
+
+    load: float
+    over: LoadRange | None
+    grind: tuple[Shape, ...]
+    tolerances: tuple[TipTolerance, TipTolerance]
+    map_loads: tuple[float, ...]
+
+    @property
+    def one_load(self) -> LoadRange:
+        """The design load only."""
+        return LoadRange((self.load,))
+
+    @property
+    def loads(self) -> tuple[float, ...]:
+        """All loads under which what is left is read, ascending [N]."""
+        return tuple(sorted({self.load, *(self.over.loads if self.over else ()), *self.map_loads}))
+
+
+@dataclass(frozen=True)
+class TipDesign(ReadOnlyArrays):
+    """Tip reliefs of teeth with a width.
+
+    Parameters
+    ----------
+    task : TipDesignTask
+    points : Panels
+        Roll positions of what is left.
+    found : mapping of shape to FamilyBest
+        To grind: for the range of the task, or for the design load.
+    for_one_load : mapping of shape to FamilyBest
+        For the design load only; empty without a range.
+    left : mapping of str to Read
+        Under `TipDesignTask.loads`: "no relief", each shape ("linear tip relief"), with a range also each for one load
+        ("linear tip relief for one load"), and "present relief" where the pair has one.
+    most : mapping of shape to ndarray, shape (L,)
+        Largest peak-to-peak value within the tolerances [m].
+    """
+
+    task: TipDesignTask
+    points: Panels
+    found: Mapping[Shape, FamilyBest]
+    for_one_load: Mapping[Shape, FamilyBest]
+    left: Mapping[str, Read]
+    most: Mapping[Shape, Array]
+
+
+def tip_grid(pair: GearPair, mean: float) -> ReliefGrid:
+    """Amounts and lengths that are tried; what is found lies between their ends.
+
+    Parameters
+    ----------
+    pair : GearPair
+    mean : float
+        Transmission error at the largest load [m].
+    """
+    deepest = _DEEPEST * pair.driver.module
+    amounts = tuple(min(mean * share, deepest) for share in _AMOUNTS)
+    return ReliefGrid(amounts, tuple(pair.path_length * share for share in _LENGTHS), (), (), (), (), ())
+
+
+def best_tips(trials: TipTrials) -> FamilyBest:
+    """The tip reliefs of both gears that leave the least, of the shape of the trials.
+
+    Parameters
+    ----------
+    trials : TipTrials
+        Under the loads that count.
+    """
+    few = trials.few
+    plain = few.of_gap(np.zeros(few.known.lines.x.shape)).found[0]
+    grid = tip_grid(few.pair, float(plain.mean_transmission_error[-1]))
+    force = plain.contact.force[:, :, -1]
+    best = best_of_family(few, "profile", grid, force)
+    return settled(trials.more, best, grid, ())
+
+
+def end_reliefs(numbers: Array, pair: GearPair, tip_power: float) -> tuple[EndRelief, EndRelief]:
+    """The tip reliefs of driver and driven gear over their roll angles."""
+    found = []
+    for member, amount, length in zip(MEMBERS, numbers[0:4:2].tolist(), numbers[1:4:2].tolist(), strict=True):
+        end = pair.x_end if member == "driver" else pair.x_start
+        start = end - length if member == "driver" else end + length
+        if amount == 0.0:
+            start = end - 0.5 * pair.path_length if member == "driver" else end + 0.5 * pair.path_length
+        first, last = (float(pair.roll_angle(x, member)) for x in (start, end))
+        found.append(EndRelief(amount, first, last, tip_power))
+    return found[0], found[1]
+
+
+def within_tolerances(
+    trials: FlankTrials, pair: GearPair, numbers: Array, tolerances: tuple[TipTolerance, TipTolerance]
+) -> Array:
+    """Nine numbers of the reliefs inside their tolerances that leave most under each load, shape (L, 9).
+
+    Amounts and lengths of both reliefs are at the ends of their tolerances and in their middle, each with each.
+    """
+    ends = end_reliefs(numbers, pair, trials.tip_power)
+    each: list[list[tuple[float, float]]] = []
+    for member, tip, allowed in zip(MEMBERS, ends, tolerances, strict=True):
+        gear = pair.gear(member)
+        off = [allowed.off(gear, tip, *by) for by in ((-1, -1), (-1, 1), (1, -1), (1, 1))] if tip.amount else [tip]
+        each.append([(one.amount, gear.base_radius * (one.end - one.start)) for one in (tip, *off)])
+    combined = []
+    for (a, b), (c, d) in product(*each):
+        one = numbers.copy()
+        one[:4] = a, b, c, d
+        combined.append(one)
+    seen = np.stack([trials.of_numbers(one).peak_to_peak[0] for one in combined])
+    return np.stack([combined[i] for i in seen.argmax(axis=0)])
+
+
+def design_tips(
+    flanks: FlankPair,
+    coarse: Mapping[Member, FlankBody],
+    known: FlankCompliance,
+    gaps: FlankGaps,
+    task: TipDesignTask,
+    *,
+    present: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> TipDesign:
+    """Design the tip reliefs of a pair of teeth with a width.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+    coarse : mapping of {"driver", "driven"} to FlankBody
+        The gears' coarser solutions, for errors.
+    known : FlankCompliance
+        Of the roll positions of the pair's other results.
+    gaps : FlankGaps
+        What keeps the flanks apart; its profile reliefs are replaced, all else stays.
+    task : TipDesignTask
+    present : bool
+        Whether what the pair has now is of interest, too.
+    progress : callable, optional
+    """
+    report = progress or (lambda _fraction: None)
+    pair, apart, loads = flanks.pair, without_tips(gaps), np.array(task.loads)
+    trials = tip_trials(flanks, known, apart, task.load)
+    report(0.2)
+    reader = tip_reader(flanks, coarse, apart, task.load).under(loads, apart)
+    report(0.5)
+    left: dict[str, Read] = {"no relief": reader.read()}
+    if present:
+        none = np.empty(0)
+        left["present relief"] = reader.read(apart=replace(gaps, driver_spacing=none, driven_spacing=none))
+    found: dict[Shape, FamilyBest] = {}
+    single: dict[Shape, FamilyBest] = {}
+    most: dict[Shape, Array] = {}
+    for number, shape in enumerate(task.grind):
+        power = POWERS[shape]
+        of_shape = reader.shaped(power)
+        found[shape] = best_tips(trials.over(task.over or task.one_load, power, apart))
+        numbers = found[shape].relief.numbers
+        left[f"{shape} tip relief"] = of_shape.read(numbers)
+        worst = within_tolerances(of_shape.plain, pair, numbers, task.tolerances)
+        most[shape] = np.array([
+            np.ptp(of_shape.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)
+        ])  # fmt: skip
+        if task.over is not None:
+            single[shape] = best_tips(trials.over(task.one_load, power, apart))
+            left[f"{shape} tip relief for one load"] = of_shape.read(single[shape].relief.numbers)
+        report(0.5 + 0.5 * (number + 1) / len(task.grind))
+    return TipDesign(task, reader.points, found, single, left, most)

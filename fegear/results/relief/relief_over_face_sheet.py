@@ -1,0 +1,134 @@
+"""What tip reliefs of teeth with a width show: the grinding table, what is left over torque, profile charts, maps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.printed import figures
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
+from fegear.results.relief.grinding import grinding_table
+from fegear.results.relief.ground_tips import tip_numbers
+from fegear.results.relief.harris import OVER_ROLL
+from fegear.results.relief.profile_charts import k_chart
+from fegear.results.relief.relief_over_face_data import TipsShown
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, said_at
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.engine.sheet.seen import Seen
+
+
+def _key(seen: Seen) -> str:
+    return seen.key.replace(" ", "_")
+
+
+def _grind(seen: Seen) -> Iterator[str]:
+    if seen.data.shapes:
+        yield from said_at(seen, seen.data.ends)
+
+
+def _within(seen: Seen) -> Iterator[str]:
+    """What the best relief leaves at worst within its tolerances."""
+    if not seen.data.shapes or not seen.data.grinding:
+        return
+    d = seen.data
+    best, none = d.over_range[f"{d.shapes[0]} tip relief"], d.over_range["no relief"]
+    at = np.array(d.ends)
+    i = int(at[np.argmax(best.most[at] / none.peak_to_peak[at])])
+    yield (
+        f"Pair {seen.name}: within the tolerances of the grinding table at most {figures(best.most[i] * 1e6, 2)} µm at "
+        f"{figures(best.torque[i], 4)} N m (without relief {figures(none.peak_to_peak[i] * 1e6, 2)} µm)."
+    )
+
+
+def _figure(seen: Seen) -> str:
+    several = len(seen.data.ends) > 1
+    return f"relief_over_torque_{seen.name}" if several else f"relief_candidates_{seen.name}"
+
+
+RELIEF_OVER_FACE_SHEET = Sheet(
+    of=TipsShown,
+    answer=Answer(_grind, _within, figure=_figure),
+    tables=(
+        grinding_table("grinding_{name}", "Tip relief to grind on {name}", "grinding"),
+        OVER_RANGE,
+        Rows(
+            "harris_map_{name}", "Harris map of {name}",
+            (
+                Each(
+                    "left",
+                    Cell(
+                        "map.transmission_error", name=lambda seen: f"te_{_key(seen)}",
+                        meaning="transmission error, {key}",
+                    ),
+                    Off("map.transmission_error", "map_error", name=lambda seen: f"te_{_key(seen)}"),
+                ),
+            ),
+            of=lambda seen: next(iter(seen.data.left.values())).map, on=("load", "x"),
+        ),
+    ),
+    values=(
+        Each(
+            "left",
+            Number("peak_to_peak", "error", name=lambda seen: f"te_peak_to_peak.{_key(seen)}",
+                   meaning="{key}, design load"),
+            Number("effective", "error", name=lambda seen: f"te_effective.{_key(seen)}",
+                   meaning="A_e, {key}, design load"),
+        ),
+        tip_numbers("tips", "{one.shape}_tip_"),
+    ),
+    figures=(
+        RANGE_CHART,
+        k_chart("profile_charts"),
+        Chart(
+            "relief_candidates_{name}", "Transmission error of pair {name} with and without relief",
+            "Pair {name}: remaining transmission error with each relief at the design load, {d.load:.5g} N.",
+            (
+                Over(
+                    BASE_PITCH,
+                    (
+                        Line(
+                            "minus_mean", "{key}: {one.words} peak to peak", "{key}", each=Family("left"),
+                            look={"markers": False},
+                        ),
+                    ),
+                    marks=lambda seen: pitch_marks(seen.data.data.pair, next(iter(seen.data.left.values())).x),
+                ),
+            ),
+            under="{d.load:.5g} N",
+        ),
+        Chart(
+            "harris_map_{name}", "Harris map of pair {name}",
+            "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
+            "wide: the design load, {d.load:.5g} N; grey: the range of torques of the design, if there is one.",
+            (OVER_ROLL,),
+            views="maps",
+        ),
+    ),
+    remarks=(
+        Remark(
+            "Pair {name}: shaft deflection is kept at that of the present flanks during the design; rerun with the "
+            "designed relief to update it.",
+            when="data.on_shafts",
+        ),
+        Remark(
+            "Pair {name}: {d.unproven}: too many combinations are too close to the minimum to compute all of them "
+            "exactly; the optimum is likely but not proven.",
+            when="unproven",
+        ),
+    ),
+    settings={
+        "design_load": "load",
+        "combinations": lambda seen: sum(best.candidates for best in seen.data.design.found.values()),
+        "loaded_exactly": lambda seen: sum(best.exact for best in seen.data.design.found.values()),
+    },
+)  # fmt: skip

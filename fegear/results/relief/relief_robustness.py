@@ -1,0 +1,182 @@
+"""Stage ``robustness``: how designed reliefs hold up when load, pitch and depth deviate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.printed import figures, percent
+from fegear.base.shown import shown
+from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.stage import Forecast, Task, Upstream, Work
+from fegear.results.relief.relief import design_pairs, design_part, relief_stage
+from fegear.results.relief.relief_chart import CITES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.case.design import RobustnessPart
+    from fegear.case.reading import Scene
+    from fegear.design.charts import Metric
+    from fegear.design.held_relief import Robustness
+    from fegear.design.load_range import LoadRange
+    from fegear.engine.sheet.seen import Seen
+    from fegear.results.relief.relief_data import ReliefData
+
+
+@dataclass(frozen=True)
+class RobustnessData:
+    """How each candidate holds up, by its name."""
+
+    candidates: Mapping[str, Robustness]
+    candidate: str = shown("", "relief", default="")
+
+
+@dataclass(frozen=True)
+class RobustnessInputs:
+    """What the robustness of a pair's reliefs depends on.
+
+    Parameters
+    ----------
+    part : RobustnessPart
+    metric : str
+    own_relief : bool
+        Whether the relief of the case is a candidate too.
+    name : str
+        Of the pair.
+    """
+
+    part: RobustnessPart
+    metric: Metric
+    own_relief: bool
+    name: str = field(compare=False)
+
+
+def robustness_inputs(scene: Scene, name: str) -> RobustnessInputs:
+    """Collect what a case says of the robustness of a pair's reliefs."""
+    part = design_part(scene)
+    return RobustnessInputs(part.robustness, part.metric, scene.case.effects.relief, name)
+
+
+def load_factors(asked: RobustnessPart, over: LoadRange | None, load: float) -> list[float]:
+    """Loads over the design load: those asked for, or of a range."""
+    if over is None or "load_factors" in asked.given:
+        return asked.load_factors
+    return [one / load for one in over.loads]
+
+
+def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work) -> RobustnessData:
+    from fegear.design.held_relief import robustness
+
+    designed: ReliefData = next(found for task, found in upstream.items() if task.stage == "relief")
+    asked, design = inputs.part, designed.design
+    factors = load_factors(asked, design.task.over, design.task.load)
+    states = {"designed": design.designed}
+    states |= {f"{shape} tip relief": g.applied(design.designed) for shape, g in design.ground.items()}
+    if inputs.own_relief:
+        own = designed.pair.engagement
+        states["relief of the case"] = replace(own, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+    found: dict[str, Robustness] = {}
+    for label, state in states.items():
+        found[label] = robustness(
+            state, design.task.load, factors, asked.spacing_errors, asked.relief_errors, inputs.metric
+        )
+        work.progress(len(found) / len(states))
+    return RobustnessData(found)
+
+
+def _worst_combination(seen: Seen) -> str:
+    """Which combination is worst, in words."""
+    factor, spacing, depth = seen.one.worst_case
+    where = f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} um, relief {percent(depth, signed=True)}"
+    return f"{seen.key}, maximum of the {seen.one.values.size} combinations: {where}"
+
+
+def _over_load(extreme: Callable[..., Array], width: float) -> Line:
+    """The extreme of all combinations at each load, over the loads in their order."""
+    return Line(
+        "values", "{key}", si=lambda seen: extreme(seen.one.values, axis=(1, 2))[np.argsort(seen.one.load_factors)],
+        x_si=lambda seen: np.sort(seen.one.load_factors), look={"width": width, "markers": width > 1.0},
+    )  # fmt: skip
+
+
+_EXCITATION = {"peak_to_peak": "peak-to-peak", "effective_error": "effective"}
+
+
+def _worst_in_words(seen: Seen) -> Iterator[str]:
+    """The relief with the smallest maximum, and where that is."""
+    label, found = min(seen.data.candidates.items(), key=lambda one: one[1].worst)
+    factor, spacing, depth = found.worst_case
+    yield (
+        f"Pair {seen.name}, {label}: {figures(found.nominal * 1e6, 2)} µm at the design load, at most "
+        f"{figures(found.worst * 1e6, 2)} µm (load factor {factor:g}, pitch deviation {spacing * 1e6:g} µm, relief "
+        f"{percent(depth, signed=True)})."
+    )
+
+
+ROBUSTNESS_SHEET = Sheet(
+    answer=Answer(_worst_in_words, figure="robustness_{name}"),
+    tables=(
+        Rows(
+            "robustness_{name}", "Robustness of the reliefs of {name}",
+            (
+                Cell("candidate", lambda seen: seen.key, lambda _: RobustnessData),
+                Cell("values", name="{asked.metric}"),
+            ),
+            stacked="candidates", on=("load_factors", "spacing_errors", "relief_errors"),
+        ),
+    ),
+    values=(
+        Number(
+            "values", si="worst", each="candidates", meaning=_worst_combination,
+            name=lambda seen: f"worst_{seen.asked.metric}.{seen.key.replace(' ', '_')}",
+        ),
+    ),
+    figures=(
+        Chart(
+            "robustness_{name}", "Robustness of the reliefs of pair {name}",
+            "Pair {name}: maximum (marked) and minimum (thin) over all combinations of pitch deviation and relief "
+            "tolerance.",
+            (
+                Over(
+                    "load_factors",
+                    (Bundle(Family("candidates", role="{key}"), (_over_load(np.max, 1.8), _over_load(np.min, 0.8))),),
+                    lambda seen: Axis(f"{_EXCITATION[seen.asked.metric]} transmission error", "um", zero=True),
+                ),
+            ),
+            of=lambda seen: next(iter(seen.data.candidates.values())),
+        ),
+    ),
+    settings={"metric": lambda seen: seen.asked.metric},
+)  # fmt: skip
+
+
+def _robustness_pairs(scene: Scene) -> tuple[str, ...]:
+    """Those of the design, unless the case asks for draws inside tolerances alone."""
+    return () if scene.case.robustness is not None and scene.case.design is None else design_pairs(scene)
+
+
+def _robustness_forecast(scene: Scene, _name: str) -> Forecast:
+    """Every deviation with every other, for each candidate."""
+    part = scene.case.design.robustness if scene.case.design else None
+    count = len(part.load_factors) * len(part.spacing_errors) * len(part.relief_errors) if part else 15
+    return Forecast({"deviations": count}, 0.005 + 5e-4 * count)
+
+
+ROBUSTNESS = relief_stage(
+    subjects=_robustness_pairs,
+    needs=lambda _scene, name: (Task("relief", name),),
+    inputs=robustness_inputs,
+    compute=_compute_robustness,
+    present=ROBUSTNESS_SHEET.present,
+    cites=CITES,
+    forecast=_robustness_forecast,
+)

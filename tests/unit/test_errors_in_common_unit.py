@@ -1,0 +1,99 @@
+"""Errors stated where two solutions agree by chance, or share what is wrong: by what is known beside, or otherwise."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.contact.wide.load_factors import RootFactors
+from fegear.fem.plane.edge_curves import beyond_the_fillet, moved_by_edges
+from fegear.fem.plane.estimate import Estimate
+from fegear.fem.plane.influence import SIDES
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.results.pair.load_factors import FlankLoadFactorsData
+
+
+@pytest.fixture(scope="module")
+def ring():
+    """A ring on a rim of four modules whose next tooth was 3.4 times the stated error off; and with shorter edges."""
+    cutter = PinionCutter(20, profile_shift=0.244, addendum=1.25, tip_radius=0.244)
+    tooth = InternalTooth(72, cutter, profile_shift=0.244, tip_radius=210.7378 / 6.0)
+    gear = Gear(tooth, 1e-3, (tooth.root_radius + 12.7142 / 3.0) * 1e-3, 0.02)
+    rough = settings_at(-4.5)
+    finer = replace(rough, root_edge_length=0.022, root_fraction=0.045)
+    return solve_gear(gear, rough), solve_gear(gear, finer, estimate_error=False)
+
+
+def test_edges_of_a_fillet_move_the_next_tooth_by_what_shorter_ones_change(ring):
+    rough, finer = ring
+    known, patch = rough.fine, rough.settings.patch_half_width
+    radius = np.linspace(rough.lowest_radius, rough.highest_radius, 9) * 1e3
+    change = finer.fine.neighbour(1, radius, radius, patch) - known.neighbour(1, radius, radius, patch)
+    loads, outside = known.remote(radius, patch), {side: beyond_the_fillet(known, side) for side in SIDES}
+    moved = moved_by_edges(known, 1, loads, loads, outside)
+    assert np.linalg.norm(moved - change) < 0.25 * np.linalg.norm(change)
+    backward = moved_by_edges(known, -1, loads, loads, outside)
+    assert backward == pytest.approx(moved.T, rel=1e-6, abs=1e-9 * np.abs(moved).max())
+    other = rough.estimate.neighbour(1, radius, radius)[1]
+    assert (np.abs(change) < 1.5 * other).all()
+
+
+def test_points_off_a_fillet_are_as_far_from_it_as_they_were_put(ring):
+    known = ring[0].fine
+    for side, mirror in (("tension", 1.0), ("compression", -1.0)):
+        fillet, curve, h = known.fillets[side], known.tooth.fillet, 1e-3
+        parameter = np.linspace(curve.start, curve.end, fillet.arc.size + 2)[1:-1]
+        place = curve.points(parameter) + h * curve.normals(parameter)
+        arc = np.array([_length(curve, one) for one in parameter])
+        radius, angle = np.hypot(*place), mirror * np.arctan2(*place)
+        moved = replace(fillet, radius=radius, angle=angle, arc=arc, length=_length(curve, curve.end))
+        off = beyond_the_fillet(replace(known, fillets={**known.fillets, side: moved}), side)
+        assert off == pytest.approx(np.full(off.shape, h), rel=1e-6)
+        user = replace(known, mesh=replace(known.mesh, origin="mesh.msh"))
+        assert not beyond_the_fillet(user, side).any()
+
+
+def _length(curve, to):
+    at = np.linspace(curve.start, to, 2001)
+    return float(np.hypot(*np.diff(curve.points(at))).sum())
+
+
+def test_where_a_difference_changes_its_sign_the_error_is_that_of_places_beside_it(ring, monkeypatch):
+    """Of a ring the true error at such a place was twice the stated one."""
+    low, high = (radius * 1e3 for radius in (ring[0].lowest_radius, ring[0].highest_radius))
+    middle, span = 0.5 * (low + high), 0.02 * (high - low)
+
+    def difference(self, value, radius, half_width):
+        """Large about the middle, through zero there, and next to nothing elsewhere."""
+        off = np.broadcast_to((np.asarray(radius) - middle) / span, value.shape)
+        return 1e-3 * np.abs(off) * np.exp(-0.5 * off**2) + 1e-9
+
+    monkeypatch.setattr(Estimate, "_self_difference", difference)
+    estimate = replace(ring[0].estimate)
+    error = estimate.self_error(np.array([middle, low]), np.asarray(0.02))
+    sampled = difference(None, estimate._samples, estimate._samples, None)
+    share = estimate.self_error(np.array([middle + span]), np.asarray(0.02))[0] / (1e-3 * math.exp(-0.5))
+    beside = np.sort(np.abs(estimate._samples - middle))[:2]
+    least = 1e-3 * min(np.abs(beside) / span * np.exp(-0.5 * (beside / span) ** 2))
+    assert error[0] >= 0.99 * share * max(least, sampled[np.argsort(np.abs(estimate._samples - middle))[:3]].max())
+
+
+def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():
+    """K_Fbeta of one gear agreed by chance: 8 times the stated error off."""
+    fine = {"driver": RootFactors(1.01, 1.1, 3e8), "driven": RootFactors(1.02, 1.2, 2e8)}
+    coarse = {"driver": RootFactors(1.01, 1.15, 3e8), "driven": RootFactors(1.023, 1.21, 2e8)}
+    data = FlankLoadFactorsData(SimpleNamespace(), np.zeros(1), fine, coarse, "", 0.9, 0.0, None, np.ones(1))
+    for member in ("driver", "driven"):
+        one = data.members[member]
+        assert one.fine is fine[member]
+        assert one.off("face") == pytest.approx(0.003)
+        assert one.off("transverse") == pytest.approx(0.05)
+    none = replace(data, coarse={"driver": None, "driven": None})
+    assert none.members["driver"].off("face") is None
+    half = replace(data, coarse={"driver": None, "driven": coarse["driven"]})
+    assert half.members["driver"].off("transverse") == pytest.approx(0.01)
