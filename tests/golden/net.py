@@ -301,7 +301,7 @@ def main():
         for done in concurrent.futures.as_completed(running):
             said, seconds = done.result()
             changed += bool(said)
-            verdict = f"{len(said)} differences" if said else "second coordinate"
+            verdict = f"{len(said)} differences" if said else "the same"
             print(f"{running[done]}: {verdict} ({seconds:.1f} s)", flush=True)
             for line in said[: 5 if asked.accept else None]:
                 print(f"  {running[done]}, {line}", flush=True)
