@@ -36,6 +36,14 @@ def _several(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
 
+def _range(teeth: list[int]) -> list[int]:
+    """Refuse what is no range of numbers of teeth."""
+    if len(teeth) != 2 or not 5 <= teeth[0] <= teeth[1] <= 2000:
+        raise refuse("must be a range of numbers of teeth [from, to] from 5 to 2000", "e.g. [17, 40]",
+                     value=f"{teeth}"[:60])  # fmt: skip
+    return teeth
+
+
 def _two(names: list[str]) -> list[str]:
     """Refuse more or fewer than two members."""
     if len(names) != 2:
@@ -126,6 +134,37 @@ class CompoundMeshPart(Part):
     )
 
 
+class ToothSearchPart(Part):
+    """``[compound.NAME.search]``: numbers of teeth that give a wanted ratio."""
+
+    ratio: Number = Field(
+        description="Wanted ratio of input to output speed, negative if they rotate in opposite directions."
+    )
+    tolerance: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
+        default=0.01, description="Largest relative deviation of the ratio."
+    )
+    teeth: dict[str, Annotated[list[int], AfterValidator(_range)]] = Field(
+        default_factory=dict,
+        description="Range of the numbers of teeth of gears, by name: [from, to]. Gears that are not named vary by "
+        "20 %, at least 12 teeth.",
+    )
+    coaxial: Annotated[Number, Field(ge=0.0, le=3.0)] = Field(
+        default=0.5,
+        description="Largest difference of reference centre distances of one planet, in modules; profile shifts "
+        "have to balance it.",
+    )
+    clearance: Annotated[Number, Field(ge=0.0, le=100.0)] = Field(
+        default=1.0, description="Minimum distance between tip circles of planets, in modules."
+    )
+    most: Annotated[int, Field(ge=1, le=1000)] = Field(default=20, description="Number of combinations listed.")
+
+    @model_validator(mode="after")
+    def _turns(self) -> Self:
+        if self.ratio == 0.0:
+            raise refuse("must not be zero", "set ratio = 3.5, or -3.5 for opposite directions", key="ratio", value=0)
+        return self
+
+
 class CompoundPart(Part):
     """A planetary gear set of any shafts, planets and meshes on one axis."""
 
@@ -153,6 +192,10 @@ class CompoundPart(Part):
     clockwise: bool = Field(default=False, description="Driving shaft rotates clockwise.")
     harmonics: Annotated[int, Field(ge=1, le=200)] = Field(
         default=12, description="Harmonics of the mesh frequency in the table of phasing."
+    )
+
+    search: Table[ToothSearchPart] | None = Field(
+        default=None, description="Numbers of teeth wanted for a ratio, for `tooth-numbers`."
     )
 
     @model_validator(mode="after")

@@ -239,6 +239,10 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("compound-modes", "planetary.compound_modes.COMPOUND_MODES",
               "Natural modes of a compound planetary gear set", ("compound-modes",),
               "natural frequencies and mode types of a compound planetary gear set", internal=True),
+        Entry("tooth-numbers", "planetary.tooth_numbers.TOOTH_NUMBERS", "Numbers of teeth of a planetary gear set",
+              ("tooth-numbers",),
+              "numbers of teeth for a wanted ratio, with assembly, clearance and phasing of the planets",
+              internal=True),
     ),
     "Shafts and bearings": (
         Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes", effects=WIDE_EFFECTS,

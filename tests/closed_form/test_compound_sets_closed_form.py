@@ -1,6 +1,7 @@
 """Planetary sets described as data: Willis in fractions, today's simple set, flanks unwound, bodies on springs."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 
@@ -14,6 +15,7 @@ from fegear.dynamics.compound.compound_modes import CompoundModel, compound_mode
 from fegear.dynamics.compound.compound_set import CompoundSet, End, Mesh, Shaft
 from fegear.dynamics.compound.drives import Drive, Trains
 from fegear.dynamics.compound.mesh_phases import mesh_phases, phasing
+from fegear.dynamics.compound.tooth_search import Wanted, search
 from fegear.dynamics.planetary import phases as simple_phases
 from fegear.dynamics.planetary.kinematics import running
 from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet
@@ -394,6 +396,35 @@ def test_evenly_spaced_planets_give_modes_of_pure_kinds():
         kinds = compound_modes(CompoundModel(of, (1,) * len(of.meshes))).kind
         assert "mixed" not in kinds
         assert {"rotation", "translation"} <= set(kinds)
+
+
+@pytest.mark.parametrize(("planets", "ratio"), [(3, 4.0), (4, 4.35), (5, 3.2)])
+def test_numbers_of_teeth_are_those_of_loops_over_all(planets, ratio):
+    """Sun in, carrier out, ring fixed: i = 1 + z_r/z_s."""
+    of = compound_sets.simple()
+    module = 2.0 * compound_sets.PER_TOOTH / math.cos(math.radians(20.0))
+    of = CompoundSet(
+        of.shafts, tuple(replace(one, angles=compound_sets.evenly(planets)) for one in of.planets), of.meshes
+    )
+    drive = Trains(of).drive(("ring",), "sun", "carrier")
+    ranges = {"s": (17, 34), "p": (14, 44), "r": (50, 110)}
+    wanted = Wanted(ratio, 0.004, ranges, dict.fromkeys(ranges, module))
+    found = {tuple(one.teeth[name] for name in "spr") for one in search(of, drive, wanted, 10**6)}
+    own = set()
+    for s in range(17, 35):
+        for p in range(14, 45):
+            for r in range(max(50, p + 10), 111):
+                if abs(r - s - 2 * p) > 1 or (s + r) % planets or abs((1 + r / s) / ratio - 1) > 0.004:
+                    continue
+                tip = module * p / 2 + of.planets[0].wheels[0].tip_radius - module * 29 / 2
+                if 2.0 * (0.5 * module * (s + p) * math.sin(math.pi / planets) - tip) >= module:
+                    own.add((s, p, r))
+    assert found == own
+    assert own
+    few = search(of, drive, wanted, 3)
+    assert [abs(one.off) for one in few] == sorted(abs(one.off) for one in few)
+    with pytest.raises(InputError, match="is not reached within"):
+        search(of, drive, replace(wanted, ratio=-7.0), 3)
 
 
 def test_meshes_that_close_a_loop_are_refused():
