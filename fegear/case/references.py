@@ -55,6 +55,9 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
         key = f"transmissibility.{name}.excitation.transmission_error.pair"
         yield key, error.pair if error else None, "pair"
         yield f"transmissibility.{name}.mesh.pair", part.mesh.pair, "pair"
+    for name, compound in case.compound.items():
+        for gear in () if compound.search is None else compound.search.teeth:
+            yield f"compound.{name}.search.teeth", gear, "gear"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

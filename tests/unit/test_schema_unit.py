@@ -117,7 +117,7 @@ def test_a_hundred_misspelt_keys_are_refused_by_both(validator):
         inner = table
         for step in steps:
             inner = inner[step]
-        if steps == ["train", "torque"]:
+        if steps == ["train", "torque"] or steps[-2:] == ["search", "teeth"]:
             continue  # its keys are names of the user's choice
         at, letter = chance.randrange(len(last)), chance.choice("abcdefghijklmnopqrstuvwxyz_")
         slips = [last[:at] + last[at + 1 :], last[:at] + letter + last[at:], last[:at] + letter + last[at + 1 :]]
