@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.contact.wide.load_factors import RootFactors
+from fegear.fem.plane import estimate as estimate_module
 from fegear.fem.plane.edge_curves import beyond_the_fillet, moved_by_edges
 from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.influence import SIDES
@@ -69,18 +70,21 @@ def test_where_a_difference_changes_its_sign_the_error_is_that_of_places_beside_
     middle, span = 0.5 * (low + high), 0.02 * (high - low)
 
     def difference(self, value, radius, half_width):
-        """Large about the middle, through zero there, and next to nothing elsewhere."""
-        off = np.broadcast_to((np.asarray(radius) - middle) / span, value.shape)
-        return 1e-3 * np.abs(off) * np.exp(-0.5 * off**2) + 1e-9
+        """Large about the middle, through zero there, and next to nothing elsewhere; larger still at the end."""
+        r = np.broadcast_to(np.asarray(radius, dtype=float), np.shape(value))
+        off = (r - middle) / span
+        return 1e-3 * np.abs(off) * np.exp(-0.5 * off**2) + np.where(high - r < 1e-3, 1.0, 1e-9)
 
     monkeypatch.setattr(Estimate, "_self_difference", difference)
-    estimate = replace(ring[0].estimate)
-    error = estimate.self_error(np.array([middle, low]), np.asarray(0.02))
+    monkeypatch.setattr(estimate_module, "_USUAL", 0.0)
+    estimate, b = replace(ring[0].estimate), np.asarray(0.02)
     sampled = difference(None, estimate._samples, estimate._samples, None)
-    share = estimate.self_error(np.array([middle + span]), np.asarray(0.02))[0] / (1e-3 * math.exp(-0.5))
-    beside = np.sort(np.abs(estimate._samples - middle))[:2]
-    least = 1e-3 * min(np.abs(beside) / span * np.exp(-0.5 * (beside / span) ** 2))
-    assert error[0] >= 0.99 * share * max(least, sampled[np.argsort(np.abs(estimate._samples - middle))[:3]].max())
+    crossing, before, end, next_to_it = estimate.self_error(np.array([middle, middle + span, high, high - 0.02]), b)
+    share = end
+    nearest = np.argsort(np.abs(estimate._samples[:33] - middle))[:3]
+    assert crossing >= 0.99 * share * sampled[nearest].max()
+    assert before >= 0.99 * share * 1e-3 * math.exp(-0.5)
+    assert next_to_it < 1e-3 * share  # what a corner does concerns no other place
 
 
 def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():

@@ -163,8 +163,9 @@ class Estimate:
     def _self_estimate(self, difference: Array, radius: Array) -> Array:
         samples, known = self._samples, self._self_at_samples[1]
         usual = _USUAL * _root_mean_square(known[:_SAMPLES])
-        # A difference that changes its sign along the flank vanishes on its way from one place to the next.
-        order = np.argsort(samples)
+        # A difference that changes its sign along the flank vanishes on its way from one place to the next. At the ends
+        # it is that of corners.
+        order = np.argsort(samples[: 2 * _SAMPLES - 1])[1:-1]
         beside = maximum_filter1d(known[order], 3)
         floor = np.maximum(usual, np.interp(radius, samples[order], beside, left=0.0, right=0.0))
         return np.asarray(self._self_share * np.maximum(difference, floor) + self.common_errors[0])
