@@ -21,8 +21,11 @@ _ROUND_OFF = 1e-9
 
 
 def is_inexact(value: Value, tolerance: float) -> bool:
-    """Whether a value is known less well than the tolerance requires and than 1 %: enough to change a decision."""
-    if not value.error or abs(value.value) <= _ROUND_OFF * value.error:
+    """Whether a value is known less well than the tolerance requires and than 1 %: enough to change a decision.
+
+    One that is meant to be zero is not: `Outcome` compares its error with the values beside it.
+    """
+    if value.zero or not value.error or abs(value.value) <= _ROUND_OFF * value.error:
         return False
     return value.error > max(tolerance, _MISLEADING) * abs(value.value)
 

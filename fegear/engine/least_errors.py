@@ -39,7 +39,7 @@ def _is_rough(value: Value, beside: Iterable[Value]) -> bool:
     if not value.si_error or not value.si or not math.isfinite(value.si) or not math.isfinite(value.si_error):
         return False
     largest = max(abs(one.si) for one in beside if one.unit == value.unit and math.isfinite(one.si))
-    if abs(value.si) <= (ROUND_OFF * largest if value.unit else 0.0):
+    if value.zero or abs(value.si) <= (ROUND_OFF * largest if value.unit else 0.0):
         # A zero has no share of itself: what a designed relief leaves is judged by what no relief leaves.
         return bool(value.unit) and value.si_error > _ROUGH * largest > 0.0
     return value.si_error > _ROUGH * abs(value.si) and value.si_error > 10.0 * ROUND_OFF * largest

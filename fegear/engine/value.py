@@ -28,6 +28,8 @@ class Value(Alike):
         Estimated absolute error in SI; None where the error is unknown, zero where the value is exact.
     meaning : str
         One clause for the report.
+    zero : bool
+        Whether it is meant to be zero: its error is then a part of the largest value of the unit beside it.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Value(Alike):
     unit: str = ""
     si_error: float | None = None
     meaning: str = ""
+    zero: bool = False
 
     def __repr__(self) -> str:
         """Name, number with the digits of its error, error and unit on one line."""

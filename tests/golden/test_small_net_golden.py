@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fegear
 from fegear.base.notes import OPEN
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.text import draft
 from fegear.output.figures import described
 from fegear.output.report.blocks import Group
 from fegear.output.report.run import run_page
@@ -246,3 +249,39 @@ def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
             OF_TABLES[kind](columns(table), table.name, found)
     assert small_net.differences(small_net.kept()[name], small_net.of_run(found)) == []
     check_first_screen(found)
+
+
+#: Cases that no cheap run takes, with what makes them as cheap as they get.
+FURTHER = {
+    "calculix_pair": {"accuracy.tolerance": 0.1},
+    "four_square_fe": {"accuracy.tolerance": 0.1},
+    "inclined_web": {"accuracy.tolerance": 0.3},
+    "lin_dynamic_factor": {"dynamics.speeds": ["6000 rpm", "9000 rpm"]},
+    "litvin_lead": {},
+    "litvin_shaft_angle": {},
+    "nasa_four_square": {"accuracy.tolerance": 0.1},
+    "nasa_relief_design": {"accuracy.tolerance": 0.1, "design.grind": ["linear"]},
+    "relief_torque_range": {"accuracy.tolerance": 0.1},
+    "root_stress_validation": {"accuracy.tolerance": 0.1},
+    "strain_gauges": {"accuracy.tolerance": 0.1},
+    "torque_ripple": {"accuracy.tolerance": 0.1},
+    "typed_drawing": {"accuracy.tolerance": 0.1},
+    "web_holes": {"accuracy.tolerance": 0.3},
+}  # fmt: skip
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", FURTHER)
+def test_the_first_screen_of_further_cases_has_the_answer(name):
+    check_first_screen(fegear.run(small_net.ROOT / "cases" / f"{name}.toml", FURTHER[name], progress=False))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["gear", "pair", "relief", "ring", "study", "train", "planetary"])
+def test_a_fresh_template_has_no_open_note(kind, tmp_path):
+    """All that stands open on a report are failures, tolerances, neglected effects and assumptions."""
+    path = tmp_path / f"{kind}.toml"
+    path.write_text(draft(Answers(kind, {}), kind), encoding="utf-8")
+    found = fegear.run(path, progress=False)
+    check_first_screen(found)
+    assert found.notes(information=False) == ()

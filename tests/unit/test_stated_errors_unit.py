@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.case.accuracy import AccuracyPart
+from fegear.engine.inexact import is_inexact
 from fegear.engine.least_errors import ROUND_OFF
 from fegear.engine.outcome import Outcome
 from fegear.engine.table import Column, Table
@@ -48,6 +49,16 @@ def test_a_value_that_is_zero_has_no_share_of_itself():
     before, left = value("te_peak_to_peak.none", 20e-6, 4e-10), value("te_peak_to_peak.designed", 4e-20, 4e-10)
     share = value("surface_share", 0.0, 0.0025, "")
     assert Outcome(values=(before, left, share)).remarks == ()
+
+
+def test_a_value_that_is_meant_to_be_zero_is_judged_by_those_beside_it():
+    """0.03 of 20 um are left where tips touch early: no share of itself says whether the design is good."""
+    before, left = value("te_peak_to_peak.none", 20e-6, 4e-10), value("te_peak_to_peak.designed", 3e-8, 8e-8)
+    assert len(Outcome(values=(before, left)).remarks) == 1
+    assert Outcome(values=(before, replace(left, zero=True))).remarks == ()
+    assert len(Outcome(values=(before, replace(left, zero=True, si_error=5e-6))).remarks) == 1
+    assert is_inexact(left, 1e-2)
+    assert not is_inexact(replace(left, zero=True), 1e-2)
 
 
 def test_a_large_error_of_a_value_beside_larger_ones_is_noted():

@@ -51,6 +51,7 @@ hand = "{hand}"
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
+bore_radius = "{bore_radius}"     # gear body fixed there: half the root radius; replace by that of the drawing
 {relief}
 """
 _RING = """\
@@ -186,12 +187,12 @@ def _gear(answers: Answers, number: int) -> str:
     if answers.kind == "ring":
         return _ring(answers, texts, shift)
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
+    module, teeth, dedendum = answers.si("module"), int(texts["teeth"]), BasicRack.named(answers["rack"]).dedendum
+    turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
+    texts["bore_radius"] = _length(_BORE * module * (0.5 * teeth / turn - dedendum + shift))
     if answers.helical:
         return _HELICAL.format(**texts, hand=("right", "left")[number])
-    module, teeth = answers.si("module"), int(texts["teeth"])
     texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
-    dedendum = BasicRack.named(answers["rack"]).dedendum
-    texts["bore_radius"] = _length(_BORE * module * (0.5 * teeth - dedendum + shift))
     return _SPUR.format(**texts)
 
 

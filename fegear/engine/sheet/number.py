@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Number:
         declared name, `further` the declared meaning.
     each, when : where, optional
         Objects for each of which there is such a value; whether there is one.
+    zero : where, optional
+        Whether it is meant to be zero, see `Value`.
     finite : bool
         Whether an infinite one is no value either.
     """
@@ -52,6 +54,7 @@ class Number:
     when: Where | None = None
     finite: bool = False
     ending: Text = ""
+    zero: Where | None = None
 
     def values(self, seen: Seen) -> Iterator[Value]:
         """Those that there are."""
@@ -65,8 +68,9 @@ class Number:
             error = None if self.error is None else one.find(self.error)
             if error is not None:
                 error = float(error if np.ndim(error) == 0 or one.nominal is None else error[one.nominal])
-            yield value_of(
+            made = value_of(
                 *reach(found, quantity), one.said(self.owner), error, si=number,
                 load=one.nominal, name=one.said(self.name), ending=one.said(self.ending),
                 meaning=one.said(self.meaning), further=one.said(self.further),
             )  # fmt: skip
+            yield replace(made, zero=True) if self.zero is not None and one.holds(self.zero) else made

@@ -264,6 +264,11 @@ def _key(seen: Seen) -> str:
     return seen.key.replace(" ", "_")
 
 
+def _is_exact(seen: Seen) -> bool:
+    """Whether the relief leaves nothing by theory."""
+    return seen.key == "designed"
+
+
 def _removal(y: str, label: str, **options: Any) -> Line:
     """A relief over the roll angle."""
     return Line(y, label, label, look={"markers": False}, **options)
@@ -353,9 +358,9 @@ RELIEF_SHEET = Sheet(
         Each(
             "left",
             Number("te.peak_to_peak", "error", name=lambda seen: f"te_peak_to_peak.{_key(seen)}",
-                   meaning="{key}, design load"),
+                   meaning="{key}, design load", zero=_is_exact),
             Number("te.effective_error", "error", name=lambda seen: f"te_effective.{_key(seen)}",
-                   meaning="A_e, {key}, design load"),
+                   meaning="A_e, {key}, design load", zero=_is_exact),
         ),
         Number("te.peak_to_peak", of="left.designed", si="data.design.tables_leave",
                name="te_peak_to_peak.relief_tables",
