@@ -72,6 +72,10 @@ class Family:
         tooth = gear.tooth
         if not isinstance(tooth, Tooth):
             raise RangeError("internal", "true", "is not in an atlas (external gears only)", "solve the gear")
+        if gear.support is not None:
+            raise RangeError(
+                "rim_support", "given", "is not in an atlas (bodies fixed at their bore)", "solve the gear"
+            )
         rack = tooth.rack
         for key, value in (
             ("helix_angle", tooth.helix_angle),

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from functools import cache
+from hashlib import sha256
 from importlib.resources import as_file, files
 from typing import TYPE_CHECKING
 
@@ -93,6 +94,13 @@ _BUILD = "build it: python -m fegear.atlas RACK"
 def file_name(rack: str) -> str:
     """Of the atlas of a rack."""
     return f"iso53_{rack.lower()}.npz"
+
+
+@cache
+def fingerprint() -> str:
+    """Digest of the atlases that come with fegear."""
+    contents = (files("fegear.atlas").joinpath(file_name(rack)).read_bytes() for rack in SHIPPED)
+    return sha256(b"".join(contents)).hexdigest()
 
 
 def atlas_of(gear: Gear) -> Atlas | None:

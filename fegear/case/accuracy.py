@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
@@ -25,6 +25,12 @@ class _Tolerance(Part):
         default=1e-3,
         description="Target relative error of compliances and root stresses, 1e-6 to 0.5. The mesh is refined until "
         "the estimated error meets it; otherwise a note is issued.",
+    )
+    source: Literal["solve", "atlas", "auto"] = Field(
+        default="solve",
+        description="Teeth of plane (2D) pairs: `solve` by finite elements, `atlas` interpolated from shipped "
+        "solutions of similar gears (ISO 53 A, 12 to 150 teeth), `auto` from the atlas where its error is within the "
+        "tolerance.",
     )
 
 

@@ -44,6 +44,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "profile and helix deviations (slope, form, total) of measured flanks, and their tolerance class",
               internal=True),
         Entry("gear-solution", "gear.solved_gear.GEAR_SOLUTION", "Influence functions of a gear (2D)", internal=True),
+        Entry("atlas-gear", "gear.solved_gear.ATLAS_GEAR", "Influence functions of a gear (2D) from an atlas"),
         Entry("stiffness", "gear.stiffness.STIFFNESS", "Compliance and root stress (2D, full gear)", ("stiffness",),
               "compliance of a loaded tooth and its neighbours, and root stress, over load positions",
               quantities=("c_0", "c_1"), internal=True),

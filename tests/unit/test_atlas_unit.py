@@ -28,6 +28,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.rim_support import RimSupport
 
 FAMILY = Family()
 SETTINGS = settings_at(-6.0)
@@ -129,6 +130,7 @@ def test_size_and_steel_scale_and_a_thickness_allowance_is_a_shift(atlas):
             lambda: Gear(Tooth(31, BasicRack(1.0, 1.25, 0.38), 0.17, helix_angle=0.2), 3e-3, 0.02, hand="left"),
             "helix_angle = 0.2: must be 0",
         ),
+        (lambda: steel_gear(support=RimSupport(free_teeth=3)), "rim_support = given: is not in an atlas"),
         (lambda: Gear(Tooth(12, BasicRack(1.0, 1.25, 0.38)), 3e-3, 0.005), "has undercut, unlike the gears"),
     ],
 )

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.contact.plane.compliance import RootStressInfluence
+    from fegear.contact.plane.fe_compliance import SolvedTeeth
     from fegear.contact.plane.formula_root_stress import FormulaRootStress
-    from fegear.fem.plane.gear import GearInfluence
 
 #: Name of the source that is no formula.
 FINITE_ELEMENTS = "fe"
@@ -28,7 +28,7 @@ def root_stress_source(
     gear: str,
     pair: GearPair,
     member: Member,
-    solved: Mapping[str, GearInfluence],
+    solved: Mapping[str, SolvedTeeth],
     *,
     tips: bool,
     whole: bool = False,
@@ -43,8 +43,8 @@ def root_stress_source(
         Of the pair and of the gear in the case.
     pair : GearPair
     member : {"driver", "driven"}
-    solved : mapping of str to GearInfluence
-        Gears solved by finite elements, by name; needed for ``"fe"``.
+    solved : mapping of str to SolvedTeeth
+        Gears solved by finite elements, or from an atlas of such, by name; needed for ``"fe"``.
     tips : bool
         Whether tip corners may touch the flank beyond the path of contact.
     whole : bool

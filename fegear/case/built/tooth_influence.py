@@ -17,6 +17,7 @@ from fegear.base.notes import exceeding, neglecting
 from fegear.base.printed import percent
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.accuracy import AccuracyPart
+from fegear.case.built.atlas_teeth import why_solved
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.fem.plane.settings import MeshSettings, Solver, level_for, settings_at
@@ -68,6 +69,8 @@ class GearToSolve:
         Whether the first settings for the tolerance are enough, without an error estimate.
     solver : {"condensed", "scikit-fem"}
         What assembles and eliminates where the settings are chosen by the tolerance.
+    why : str
+        Why it is not taken from an atlas, where it might be.
     """
 
     gear: Gear
@@ -78,6 +81,7 @@ class GearToSolve:
     name: str = field(default="", compare=False)
     draft: bool = False
     solver: Solver = "condensed"
+    why: str = field(default="", compare=False)
 
 
 def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
@@ -93,7 +97,10 @@ def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
     settings = mesh_settings(accuracy) if given else None
     draft, reach = None if given else scene.drafts.get(name), needed_reach(scene, name)
     tolerance = draft or accuracy.tolerance
-    return GearToSolve(scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None, accuracy.solver)
+    why = why_solved(scene, name)
+    return GearToSolve(
+        scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None, accuracy.solver, why
+    )
 
 
 def check_plane_gear(scene: Scene, name: str) -> None:

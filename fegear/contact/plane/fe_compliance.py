@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -37,6 +37,7 @@ _NEIGHBOUR_POINTS = 14
 NOMINAL_HALF_WIDTH = 0.08
 
 
+@runtime_checkable
 class SolvedTeeth(Protocol):
     """What a gear answers whose teeth have been solved, or interpolated from solved ones; SI, as `GearInfluence`."""
 

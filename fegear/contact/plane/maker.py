@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeGuard
 from fegear.base.errors import InputError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
-from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_element_compliance
+from fegear.contact.plane.fe_compliance import FiniteElementCompliance, SolvedTeeth, finite_element_compliance
 from fegear.contact.plane.flanks import as_specified, with_flanks
 from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.plane.odd_compliance import (
@@ -20,7 +20,6 @@ from fegear.contact.plane.odd_compliance import (
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
 from fegear.contact.plane.table_compliance import table_sources
-from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 from fegear.geometry.pair import MEMBERS
 
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.compliance import GearCompliance
 
     Sources = tuple[GearCompliance, GearCompliance]
-    Solved = GearInfluence | OddGearInfluence
+    Solved = SolvedTeeth | OddGearInfluence
 
 
 def load_plane(
@@ -73,7 +72,7 @@ def compliance_sources(spec: PairSpec, gears: Sequence[Solved | GearCompliance])
     InputError
         If a table or a formula does not fit the gears, or gears that are to be solved are not.
     """
-    if gears and not isinstance(gears[0], (GearInfluence, OddGearInfluence)):
+    if gears and not isinstance(gears[0], (SolvedTeeth, OddGearInfluence)):
         first, second = gears
         return first, second  # type: ignore[return-value]  # both are sources where the first is
     pair = spec.pair
@@ -90,7 +89,7 @@ def compliance_sources(spec: PairSpec, gears: Sequence[Solved | GearCompliance])
             "gears", f"{len(gears)} given", "must be both solved gears, driver and driven",
             "give solve_gear(pair.driver) and solve_gear(pair.driven), or a formula as compliance",
         )  # fmt: skip
-    solved = {id(gear): _tabulated(gear) for gear in gears if isinstance(gear, (GearInfluence, OddGearInfluence))}
+    solved = {id(gear): _tabulated(gear) for gear in gears if isinstance(gear, (SolvedTeeth, OddGearInfluence))}
     first, second = (solved[id(gear)] for gear in gears)
     return first, second
 

@@ -11,6 +11,14 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 from fegear.base.errors import RangeError
+from fegear.case.built.atlas_teeth import (
+    GearFromAtlas,
+    atlas_remarks,
+    check_atlas_gear,
+    from_atlas,
+    known_teeth,
+    solved_remarks,
+)
 from fegear.case.built.rated_duty import thin_rim_remarks
 from fegear.case.built.solid_influence import (
     SolidGearToSolve,
@@ -39,14 +47,18 @@ from fegear.results import forecasts
 from fegear.results.forecasts import RING
 
 if TYPE_CHECKING:
+    from fegear.atlas.atlas_gear import AtlasGear
+    from fegear.contact.plane.fe_compliance import SolvedTeeth
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Influence
     from fegear.fem.solid.influence import SolidInfluence
 
-#: Stages of plane gears, and of gears with their width.
-PLANE, SOLID = "gear-solution", "solid-solution"
+#: Stages of plane gears, solved and from an atlas, and of gears with their width.
+PLANE, ATLAS, SOLID = "gear-solution", "atlas-gear", "solid-solution"
 #: How many times the solution of a plane gear reports that it goes on, about.
 _STEPS = 4
+#: Seconds of a gear from an atlas.
+_LOOK_UP = 0.02
 
 
 def _needs(stage: str, gears: tuple[str, ...]) -> tuple[Task, ...]:
@@ -61,6 +73,17 @@ def needs_solution(*gears: str) -> tuple[Task, ...]:
 def needs_solid_solution(*gears: str) -> tuple[Task, ...]:
     """The tasks that solve gears with their width, each once."""
     return _needs(SOLID, gears)
+
+
+def needs_teeth_of(scene: Scene, *gears: str) -> tuple[Task, ...]:
+    """The tasks that give what contact asks of plane gears: solved, or from an atlas where the case says so."""
+    return tuple(Task(ATLAS if from_atlas(scene, name) else PLANE, name) for name in dict.fromkeys(gears))
+
+
+def teeth_of(upstream: Upstream, gear: str) -> SolvedTeeth:
+    """What contact asks of a plane gear that was solved or is from an atlas."""
+    task = Task(ATLAS, gear)
+    return cast("SolvedTeeth", upstream[task] if task in upstream else upstream[Task(PLANE, gear)])
 
 
 def solution_of(upstream: Upstream, gear: str) -> GearInfluence:
@@ -79,8 +102,16 @@ def _solve(asked: GearToSolve, _upstream: Upstream, work: Work) -> GearInfluence
 
 
 def _present(influence: GearInfluence, asked: GearToSolve) -> Outcome:
-    remarks = solution_remarks(asked.name, influence, asked.tolerance)
+    remarks = (*solved_remarks(asked.name, asked.why), *solution_remarks(asked.name, influence, asked.tolerance))
     return Outcome(influence, settings=solution_settings(influence), remarks=remarks)
+
+
+def _look_up(asked: GearFromAtlas, _upstream: Upstream, _work: Work) -> AtlasGear:
+    return known_teeth(asked.gear)
+
+
+def _present_from_atlas(known: AtlasGear, asked: GearFromAtlas) -> Outcome:
+    return Outcome(known, settings={"atlas": asked.made_from[:12]}, remarks=atlas_remarks(asked, known))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -162,6 +193,17 @@ GEAR_SOLUTION = Stage(
     check=check_plane_gear,
     cites=citing(*RING),
     forecast=_forecast,
+)
+
+
+ATLAS_GEAR = Stage(
+    subjects=lambda scene: tuple(scene.spur_gears),
+    inputs=GearFromAtlas.of,
+    compute=_look_up,
+    present=_present_from_atlas,
+    check=check_atlas_gear,
+    cites=citing(*RING),
+    forecast=lambda _scene, _name: forecasts.constant(_LOOK_UP),
 )
 
 

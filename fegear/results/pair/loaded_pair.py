@@ -20,7 +20,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
 from fegear.results.gear.odd_gear import needs_odd_solution
-from fegear.results.gear.solved_gear import needs_solution, solution_of
+from fegear.results.gear.solved_gear import needs_solution, needs_teeth_of, teeth_of
 from fegear.results.pair.loaded_teeth import AskedOfTeeth, plane_pairs
 
 if TYPE_CHECKING:
@@ -50,14 +50,14 @@ def _for_readers(asked: AskedOfTeeth, readers: Sequence[Stage]) -> AskedOfTeeth:
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     part = scene.case.pair[name]
-    return needs_solution(part.driver, part.driven) if part.compliance.source == "fe" else ()
+    return needs_teeth_of(scene, part.driver, part.driven) if part.compliance.source == "fe" else ()
 
 
 def _compute(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedPair:
     from fegear.contact.plane.maker import load_plane
 
     spec = asked.spec
-    solved = tuple(solution_of(upstream, gear) for gear in spec.gears) if upstream else ()
+    solved = tuple(teeth_of(upstream, gear) for gear in spec.gears) if upstream else ()
     pair = load_plane(spec, solved, cache=work.cache, estimates=asked.estimates)
     return replace(pair, neglected=pair.neglects(asked.answers, asked.loads)) if asked.neglected else pair
 

@@ -24,7 +24,7 @@ from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.drawing import path_marks
-from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
+from fegear.results.gear.solved_gear import needs_teeth_of, solid_solution_of, teeth_of
 from fegear.results.pair.loaded_teeth import (
     check_teeth,
     gears_of,
@@ -114,7 +114,7 @@ def _sources(asked: RootStressInputs, upstream: Upstream) -> dict[Member, dict[s
     if not asked.sources:
         return {member: {FINITE_ELEMENTS: solid_solution_of(upstream, gear)} for member, gear in asked.gears.items()}
     pair = loaded_pair(upstream, asked.name)
-    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
+    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: teeth_of(upstream, g) for g in asked.gears.values()}
     sources: dict[Member, dict[str, Any]] = {member: {} for member in MEMBERS}
     for member, gear in asked.gears.items():
         for name in asked.sources:
@@ -341,7 +341,7 @@ def stress_sources(scene: Scene, pair: str) -> tuple[str, ...]:
 def needs_sources(scene: Scene, pair: str) -> tuple[Task, ...]:
     """The finite-element solutions that they ask for."""
     part = scene.case.pair[pair]
-    return needs_solution(part.driver, part.driven) if FINITE_ELEMENTS in part.root_stress.source else ()
+    return needs_teeth_of(scene, part.driver, part.driven) if FINITE_ELEMENTS in part.root_stress.source else ()
 
 
 def cited_sources(scene: Scene, pair: str) -> Iterator[Citation]:

@@ -24,7 +24,7 @@ from fegear.case.built.tolerances import (
 from fegear.case.built.tooth_influence import gear_to_solve
 from fegear.engine.stage import Forecast, Task, Upstream
 from fegear.geometry.pair import MEMBERS
-from fegear.results.gear.solved_gear import solid_solution_of, solution_of
+from fegear.results.gear.solved_gear import solid_solution_of, teeth_of
 from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_pair, needs_gears, needs_teeth
 from fegear.results.pair.root_stress_history import needs_sources, stress_sources
@@ -175,7 +175,7 @@ def _plane_bench(asked: DrawInputs, upstream: Upstream) -> Bench:
 
     engagement = loaded_pair(upstream, asked.name).engagement
     fe = asked.source == FINITE_ELEMENTS
-    solved = {gear: solution_of(upstream, gear) for gear in dict.fromkeys(asked.gears)} if fe else {}
+    solved = {gear: teeth_of(upstream, gear) for gear in dict.fromkeys(asked.gears)} if fe else {}
     driver, driven = (
         root_stress_source(
             asked.source, asked.name, gear, engagement.pair, member, solved, tips=engagement.corner_contact, whole=True

@@ -28,7 +28,7 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
-from fegear.results.gear.solved_gear import solution_of
+from fegear.results.gear.solved_gear import teeth_of
 from fegear.results.pair.root_stress_data import ending, told
 from fegear.results.pair.root_stress_history import (
     cited_sources,
@@ -106,7 +106,7 @@ def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> Dynami
 
     data: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
     mesh = data.train.meshes[data.mesh]
-    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
+    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: teeth_of(upstream, g) for g in asked.gears.values()}
     stress: dict[Member, dict[str, ToothRootStress]] = {member: {} for member in MEMBERS}
     notes: dict[Member, dict[str, tuple[str, ...]]] = {member: {} for member in MEMBERS}
     around: dict[int, dict[int, ToothForce]] = {}
